@@ -1,0 +1,1 @@
+//! placeholder for the model description, written next.

@@ -1,0 +1,1 @@
+//! Gap, overlap and bulge of the settled turns, and the verdict drawn from them.

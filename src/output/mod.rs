@@ -1,0 +1,1 @@
+//! Files written for people and other programs: CSV, JSON, VTK and PNG.

@@ -1,0 +1,213 @@
+//! The immutable description of a run, in SI units.
+//!
+//! Made from a TOML file or a packed name by [`file`], validated there; everything else reads it.
+
+use crate::rod::Section;
+use std::path::PathBuf;
+
+/// Everything a run needs to know; does not change while it runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// packed name or file stem
+    pub name: String,
+    /// which solver set-up
+    pub preset: Preset,
+    /// wire section and yield limits
+    pub wire: Section,
+    /// `copper`, `table1` or `custom`
+    pub wire_material: String,
+    /// core geometry
+    pub core: Core,
+    /// nozzle
+    pub nozzle: Nozzle,
+    /// tensioner and the line to the nozzle
+    pub tensioner: Tensioner,
+    /// spindle programme of `coilwind run`
+    pub spindle: Spindle,
+    /// traverse programme of `coilwind run`
+    pub traverse: Traverse,
+    /// contact law
+    pub contact: Contact,
+    /// friction law
+    pub friction: Friction,
+    /// solver settings
+    pub solver: Solver,
+    /// when wire at rest leaves the computation
+    pub freeze: Freeze,
+    /// limits of the defect flags
+    pub defects: Defects,
+    /// what is recorded
+    pub output: Output,
+}
+
+/// Solver set-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// the best this version has
+    Default,
+    /// the paper's method, mended (RK4, triangle meshes, uniform spacing)
+    Paper,
+}
+
+/// Core geometry; the axis is +y through the origin, the core spans `-length/2 ..= length/2`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Core {
+    /// Rounded rectangle in x-z, extruded along y.
+    RoundedBox {
+        /// full width along x, m
+        width_x: f64,
+        /// full height along z, m
+        height_z: f64,
+        /// full length along y, m
+        length_y: f64,
+        /// radius of the four long edges, m
+        corner_radius: f64,
+    },
+    /// Circular cylinder about y.
+    Cylinder {
+        /// radius, m
+        radius: f64,
+        /// full length along y, m
+        length_y: f64,
+    },
+    /// Triangle mesh from an STL file.
+    Mesh {
+        /// path of the file, already resolved
+        path: PathBuf,
+        /// metres per file unit
+        unit: f64,
+    },
+}
+
+/// Eyelet on +x: position fixed, direction free, wire slides through.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nozzle {
+    /// distance of the exit from the core axis, m
+    pub distance: f64,
+    /// start position along the core axis, m
+    pub y_start: f64,
+    /// friction force at the exit as a share of tension per rad of deflection
+    pub exit_friction: f64,
+}
+
+/// Constant pull through an equivalent mass and an elastic line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tensioner {
+    /// set pull, N
+    pub tension: f64,
+    /// equivalent mass per wire speed, kg; 0 with a rigid line: constant pull at the nozzle
+    pub mass: f64,
+    /// wire between tensioner and nozzle, m
+    pub line_length: f64,
+    /// damping ratio of mass on line
+    pub line_damping_ratio: f64,
+}
+
+/// Spindle programme of a native run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spindle {
+    /// final speed about +y, rad/s
+    pub speed: f64,
+    /// turns over which the speed rises with constant acceleration
+    pub ramp_turns: f64,
+    /// turns of the spindle until the run ends
+    pub turns: f64,
+}
+
+/// Traverse programme of a native run: nozzle y proportional to the core angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Traverse {
+    /// nozzle travel per turn of the spindle, m (sign: direction along y)
+    pub per_turn: f64,
+    /// constant lead of the nozzle over the law, m
+    pub lead: f64,
+}
+
+/// Penalty contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// line load per depth, N/m^2
+    pub stiffness: f64,
+    /// rebound over impact speed of a single node
+    pub restitution: f64,
+}
+
+/// Stick-slip friction, wire on core and wire on wire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction {
+    /// coefficient at rest
+    pub static_: f64,
+    /// coefficient at high slip speed
+    pub kinetic: f64,
+    /// slip speed over which one turns into the other, m/s
+    pub slip_speed: f64,
+}
+
+/// Explicit time integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// classical Runge-Kutta, four evaluations a step
+    Rk4,
+    /// velocity Verlet (staggered), one evaluation a step
+    Verlet,
+}
+
+/// Solver settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solver {
+    /// time integrator
+    pub integrator: Integrator,
+    /// node spacing near the core, m
+    pub spacing_near: f64,
+    /// node spacing in the free span, m
+    pub spacing_free: f64,
+    /// distance from the core at which free-span edges are split to the near spacing, m
+    pub refine_distance: f64,
+    /// time step as a share of the stability limit, 0..1
+    pub step_share: f64,
+    /// fixed time step, s; 0: from the stability limit
+    pub step: f64,
+}
+
+/// When wire leaves the computation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Freeze {
+    /// off keeps all wire live
+    pub enabled: bool,
+    /// window of core angle over which motion is judged, rad
+    pub window: f64,
+    /// largest motion in the core frame per core angle, m/rad
+    pub creep: f64,
+    /// settled wire kept live behind lift-off, m; 0: 1.75 sqrt(EI/T)
+    pub keep_length: f64,
+    /// region: largest distance of the wire's surface from the core, m
+    pub margin: f64,
+}
+
+/// Limits of the defect flags, lengths in wire diameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Defects {
+    /// gap above this ...
+    pub gap: f64,
+    /// ... over at least this fraction of a turn in one run
+    pub gap_fraction: f64,
+    /// height over the quasi-static height
+    pub bulge_excess: f64,
+    /// absolute bulge limit, m; 0: use `bulge_excess`
+    pub bulge_absolute: f64,
+    /// axial distance to the neighbour below this ...
+    pub overlap_axial: f64,
+    /// ... while standing above its layer by this
+    pub overlap_height: f64,
+    /// polar angle after the clamp that is left out, rad
+    pub skip_angle: f64,
+}
+
+/// What is recorded.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// core angle between rows of `history.csv`, rad
+    pub history_interval: f64,
+    /// directory of the FMU's files; empty: none
+    pub directory: String,
+}

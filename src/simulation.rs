@@ -1,0 +1,72 @@
+//! The one door to a run: scene in, inputs in, outputs and events out.
+
+use crate::math::{Quat, V3};
+use serde::Serialize;
+
+/// What the machine tells the simulator.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Inputs {
+    /// core angular velocity about +y, rad/s
+    pub spindle_speed: f64,
+    /// nozzle along the core axis, m
+    pub nozzle_position: f64,
+    /// pull of the tensioner, N
+    pub tension_setpoint: f64,
+}
+
+/// What the simulator tells the machine at a communication point. Units in the variable table.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[allow(missing_docs)]
+pub struct Outputs {
+    pub wire_tension: f64,
+    pub wire_tension_min: f64,
+    pub wire_tension_max: f64,
+    pub defect_bulge: bool,
+    pub defect_gap: bool,
+    pub defect_overlap: bool,
+    pub defect_break: bool,
+    pub defect_slack: bool,
+    pub defect_code: i32,
+    pub defect_count: i32,
+    pub defect_turn: f64,
+    pub defect_angle: f64,
+    pub bulge_height: f64,
+    pub gap_width: f64,
+    pub overlap_depth: f64,
+    pub turns_wound: f64,
+    pub turns_settled: f64,
+    pub layer: i32,
+    pub spindle_angle: f64,
+    pub spindle_torque: f64,
+    pub feed_speed: f64,
+    pub fed_length: f64,
+    pub free_length: f64,
+    pub layon_position: f64,
+    pub layon_angle: f64,
+    pub coil_width: f64,
+    pub mean_pitch: f64,
+    pub fill_factor: f64,
+    pub wire_strain: f64,
+    pub solver_steps: f64,
+    pub solver_rejects: f64,
+    pub live_nodes: i32,
+    pub penetration_max: f64,
+    pub energy_residual: f64,
+}
+
+/// The wire's centreline in the core frame, clamp first, nozzle last.
+#[derive(Clone, Debug, Default)]
+pub struct Centreline {
+    /// node positions, m
+    pub points: Vec<V3>,
+    /// material frame of the edge leaving each node (the last repeats), body z along the edge
+    pub frames: Vec<Quat>,
+    /// unstretched length from the clamp, m
+    pub arc: Vec<f64>,
+    /// plastic stretch of the edge leaving each node
+    pub plastic_strain: Vec<f64>,
+    /// tension of the edge leaving each node, N
+    pub tension: Vec<f64>,
+    /// the first `frozen` nodes are fixed geometry, the rest is live
+    pub frozen: usize,
+}
