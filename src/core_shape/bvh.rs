@@ -1,0 +1,180 @@
+//! Search for the triangles near a point by a hierarchy of boxes.
+//!
+//! The `bvh` crate builds the tree (surface-area heuristic); the walk is ours because its
+//! iterators report boxes, and a fixed-depth stack would panic on adversarial files. The crate's
+//! vector types stay inside this file.
+
+use super::feature::Nearest;
+use super::mesh::TriMesh;
+use crate::math::V3;
+use bvh::aabb::{Aabb, Bounded};
+use bvh::bounding_hierarchy::BHShape;
+use bvh::bvh::BvhNode;
+use nalgebra::Point3;
+
+type Node = BvhNode<f64, 3>;
+type Box3 = Aabb<f64, 3>;
+
+/// Boxes are taken this much (relative) larger than they are, so that rounding never hides a
+/// triangle that the exact test would keep.
+const SLACK: f64 = 1e-9;
+
+/// A box hierarchy over the triangles of one mesh; every query is handed that same mesh.
+#[derive(Clone, Debug)]
+pub struct Bvh {
+    nodes: Vec<Node>,
+}
+
+/// A triangle's box, as the builder wants it.
+struct Leaf {
+    bounds: Box3,
+    node: usize,
+}
+
+impl Bounded<f64, 3> for Leaf {
+    fn aabb(&self) -> Box3 {
+        self.bounds
+    }
+}
+
+impl BHShape<f64, 3> for Leaf {
+    fn set_bh_node_index(&mut self, node: usize) {
+        self.node = node;
+    }
+
+    fn bh_node_index(&self) -> usize {
+        self.node
+    }
+}
+
+impl Bvh {
+    /// Builds the hierarchy.
+    pub fn new(mesh: &TriMesh) -> Self {
+        let leaf = |corner: &[u32; 3]| {
+            let p = corner.map(|v| mesh.vertices[v as usize]);
+            let low = p[0].inf(&p[1]).inf(&p[2]);
+            let high = p[0].sup(&p[1]).sup(&p[2]);
+            Leaf {
+                bounds: Aabb::with_bounds(Point3::from(low), Point3::from(high)),
+                node: 0,
+            }
+        };
+        let mut leaves: Vec<Leaf> = mesh.triangles.iter().map(leaf).collect();
+        Self {
+            nodes: bvh::bvh::Bvh::build(&mut leaves).nodes,
+        }
+    }
+
+    /// Triangles whose distance from `p` is at most `radius` (m), in ascending order.
+    ///
+    /// `out` is emptied first and reused: no allocation once it has grown.
+    pub fn near(&self, mesh: &TriMesh, p: V3, radius: f64, out: &mut Vec<u32>) {
+        out.clear();
+        if radius >= 0.0 {
+            let query = Near {
+                nodes: &self.nodes,
+                mesh,
+                p,
+                limit: radius * radius,
+            };
+            query.walk(0, out);
+            out.sort_unstable();
+        }
+    }
+
+    /// Signed distance, closest point and normal.
+    pub fn nearest(&self, mesh: &TriMesh, p: V3) -> Nearest {
+        let mut best = (f64::INFINITY, 0);
+        nearest_walk(&self.nodes, mesh, p, 0, &mut best);
+        mesh.nearest_on(p, best.1)
+    }
+}
+
+impl TriMesh {
+    /// Triangles within `radius` of `p` by asking every one: the slow twin of [`Bvh::near`].
+    pub fn near_brute(&self, p: V3, radius: f64, out: &mut Vec<u32>) {
+        out.clear();
+        let limit = radius * radius;
+        out.extend((0..self.len() as u32).filter(|&t| self.closest(t, p).distance_sq <= limit));
+    }
+}
+
+struct Near<'a> {
+    nodes: &'a [Node],
+    mesh: &'a TriMesh,
+    p: V3,
+    /// squared radius, m^2
+    limit: f64,
+}
+
+impl Near<'_> {
+    /// Depth is bounded: each level of the tree at least takes a sixth off a box or halves a set.
+    fn walk(&self, node: usize, out: &mut Vec<u32>) {
+        match &self.nodes[node] {
+            Node::Leaf { shape_index, .. } => {
+                let triangle = *shape_index as u32;
+                if self.mesh.closest(triangle, self.p).distance_sq <= self.limit {
+                    out.push(triangle);
+                }
+            }
+            Node::Node {
+                child_l_index,
+                child_l_aabb,
+                child_r_index,
+                child_r_aabb,
+                ..
+            } => {
+                for (bounds, child) in
+                    [(child_l_aabb, child_l_index), (child_r_aabb, child_r_index)]
+                {
+                    if box_distance_sq(bounds, self.p) <= self.limit {
+                        self.walk(*child, out);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Branch and bound, nearer child first; `best` is squared distance and triangle.
+fn nearest_walk(nodes: &[Node], mesh: &TriMesh, p: V3, node: usize, best: &mut (f64, u32)) {
+    match &nodes[node] {
+        Node::Leaf { shape_index, .. } => {
+            let triangle = *shape_index as u32;
+            let distance_sq = mesh.closest(triangle, p).distance_sq;
+            if (distance_sq, triangle) < *best {
+                *best = (distance_sq, triangle);
+            }
+        }
+        Node::Node {
+            child_l_index,
+            child_l_aabb,
+            child_r_index,
+            child_r_aabb,
+            ..
+        } => {
+            let left = (box_distance_sq(child_l_aabb, p), *child_l_index);
+            let right = (box_distance_sq(child_r_aabb, p), *child_r_index);
+            let order = if right.0 < left.0 {
+                [right, left]
+            } else {
+                [left, right]
+            };
+            for (distance_sq, child) in order {
+                if distance_sq <= best.0 {
+                    nearest_walk(nodes, mesh, p, child, best);
+                }
+            }
+        }
+    }
+}
+
+/// Squared distance of `p` from a box, slightly understated, m^2.
+#[inline]
+fn box_distance_sq(bounds: &Box3, p: V3) -> f64 {
+    let (low, high) = (bounds.min.coords, bounds.max.coords);
+    let outside = (low - p).sup(&(p - high)).sup(&V3::zeros());
+    let scale = low.abs().sup(&high.abs()).max();
+    let understated = (outside.norm() - 1e-14 * scale).max(0.0);
+    understated * understated * (1.0 - SLACK)
+}

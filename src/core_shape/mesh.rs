@@ -1,0 +1,728 @@
+//! A closed triangle mesh, checked and prepared for distance queries.
+//!
+//! Everything a query needs is stored ready to use: a [`Facet`] per triangle (its plane and the
+//! three planes of its prism), an [`Edge`] per shared edge and a [`Corner`] per vertex. The two
+//! triangles of an edge read the *same* edge record, so both decide alike whether a point lies
+//! beside the edge or past its end; that is what keeps a touch from being lost or counted twice.
+
+use crate::math::V3;
+
+/// Largest coordinate accepted, m. Chosen far above any machine, far below where squares of
+/// areas overflow.
+const LARGEST_COORDINATE: f64 = 1e6;
+/// A triangle is degenerate when its height is below this share of its longest side: its normal
+/// would be rounding noise. Chosen a thousandth of what single-precision files can resolve.
+const LEAST_HEIGHT: f64 = 1e-10;
+/// Two neighbours whose unit normals sum to less than this lie back to back.
+const LEAST_FOLD: f64 = 1e-9;
+/// A neighbour may rise over a face by this share of the mesh's extent and still count as flat:
+/// some ten roundings of a single-precision file.
+const FLAT: f64 = 1e-6;
+
+/// A closed, outward oriented triangle mesh. Vertices in m, core frame.
+///
+/// The public fields are for reading (drawing, export); the rest is derived from them in
+/// [`TriMesh::new`], so a changed mesh is a new mesh.
+#[derive(Clone, Debug)]
+pub struct TriMesh {
+    /// vertex positions, m
+    pub vertices: Vec<V3>,
+    /// vertex indices, counterclockwise seen from outside
+    pub triangles: Vec<[u32; 3]>,
+    pub(crate) facets: Vec<Facet>,
+    pub(crate) edges: Vec<Edge>,
+    pub(crate) corners: Vec<Corner>,
+    /// edges at each corner, `corners[v].ring` indexes it: edge index and whether it ends here
+    pub(crate) rings: Vec<(u32, bool)>,
+    /// below this distance (m) the direction from the surface to a point is rounding noise
+    pub(crate) tiny: f64,
+    /// every edge flat or convex, and one connected piece
+    pub(crate) convex: bool,
+}
+
+/// One triangle, ready for queries. Side `k` runs from corner `k` to corner `k + 1`.
+#[derive(Clone, Debug)]
+pub(crate) struct Facet {
+    /// outward unit normal
+    pub normal: V3,
+    /// the plane is `normal . x = offset`, m
+    pub offset: f64,
+    /// unit normal of each side in the plane, pointing away from the triangle
+    pub side: [V3; 3],
+    /// the prism is `side[k] . x <= side_offset[k]`, m
+    pub side_offset: [f64; 3],
+    /// edge index of each side
+    pub edge: [u32; 3],
+    /// triangle across each side
+    pub across: [u32; 3],
+    /// vertex indices
+    pub corner: [u32; 3],
+}
+
+/// An edge shared by two triangles.
+#[derive(Clone, Debug)]
+pub(crate) struct Edge {
+    /// position of the first end, m
+    pub start: V3,
+    /// from the first end to the second, m
+    pub along: V3,
+    /// squared length, m^2
+    pub length_sq: f64,
+    /// vertex indices of the ends
+    pub ends: [u32; 2],
+    /// the two triangles, lower index first
+    pub triangles: [u32; 2],
+    /// which side of each triangle this edge is
+    pub side_in: [u8; 2],
+    /// unit bisector of the two face normals: tells outside from inside at the edge
+    pub outward: V3,
+    /// angle between the face normals, rad; positive: convex, negative: concave
+    pub bend: f64,
+    /// width per height of the strip over this edge that lies in both prisms: 0 unless concave
+    pub overlap: f64,
+}
+
+/// A vertex with its surroundings.
+#[derive(Clone, Debug)]
+pub(crate) struct Corner {
+    /// range of `rings`
+    pub ring: (u32, u32),
+    /// lowest triangle index at the vertex
+    pub first_triangle: u32,
+    /// unit normal, faces weighted by their angle (Baerentzen and Aanaes 2005): tells outside
+    /// from inside at the vertex
+    pub outward: V3,
+}
+
+/// Why vertices and triangles make no surface to wind on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// There is no triangle.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// Indices are 32 bit.
+    #[error("the mesh has {count} {what}, more than the {limit} that can be numbered")]
+    TooMany {
+        /// vertices or triangles
+        what: &'static str,
+        /// how many
+        count: usize,
+        /// how many are allowed
+        limit: usize,
+    },
+    /// A coordinate is NaN, infinite or absurd.
+    #[error("vertex {vertex} at ({x}, {y}, {z}) m is not finite or farther than {limit} m out")]
+    Coordinate {
+        /// vertex index
+        vertex: usize,
+        /// position, m
+        x: f64,
+        /// position, m
+        y: f64,
+        /// position, m
+        z: f64,
+        /// largest coordinate, m
+        limit: f64,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} uses vertex {vertex}, but there are only {count}")]
+    NoSuchVertex {
+        /// triangle index
+        triangle: usize,
+        /// vertex index
+        vertex: u32,
+        /// number of vertices
+        count: usize,
+    },
+    /// A triangle has no area.
+    #[error(
+        "triangle {triangle} is degenerate: height {height:.3e} m on a side of {longest:.3e} m"
+    )]
+    Degenerate {
+        /// triangle index
+        triangle: usize,
+        /// least height, m
+        height: f64,
+        /// longest side, m
+        longest: f64,
+    },
+    /// An edge has a triangle on one side only.
+    #[error("the mesh is open: edge {from}-{to} has only triangle {triangle}")]
+    Open {
+        /// vertex index
+        from: u32,
+        /// vertex index
+        to: u32,
+        /// the only triangle
+        triangle: u32,
+    },
+    /// An edge has more than two triangles.
+    #[error(
+        "the mesh is not a surface: edge {from}-{to} has {count} triangles, triangle {triangle} among them"
+    )]
+    NonManifold {
+        /// vertex index
+        from: u32,
+        /// vertex index
+        to: u32,
+        /// how many triangles
+        count: usize,
+        /// the first of them
+        triangle: u32,
+    },
+    /// Two neighbours disagree about which side is out.
+    #[error(
+        "triangles {first} and {second} run along edge {from}-{to} in the same direction: one is turned over"
+    )]
+    Twisted {
+        /// vertex index
+        from: u32,
+        /// vertex index
+        to: u32,
+        /// triangle index
+        first: u32,
+        /// triangle index
+        second: u32,
+    },
+    /// Two neighbours lie back to back.
+    #[error("triangles {first} and {second} are folded flat onto each other at edge {from}-{to}")]
+    Folded {
+        /// vertex index
+        from: u32,
+        /// vertex index
+        to: u32,
+        /// triangle index
+        first: u32,
+        /// triangle index
+        second: u32,
+    },
+    /// Normals point inwards.
+    #[error("the mesh is inside out: its signed volume is {volume:.3e} m^3, not positive")]
+    InsideOut {
+        /// signed volume, m^3
+        volume: f64,
+    },
+    /// A dimension of a generated shape is out of range.
+    #[error("{name} = {value} is out of range: {allowed}")]
+    Dimension {
+        /// which one
+        name: &'static str,
+        /// what was given
+        value: f64,
+        /// what is allowed
+        allowed: String,
+    },
+}
+
+impl TriMesh {
+    /// Checks and prepares a mesh.
+    ///
+    /// `vertices` in m; `triangles` counterclockwise seen from outside. Vertices that no
+    /// triangle uses are kept and ignored. Self-intersection is not looked for.
+    pub fn new(vertices: Vec<V3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
+        check_numbers(&vertices, &triangles)?;
+        let mut facets = facets(&vertices, &triangles)?;
+        let extent = extent(&vertices, &triangles);
+        let edges = edges(&vertices, &mut facets)?;
+        let volume = signed_volume(&vertices, &triangles);
+        if volume <= 1e-15 * extent * extent * extent {
+            return Err(MeshError::InsideOut { volume });
+        }
+        let (corners, rings) = corners(&vertices, &facets, &edges);
+        let convex = edges
+            .iter()
+            .all(|edge| rise(edge, &vertices, &facets) <= FLAT * extent)
+            && connected(&facets);
+        Ok(Self {
+            vertices,
+            triangles,
+            facets,
+            edges,
+            corners,
+            rings,
+            tiny: 1e-12 * extent,
+            convex,
+        })
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Never true: a mesh without triangles is refused.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// Outward unit normal of a triangle.
+    pub fn normal(&self, triangle: u32) -> V3 {
+        self.facets[triangle as usize].normal
+    }
+
+    /// Enclosed volume, m^3.
+    pub fn volume(&self) -> f64 {
+        signed_volume(&self.vertices, &self.triangles)
+    }
+
+    /// True when the solid is convex, up to rounding of its vertices.
+    pub fn is_convex(&self) -> bool {
+        self.convex
+    }
+}
+
+fn check_numbers(vertices: &[V3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
+    // Three half-edges per triangle are numbered too.
+    let limit = (u32::MAX / 4) as usize;
+    for (what, count) in [("vertices", vertices.len()), ("triangles", triangles.len())] {
+        if count > limit {
+            return Err(MeshError::TooMany { what, count, limit });
+        }
+    }
+    if triangles.is_empty() {
+        return Err(MeshError::Empty);
+    }
+    for (vertex, v) in vertices.iter().enumerate() {
+        // Written so that NaN fails.
+        if !v.iter().all(|x| x.abs() <= LARGEST_COORDINATE) {
+            let limit = LARGEST_COORDINATE;
+            return Err(MeshError::Coordinate {
+                vertex,
+                x: v.x,
+                y: v.y,
+                z: v.z,
+                limit,
+            });
+        }
+    }
+    for (triangle, corner) in triangles.iter().enumerate() {
+        for &vertex in corner {
+            if vertex as usize >= vertices.len() {
+                return Err(MeshError::NoSuchVertex {
+                    triangle,
+                    vertex,
+                    count: vertices.len(),
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Planes of every triangle; edges and neighbours are filled in by [`edges`].
+fn facets(vertices: &[V3], triangles: &[[u32; 3]]) -> Result<Vec<Facet>, MeshError> {
+    let mut facets = Vec::with_capacity(triangles.len());
+    for (triangle, corner) in triangles.iter().enumerate() {
+        let p = corner.map(|v| vertices[v as usize]);
+        let sides = [p[1] - p[0], p[2] - p[1], p[0] - p[2]];
+        let area_vector = sides[0].cross(&sides[1]);
+        let twice_area = area_vector.norm();
+        let longest = sides.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        // Written so that NaN and zero sides fail.
+        let sound = twice_area > LEAST_HEIGHT * longest * longest && twice_area > 0.0;
+        if !sound {
+            let height = if longest > 0.0 {
+                twice_area / longest
+            } else {
+                0.0
+            };
+            return Err(MeshError::Degenerate {
+                triangle,
+                height,
+                longest,
+            });
+        }
+        let normal = area_vector / twice_area;
+        let side = sides.map(|s| s.cross(&normal).normalize());
+        facets.push(Facet {
+            normal,
+            offset: normal.dot(&p[0]),
+            side,
+            side_offset: [side[0].dot(&p[0]), side[1].dot(&p[1]), side[2].dot(&p[2])],
+            edge: [0; 3],
+            across: [0; 3],
+            corner: *corner,
+        });
+    }
+    Ok(facets)
+}
+
+/// One directed side of a triangle; sorting brings the sides of an edge together.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct HalfEdge {
+    low: u32,
+    high: u32,
+    triangle: u32,
+    side: u8,
+    /// runs from `low` to `high`
+    forward: bool,
+}
+
+/// Pairs the sides, checks that the surface is closed and consistently oriented, and links the
+/// facets to their edges and neighbours.
+fn edges(vertices: &[V3], facets: &mut [Facet]) -> Result<Vec<Edge>, MeshError> {
+    let mut half_edges = Vec::with_capacity(3 * facets.len());
+    for (triangle, facet) in facets.iter().enumerate() {
+        for side in 0..3 {
+            let (from, to) = (facet.corner[side], facet.corner[(side + 1) % 3]);
+            half_edges.push(HalfEdge {
+                low: from.min(to),
+                high: from.max(to),
+                triangle: triangle as u32,
+                side: side as u8,
+                forward: from < to,
+            });
+        }
+    }
+    half_edges.sort_unstable();
+
+    let mut edges = Vec::with_capacity(half_edges.len() / 2);
+    for group in half_edges.chunk_by(|a, b| a.low == b.low && a.high == b.high) {
+        let (from, to, triangle) = (group[0].low, group[0].high, group[0].triangle);
+        let &[first, second] = group else {
+            return Err(match group.len() {
+                1 => MeshError::Open { from, to, triangle },
+                count => MeshError::NonManifold {
+                    from,
+                    to,
+                    count,
+                    triangle,
+                },
+            });
+        };
+        if first.forward == second.forward {
+            let (first, second) = (first.triangle, second.triangle);
+            return Err(MeshError::Twisted {
+                from,
+                to,
+                first,
+                second,
+            });
+        }
+        let n = [first, second].map(|h| facets[h.triangle as usize].normal);
+        let sum = n[0] + n[1];
+        if sum.norm() < LEAST_FOLD {
+            let (first, second) = (first.triangle, second.triangle);
+            return Err(MeshError::Folded {
+                from,
+                to,
+                first,
+                second,
+            });
+        }
+        let (start, end) = (vertices[from as usize], vertices[to as usize]);
+        let along = end - start;
+        // Along the edge as the first triangle runs, a convex edge turns its normal forwards.
+        let run = if first.forward { along } else { -along };
+        let turn = n[0].cross(&n[1]).dot(&run.normalize());
+        let index = edges.len() as u32;
+        for (own, other) in [(first, second), (second, first)] {
+            let facet = &mut facets[own.triangle as usize];
+            facet.edge[own.side as usize] = index;
+            facet.across[own.side as usize] = other.triangle;
+        }
+        edges.push(Edge {
+            start,
+            along,
+            length_sq: along.norm_squared(),
+            ends: [from, to],
+            triangles: [first.triangle, second.triangle],
+            side_in: [first.side, second.side],
+            outward: sum.normalize(),
+            bend: libm::atan2(turn, n[0].dot(&n[1])),
+            overlap: (-turn / n[0].dot(&n[1]).abs()).max(0.0),
+        });
+    }
+    Ok(edges)
+}
+
+/// Rings of edges and angle-weighted normals of all vertices.
+fn corners(vertices: &[V3], facets: &[Facet], edges: &[Edge]) -> (Vec<Corner>, Vec<(u32, bool)>) {
+    let blank = Corner {
+        ring: (0, 0),
+        first_triangle: u32::MAX,
+        outward: V3::zeros(),
+    };
+    let mut corners = vec![blank; vertices.len()];
+    for (triangle, facet) in facets.iter().enumerate() {
+        for k in 0..3 {
+            let [at, next, last] = [k, (k + 1) % 3, (k + 2) % 3].map(|i| facet.corner[i]);
+            let u = vertices[next as usize] - vertices[at as usize];
+            let v = vertices[last as usize] - vertices[at as usize];
+            let angle = libm::atan2(u.cross(&v).norm(), u.dot(&v));
+            let corner = &mut corners[at as usize];
+            corner.outward += angle * facet.normal;
+            corner.first_triangle = corner.first_triangle.min(triangle as u32);
+        }
+    }
+    for corner in corners.iter_mut().filter(|c| c.first_triangle != u32::MAX) {
+        let norm = corner.outward.norm();
+        corner.outward = if norm > LEAST_FOLD {
+            corner.outward / norm
+        } else {
+            facets[corner.first_triangle as usize].normal
+        };
+    }
+
+    let mut spokes: Vec<(u32, u32, bool)> = Vec::with_capacity(2 * edges.len());
+    for (index, edge) in edges.iter().enumerate() {
+        spokes.push((edge.ends[0], index as u32, false));
+        spokes.push((edge.ends[1], index as u32, true));
+    }
+    spokes.sort_unstable();
+    let mut start = 0;
+    for group in spokes.chunk_by(|a, b| a.0 == b.0) {
+        let end = start + group.len() as u32;
+        corners[group[0].0 as usize].ring = (start, end);
+        start = end;
+    }
+    (
+        corners,
+        spokes
+            .into_iter()
+            .map(|(_, edge, ends_here)| (edge, ends_here))
+            .collect(),
+    )
+}
+
+/// How far the two triangles of an edge rise over each other's plane, m: positive at a concave
+/// edge. The lesser of both, because a sliver's plane carries noise far beyond the sliver.
+fn rise(edge: &Edge, vertices: &[V3], facets: &[Facet]) -> f64 {
+    let over = |own: usize, other: usize| {
+        let plane = &facets[edge.triangles[own] as usize];
+        let corner = (edge.side_in[other] as usize + 2) % 3;
+        let far = facets[edge.triangles[other] as usize].corner[corner];
+        plane.height(vertices[far as usize])
+    };
+    over(0, 1).min(over(1, 0))
+}
+
+/// Whether all triangles hang together.
+fn connected(facets: &[Facet]) -> bool {
+    let mut seen = vec![false; facets.len()];
+    let mut todo = vec![0u32];
+    seen[0] = true;
+    let mut count = 1;
+    while let Some(triangle) = todo.pop() {
+        for next in facets[triangle as usize].across {
+            if !std::mem::replace(&mut seen[next as usize], true) {
+                count += 1;
+                todo.push(next);
+            }
+        }
+    }
+    count == facets.len()
+}
+
+/// Largest side of the bounding box of all used vertices, m.
+fn extent(vertices: &[V3], triangles: &[[u32; 3]]) -> f64 {
+    let (low, high) = bounds(vertices, triangles);
+    (high - low).max()
+}
+
+/// Bounding box of all used vertices, m: lowest and highest corner.
+pub(crate) fn bounds(vertices: &[V3], triangles: &[[u32; 3]]) -> (V3, V3) {
+    let mut low = V3::repeat(f64::INFINITY);
+    let mut high = V3::repeat(f64::NEG_INFINITY);
+    for v in triangles.iter().flatten() {
+        low = low.inf(&vertices[*v as usize]);
+        high = high.sup(&vertices[*v as usize]);
+    }
+    (low, high)
+}
+
+/// Divergence theorem over tetrahedra from one vertex of the mesh (less cancellation than from
+/// the origin), m^3.
+fn signed_volume(vertices: &[V3], triangles: &[[u32; 3]]) -> f64 {
+    let Some(first) = triangles.first() else {
+        return 0.0;
+    };
+    let apex = vertices[first[0] as usize];
+    let tetrahedron = |corner: &[u32; 3]| {
+        let [a, b, c] = corner.map(|v| vertices[v as usize] - apex);
+        a.dot(&b.cross(&c)) / 6.0
+    };
+    triangles.iter().map(tetrahedron).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Corners of a unit cube at the origin; bit 0, 1, 2 of the index: x, y, z.
+    fn cube_vertices() -> Vec<V3> {
+        (0..8)
+            .map(|i| V3::new(f64::from(i & 1), f64::from(i >> 1 & 1), f64::from(i >> 2)))
+            .collect()
+    }
+
+    fn cube_triangles() -> Vec<[u32; 3]> {
+        let quads: [[u32; 4]; 6] = [
+            [0, 4, 6, 2],
+            [1, 3, 7, 5],
+            [0, 1, 5, 4],
+            [2, 6, 7, 3],
+            [0, 2, 3, 1],
+            [4, 5, 7, 6],
+        ];
+        quads
+            .iter()
+            .flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]])
+            .collect()
+    }
+
+    fn refuse(vertices: Vec<V3>, triangles: Vec<[u32; 3]>) -> MeshError {
+        TriMesh::new(vertices, triangles).expect_err("must be refused")
+    }
+
+    #[test]
+    fn a_cube_is_accepted_with_its_topology() {
+        let mesh = TriMesh::new(cube_vertices(), cube_triangles()).unwrap();
+        assert!((mesh.volume() - 1.0).abs() < 1e-15);
+        assert!(mesh.is_convex());
+        // Euler: V - E + F = 2.
+        assert_eq!(8 + mesh.len(), mesh.edges.len() + 2);
+        let flat = mesh.edges.iter().filter(|e| e.bend.abs() < 1e-12).count();
+        let right = mesh
+            .edges
+            .iter()
+            .filter(|e| (e.bend.to_degrees() - 90.0).abs() < 1e-9)
+            .count();
+        assert_eq!((flat, right), (6, 12));
+        for (t, facet) in mesh.facets.iter().enumerate() {
+            for k in 0..3 {
+                let other = &mesh.facets[facet.across[k] as usize];
+                let back = (0..3).find(|&j| other.edge[j] == facet.edge[k]).unwrap();
+                assert_eq!(other.across[back] as usize, t);
+            }
+        }
+        for (v, corner) in mesh.corners.iter().enumerate() {
+            // By symmetry the angle-weighted normal is the diagonal, however faces are split.
+            let diagonal = (mesh.vertices[v] - V3::repeat(0.5)).normalize();
+            assert!((corner.outward - diagonal).norm() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn holes_are_named() {
+        let mut triangles = cube_triangles();
+        triangles.pop();
+        let error = refuse(cube_vertices(), triangles);
+        assert!(
+            matches!(
+                error,
+                MeshError::Open {
+                    from: 4,
+                    to: 6,
+                    triangle: 1
+                }
+            ),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_turned_triangle_is_named() {
+        let mut triangles = cube_triangles();
+        triangles[3].swap(0, 1);
+        let error = refuse(cube_vertices(), triangles);
+        assert!(
+            matches!(error, MeshError::Twisted { first, second, .. } if first == 3 || second == 3),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn inside_out_is_refused() {
+        let mut triangles = cube_triangles();
+        triangles.iter_mut().for_each(|t| t.swap(0, 1));
+        let error = refuse(cube_vertices(), triangles);
+        assert!(matches!(error, MeshError::InsideOut { volume } if (volume + 1.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn bad_numbers_are_refused() {
+        assert_eq!(refuse(cube_vertices(), vec![]), MeshError::Empty);
+
+        let mut triangles = cube_triangles();
+        triangles[2][1] = 8;
+        let error = refuse(cube_vertices(), triangles);
+        assert_eq!(
+            error,
+            MeshError::NoSuchVertex {
+                triangle: 2,
+                vertex: 8,
+                count: 8
+            }
+        );
+
+        for bad in [f64::NAN, f64::INFINITY, -1e9] {
+            let mut vertices = cube_vertices();
+            vertices[5].y = bad;
+            let error = refuse(vertices, cube_triangles());
+            assert!(
+                matches!(error, MeshError::Coordinate { vertex: 5, .. }),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn degenerate_triangles_are_refused() {
+        let mut triangles = cube_triangles();
+        triangles[4] = [0, 1, 1];
+        let error = refuse(cube_vertices(), triangles);
+        assert!(
+            matches!(error, MeshError::Degenerate { triangle: 4, .. }),
+            "{error}"
+        );
+
+        // Three corners on a line.
+        let mut vertices = cube_vertices();
+        vertices.push(V3::new(0.5, 0.0, 0.0));
+        let mut triangles = cube_triangles();
+        triangles[5] = [0, 8, 1];
+        let error = refuse(vertices, triangles);
+        assert!(
+            matches!(error, MeshError::Degenerate { triangle: 5, .. }),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn fins_and_folds_are_refused() {
+        // A fin standing on an edge: three triangles there.
+        let mut vertices = cube_vertices();
+        vertices.push(V3::new(0.5, -1.0, -1.0));
+        let mut triangles = cube_triangles();
+        triangles.push([0, 1, 8]);
+        triangles.push([1, 0, 8]);
+        let error = refuse(vertices, triangles);
+        assert!(
+            matches!(
+                error,
+                MeshError::NonManifold {
+                    from: 0,
+                    to: 1,
+                    count: 4,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+
+        // A sheet covered on both sides.
+        let error = refuse(cube_vertices(), vec![[0, 1, 2], [0, 2, 1]]);
+        assert!(matches!(error, MeshError::Folded { .. }), "{error}");
+    }
+
+    #[test]
+    fn two_boxes_are_not_convex() {
+        let mut vertices = cube_vertices();
+        vertices.extend(cube_vertices().iter().map(|v| v + V3::new(3.0, 0.0, 0.0)));
+        let mut triangles = cube_triangles();
+        triangles.extend(cube_triangles().iter().map(|t| t.map(|v| v + 8)));
+        assert!(!TriMesh::new(vertices, triangles).unwrap().is_convex());
+    }
+}

@@ -1,0 +1,339 @@
+//! Meshes from STL files, binary or ASCII.
+//!
+//! The `stl_io` crate parses. Before that the bytes are put into the form it expects: it takes
+//! any file that begins with `solid ` for ASCII, although many programs write that into binary
+//! headers, and it knows only lower-case keywords and a named solid.
+
+use super::mesh::{MeshError, TriMesh};
+use crate::math::V3;
+use std::collections::HashMap;
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
+
+/// Bytes of a binary file before its first triangle.
+const BINARY_HEADER: usize = 84;
+/// Bytes of a triangle in a binary file.
+const BINARY_TRIANGLE: usize = 50;
+
+/// Why an STL file gives no mesh.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StlError {
+    /// The file could not be read.
+    #[error("cannot read the STL file: {0}")]
+    Read(#[source] io::Error),
+    /// It is not an STL file, or a damaged one.
+    #[error(
+        "not a valid STL file ({bytes} bytes, read as {form}), after {triangles} triangles: {reason}"
+    )]
+    NotStl {
+        /// size of the file
+        bytes: usize,
+        /// `binary` or `ASCII`
+        form: &'static str,
+        /// triangles understood before the damage
+        triangles: usize,
+        /// what the parser says
+        reason: String,
+    },
+    /// More than one `solid` in an ASCII file.
+    #[error("the STL file holds {count} solids, expected one")]
+    SeveralSolids {
+        /// how many
+        count: usize,
+    },
+    /// The file unit makes no sense.
+    #[error("unit = {unit} m is out of range: above 0")]
+    Unit {
+        /// metres per file unit
+        unit: f64,
+    },
+    /// The triangles do not make a closed surface.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+}
+
+/// Reads a mesh; `unit` is metres per file unit (0.001 for mm).
+///
+/// Vertices with equal coordinates become one; triangles that have two equal vertices then are
+/// dropped, which leaves no hole. Normals in the file are ignored: the order of the vertices
+/// says what is outside. Triangle indices in errors count what is left. The reader is rewound
+/// first.
+pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlError> {
+    if !(unit > 0.0 && unit.is_finite()) {
+        return Err(StlError::Unit { unit });
+    }
+    let mut bytes = Vec::new();
+    reader.seek(SeekFrom::Start(0)).map_err(StlError::Read)?;
+    reader.read_to_end(&mut bytes).map_err(StlError::Read)?;
+    let (bytes, form) = normalise(bytes)?;
+
+    let size = bytes.len();
+    let broken = |triangles: usize, error: io::Error| StlError::NotStl {
+        bytes: size,
+        form,
+        triangles,
+        reason: error.to_string(),
+    };
+    let mut cursor = Cursor::new(bytes);
+    let mut welded = Welded::default();
+    let parser = stl_io::create_stl_reader(&mut cursor).map_err(|e| broken(0, e))?;
+    for (index, triangle) in parser.enumerate() {
+        let triangle = triangle.map_err(|e| broken(index, e))?;
+        welded.push(triangle.vertices.map(|v| v.0), unit);
+    }
+    Ok(TriMesh::new(welded.vertices, welded.triangles)?)
+}
+
+/// Brings the bytes into the form that the parser recognises; says which form that is.
+fn normalise(mut bytes: Vec<u8>) -> Result<(Vec<u8>, &'static str), StlError> {
+    if is_binary(&bytes) {
+        bytes[..BINARY_HEADER - 4].fill(0);
+        return Ok((bytes, "binary"));
+    }
+    let Ok(text) = std::str::from_utf8(&bytes) else {
+        return Ok((bytes, "binary"));
+    };
+    let text = text
+        .trim_start_matches('\u{feff}')
+        .trim_start()
+        .to_ascii_lowercase();
+    let is_header = |line: &str| line.split_whitespace().next() == Some("solid");
+    let (header, body) = text.split_once(['\n', '\r']).unwrap_or((&text, ""));
+    if !is_header(header) {
+        return Ok((bytes, "binary"));
+    }
+    let count = 1 + body.lines().filter(|line| is_header(line)).count();
+    if count > 1 {
+        return Err(StlError::SeveralSolids { count });
+    }
+    Ok((format!("solid core\n{body}").into_bytes(), "ASCII"))
+}
+
+/// Whether the size is that of a binary file with the number of triangles its header names.
+fn is_binary(bytes: &[u8]) -> bool {
+    let Some((header, body)) = bytes.split_at_checked(BINARY_HEADER) else {
+        return false;
+    };
+    let count = [header[80], header[81], header[82], header[83]];
+    let count = u32::from_le_bytes(count) as usize;
+    count.checked_mul(BINARY_TRIANGLE) == Some(body.len())
+}
+
+/// Vertices numbered in the order in which they first occur.
+#[derive(Default)]
+struct Welded {
+    vertices: Vec<V3>,
+    triangles: Vec<[u32; 3]>,
+    /// looked up only, never iterated
+    known: HashMap<[u32; 3], u32>,
+}
+
+impl Welded {
+    fn push(&mut self, corners: [[f32; 3]; 3], unit: f64) {
+        let triangle = corners.map(|corner| {
+            // Adding zero turns -0 into +0, which is the same place.
+            let key = corner.map(|x| (x + 0.0).to_bits());
+            let next = self.vertices.len() as u32;
+            *self.known.entry(key).or_insert_with(|| {
+                self.vertices.push(unit * V3::from(corner.map(f64::from)));
+                next
+            })
+        });
+        let [a, b, c] = triangle;
+        if a != b && b != c && c != a {
+            self.triangles.push(triangle);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::generate::rounded_box;
+    use super::*;
+    use proptest::prelude::*;
+    use std::fmt::Write;
+    use stl_io::{Normal, Triangle, Vertex};
+
+    /// A rounded box in millimetres, as a soup of triangles.
+    fn soup() -> Vec<Triangle> {
+        let mesh = rounded_box(20.0, 12.0, 30.0, 2.0, 4).unwrap();
+        let vertex = |v: u32| Vertex::new(mesh.vertices[v as usize].map(|x| x as f32).into());
+        // The zero normals show that they are not read.
+        let normal = Normal::new([0.0; 3]);
+        mesh.triangles
+            .iter()
+            .map(|t| Triangle {
+                normal,
+                vertices: t.map(vertex),
+            })
+            .collect()
+    }
+
+    fn binary(soup: &[Triangle]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        stl_io::write_stl(&mut bytes, soup.iter()).unwrap();
+        bytes
+    }
+
+    fn ascii(soup: &[Triangle]) -> String {
+        let mut text = "solid box\n".to_owned();
+        for triangle in soup {
+            text += "  facet normal 0 0 0\n    outer loop\n";
+            for Vector([x, y, z]) in triangle.vertices {
+                writeln!(text, "      vertex {x:e} {y:e} {z:e}").unwrap();
+            }
+            text += "    endloop\n  endfacet\n";
+        }
+        text + "endsolid box\n"
+    }
+    use stl_io::Vector;
+
+    fn read_bytes(bytes: impl Into<Vec<u8>>) -> Result<TriMesh, StlError> {
+        read(&mut Cursor::new(bytes.into()), 1e-3)
+    }
+
+    fn check(mesh: &TriMesh) {
+        let exact = rounded_box(0.02, 0.012, 0.03, 0.002, 4).unwrap();
+        assert_eq!(mesh.vertices.len(), exact.vertices.len());
+        assert_eq!(mesh.len(), exact.len());
+        assert!((mesh.volume() / exact.volume() - 1.0).abs() < 1e-6);
+        assert!(mesh.is_convex());
+        for (read, written) in mesh.triangles.iter().zip(&exact.triangles) {
+            for (a, b) in read.iter().zip(written) {
+                let gap = mesh.vertices[*a as usize] - exact.vertices[*b as usize];
+                assert!(gap.norm() < 2e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn binary_and_ascii_give_the_mesh_back() {
+        check(&read_bytes(binary(&soup())).unwrap());
+        check(&read_bytes(ascii(&soup())).unwrap());
+    }
+
+    #[test]
+    fn binary_header_may_say_solid() {
+        let mut bytes = binary(&soup());
+        bytes[..11].copy_from_slice(b"solid thing");
+        check(&read_bytes(bytes).unwrap());
+    }
+
+    #[test]
+    fn ascii_dialects_are_read() {
+        let text = ascii(&soup());
+        check(&read_bytes(text.replace("solid box", "solid")).unwrap());
+        check(&read_bytes(text.to_uppercase()).unwrap());
+        check(&read_bytes(text.replace('\n', "\r\n")).unwrap());
+        check(&read_bytes(format!("\u{feff}  {text}")).unwrap());
+    }
+
+    #[test]
+    fn negative_zero_and_collapsed_triangles_are_welded() {
+        let mut soup = soup();
+        for (index, triangle) in soup.iter_mut().enumerate() {
+            for vertex in &mut triangle.vertices {
+                for x in vertex.0.iter_mut().filter(|x| **x == 0.0) {
+                    *x = if index % 2 == 0 { 0.0 } else { -0.0 };
+                }
+            }
+        }
+        let mut collapsed = soup[0];
+        collapsed.vertices[1] = collapsed.vertices[0];
+        soup.push(collapsed);
+        check(&read_bytes(binary(&soup)).unwrap());
+    }
+
+    #[test]
+    fn bad_surfaces_are_refused() {
+        let mut open = soup();
+        open.pop();
+        for bytes in [binary(&open), ascii(&open).into_bytes()] {
+            let error = read_bytes(bytes).unwrap_err();
+            assert!(
+                matches!(error, StlError::Mesh(MeshError::Open { .. })),
+                "{error}"
+            );
+        }
+        let mut flipped = soup();
+        flipped.iter_mut().for_each(|t| t.vertices.swap(0, 1));
+        let error = read_bytes(binary(&flipped)).unwrap_err();
+        assert!(
+            matches!(error, StlError::Mesh(MeshError::InsideOut { .. })),
+            "{error}"
+        );
+
+        let error = read_bytes(binary(&[])).unwrap_err();
+        assert!(matches!(error, StlError::Mesh(MeshError::Empty)), "{error}");
+
+        let mut infinite = soup();
+        infinite[7].vertices[0].0[1] = f32::INFINITY;
+        let error = read_bytes(binary(&infinite)).unwrap_err();
+        assert!(
+            matches!(error, StlError::Mesh(MeshError::Coordinate { .. })),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn other_files_are_refused() {
+        let not_stl = |bytes: Vec<u8>| match read_bytes(bytes) {
+            Err(StlError::NotStl {
+                form, triangles, ..
+            }) => (form, triangles),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(not_stl(vec![]), ("binary", 0));
+        assert_eq!(not_stl(b"<html>not found</html>".to_vec()), ("binary", 0));
+        assert_eq!(not_stl(b"solid".to_vec()), ("ASCII", 0));
+        let mut cut = binary(&soup());
+        cut.truncate(84 + 50 * 3 + 7);
+        assert_eq!(not_stl(cut), ("binary", 3));
+        let text = ascii(&soup());
+        let cut = text[..text.rfind("vertex").unwrap()].to_owned();
+        assert_eq!(not_stl(cut.into_bytes()), ("ASCII", soup().len() - 1));
+
+        let twice = text.repeat(2);
+        assert!(matches!(
+            read_bytes(twice),
+            Err(StlError::SeveralSolids { count: 2 })
+        ));
+        for unit in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let mut cursor = Cursor::new(binary(&soup()));
+            assert!(matches!(
+                read(&mut cursor, unit),
+                Err(StlError::Unit { .. })
+            ));
+        }
+        for unit in [1e-300, 1e300] {
+            let mut cursor = Cursor::new(binary(&soup()));
+            assert!(matches!(read(&mut cursor, unit), Err(StlError::Mesh(_))));
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn damaged_files_never_panic(
+            as_text in any::<bool>(),
+            damage in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+            keep in any::<prop::sample::Index>(),
+        ) {
+            let mut bytes = if as_text { ascii(&soup()).into_bytes() } else { binary(&soup()) };
+            for (at, byte) in damage {
+                let at = at.index(bytes.len());
+                bytes[at] = byte;
+            }
+            // Only returning matters; a changed attribute byte is even a good file.
+            if let Ok(mesh) = read_bytes(bytes.clone()) {
+                prop_assert!(mesh.volume() > 0.0);
+            }
+            bytes.truncate(keep.index(bytes.len()));
+            prop_assert!(read_bytes(bytes).is_err());
+        }
+
+        #[test]
+        fn noise_is_refused(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+            prop_assert!(read_bytes(bytes).is_err());
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! A mesh together with its search tree: the core as contact and measures see it.
+
+use super::bvh::Bvh;
+use super::feature::Nearest;
+use super::mesh::{self, TriMesh};
+use super::touch::Touch;
+use crate::math::V3;
+
+/// A closed surface ready for queries. Core frame, lengths in m.
+#[derive(Clone, Debug)]
+pub struct Surface {
+    mesh: TriMesh,
+    bvh: Bvh,
+    bounds: (V3, V3),
+    radius_max: f64,
+}
+
+impl Surface {
+    /// Builds the search tree of a mesh.
+    pub fn new(mesh: TriMesh) -> Self {
+        let bvh = Bvh::new(&mesh);
+        let bounds = mesh::bounds(&mesh.vertices, &mesh.triangles);
+        let radius_sq = |v: &u32| {
+            let p = mesh.vertices[*v as usize];
+            p.x * p.x + p.z * p.z
+        };
+        let radius_max = mesh
+            .triangles
+            .iter()
+            .flatten()
+            .map(radius_sq)
+            .fold(0.0, f64::max)
+            .sqrt();
+        Self {
+            mesh,
+            bvh,
+            bounds,
+            radius_max,
+        }
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &TriMesh {
+        &self.mesh
+    }
+
+    /// Lowest and highest corner of the bounding box, m.
+    pub fn bounds(&self) -> (V3, V3) {
+        self.bounds
+    }
+
+    /// Largest distance of the surface from the y axis, m.
+    pub fn radius_max(&self) -> f64 {
+        self.radius_max
+    }
+
+    /// Whether the solid is convex: then a sphere touches it once at most.
+    pub fn is_convex(&self) -> bool {
+        self.mesh.is_convex()
+    }
+
+    /// Triangles within `radius` of `p`, see [`Bvh::near`].
+    pub fn near(&self, p: V3, radius: f64, out: &mut Vec<u32>) {
+        self.bvh.near(&self.mesh, p, radius, out);
+    }
+
+    /// Contacts of a sphere, see [`TriMesh::touching`].
+    pub fn touching(&self, p: V3, r: f64, candidates: &[u32], out: &mut Vec<Touch>) {
+        self.mesh.touching(p, r, candidates, out);
+    }
+
+    /// Signed distance, closest point and normal.
+    pub fn nearest(&self, p: V3) -> Nearest {
+        self.bvh.nearest(&self.mesh, p)
+    }
+}
