@@ -54,14 +54,14 @@ fn angle_iron() -> Surface {
     Surface::new(extrude(&section, &cap, 0.01))
 }
 
-/// A channel, 0.6 mm wide and 1 mm deep, with its floor at z = 1 mm.
+/// A channel, 0.3 mm wide (less than `R`) and 1 mm deep, with its floor at z = 1 mm.
 fn channel() -> Surface {
     let section = [
         [0., 0.],
-        [2.6, 0.],
-        [2.6, 2.],
-        [1.6, 2.],
-        [1.6, 1.],
+        [2.3, 0.],
+        [2.3, 2.],
+        [1.3, 2.],
+        [1.3, 1.],
         [1., 1.],
         [1., 2.],
         [0., 2.],
@@ -144,6 +144,53 @@ fn unit() -> impl Strategy<Value = [f64; 3]> {
     [0.0..1.0f64, 0.0..1.0, 0.0..1.0]
 }
 
+/// Closest point of a triangle, as plainly as can be: foot on the plane, else on the sides.
+fn closest_plain([a, b, c]: [V3; 3], p: V3) -> V3 {
+    let n = (b - a).cross(&(c - a)).normalize();
+    let foot = p - (p - a).dot(&n) * n;
+    let sides = [(a, b), (b, c), (c, a)];
+    if sides
+        .iter()
+        .all(|(s, e)| (e - s).cross(&(foot - s)).dot(&n) >= 0.0)
+    {
+        return foot;
+    }
+    let on_side = |(s, e): (V3, V3)| {
+        s + ((p - s).dot(&(e - s)) / (e - s).norm_squared()).clamp(0.0, 1.0) * (e - s)
+    };
+    let nearer = |q: V3, r: V3| {
+        if (p - r).norm() < (p - q).norm() {
+            r
+        } else {
+            q
+        }
+    };
+    sides.map(on_side).into_iter().reduce(nearer).unwrap()
+}
+
+/// Points of the surface within `R` of an outside point `p` that are closer than all around them.
+fn local_minima(mesh: &TriMesh, p: V3) -> Vec<V3> {
+    let corners = |t: usize| mesh.triangles[t].map(|i| mesh.vertices[i as usize]);
+    let mut found: Vec<V3> = Vec::new();
+    for t in 0..mesh.len() {
+        let q = closest_plain(corners(t), p);
+        let here: Vec<usize> = (0..mesh.len())
+            .filter(|&s| (closest_plain(corners(s), q) - q).norm() < 1e-12)
+            .collect();
+        let lowest = here
+            .iter()
+            .all(|&s| (closest_plain(corners(s), p) - p).norm() > (q - p).norm() - 1e-12);
+        let seen = here
+            .iter()
+            .any(|&s| (p - q).dot(&mesh.normal(s as u32)) > 0.0);
+        let new = found.iter().all(|known| (known - q).norm() > 1e-11);
+        if (q - p).norm() < R && lowest && seen && new {
+            found.push(q);
+        }
+    }
+    found
+}
+
 /// What must hold at any point of any mesh.
 fn check_touches(surface: &Surface, p: V3) -> Result<(), TestCaseError> {
     let found = touches(surface, p);
@@ -218,6 +265,23 @@ proptest! {
         prop_assert!(!surface.is_convex());
         check_touches(&surface, over_triangle(&surface, pick, u, v, height * R))?;
         check_touches(&surface, in_bounds(&surface, R, any))?;
+    }
+
+    #[test]
+    fn touches_are_the_local_minima_of_the_distance(
+        pick in 0usize..1000, u in 0.0..1.0f64, v in 0.0..1.0f64, height in 0.0..1.0f64,
+        aside in [-1.0..1.0f64, -1.0..1.0, -1.0..1.0], shape in 0usize..3,
+    ) {
+        // No concave edge of these is a seam, so nothing is merged.
+        let surface = [angle_iron, channel, box_surface][shape]();
+        let p = over_triangle(&surface, pick, u, v, height * R) + 0.8 * R * V3::from(aside);
+        prop_assume!(surface.nearest(p).distance > 1e-9);
+        let found = touches(&surface, p);
+        let expected = local_minima(surface.mesh(), p);
+        prop_assert_eq!(found.len(), expected.len(), "{:?} {:?}", found, expected);
+        for q in expected {
+            prop_assert!(found.iter().any(|t| (t.point - q).norm() < 1e-11));
+        }
     }
 
     #[test]
@@ -319,10 +383,56 @@ fn an_inner_corner_touches_both_walls() {
 
 #[test]
 fn a_narrow_channel_touches_floor_and_both_walls() {
-    let found = touches(&channel(), V3::new(1.31e-3, 1e-3, 1.3e-3));
+    let found = touches(&channel(), V3::new(1.16e-3, 1e-3, 1.3e-3));
     let sum: V3 = found.iter().map(|t| t.normal).sum();
     assert_eq!(found.len(), 3, "{found:?}");
     assert!((sum - V3::z()).norm() < 1e-12, "the walls face each other");
+}
+
+#[test]
+fn inside_one_wall_the_other_still_touches() {
+    // 0.05 mm deep in the wall at x = 1 mm, 0.35 mm less a hair from the wall across the gap.
+    let found = touches(&channel(), V3::new(0.9501e-3, 1e-3, 1.7e-3));
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!((found[0].normal + V3::x()).norm() < 1e-12);
+    assert!((found[0].depth - 1e-7).abs() < 1e-15);
+    assert!((found[1].normal - V3::x()).norm() < 1e-12);
+    assert!((found[1].depth - (R + 0.0499e-3)).abs() < 1e-15);
+}
+
+#[test]
+fn a_spike_and_a_wall_both_touch() {
+    // Two cubes: the face x = 0 of one, and a vertex of the other pointing at it from 0.4 mm.
+    let cube = rounded_box(0.01, 0.01, 0.01, 0.0, 1).unwrap();
+    let diagonal = V3::new(-1.0, -1.0, -1.0).normalize();
+    let turn = nalgebra::Rotation3::rotation_between(&diagonal, &-V3::x()).unwrap();
+    let spike = V3::new(0.4e-3, 0.001, 0.002);
+    let mut vertices: Vec<V3> = cube
+        .vertices
+        .iter()
+        .map(|v| v - V3::new(0.005, 0.0, 0.0))
+        .collect();
+    vertices.extend(
+        cube.vertices
+            .iter()
+            .map(|v| spike + turn * (v + V3::repeat(0.005))),
+    );
+    let mut triangles = cube.triangles.clone();
+    triangles.extend(
+        cube.triangles
+            .iter()
+            .map(|t| t.map(|v| v + cube.vertices.len() as u32)),
+    );
+    let surface = Surface::new(TriMesh::new(vertices, triangles).unwrap());
+
+    let found = touches(&surface, spike - V3::new(0.15e-3, 1e-5, -2e-5));
+    assert_eq!(found.len(), 2, "{found:?}");
+    assert!((found[0].normal - V3::x()).norm() < 1e-12);
+    assert!((found[0].depth - 0.1e-3).abs() < 1e-15);
+    assert!((found[1].point - spike).norm() < 1e-15);
+    let arm = V3::new(-0.15e-3, -1e-5, 2e-5);
+    assert!((found[1].normal - arm.normalize()).norm() < 1e-10);
+    assert!((found[1].depth - (R - arm.norm())).abs() < 1e-15);
 }
 
 #[test]
@@ -371,6 +481,20 @@ fn a_tessellated_bore_is_one_surface() {
         let rho = 0.003 - 0.8 * R;
         let p = V3::new(rho * angle.cos(), 1e-4, rho * angle.sin());
         assert_eq!(touches(&bobbin, p).len(), 1, "at {angle} rad");
+    }
+}
+
+#[test]
+fn on_a_sharp_edge_of_a_concave_core_rounding_makes_no_copies() {
+    let turn = nalgebra::Rotation3::from_euler_angles(0.3, 0.7, -0.4);
+    let level = angle_iron();
+    let vertices = level.mesh().vertices.iter().map(|v| turn * v).collect();
+    let surface = Surface::new(TriMesh::new(vertices, level.mesh().triangles.clone()).unwrap());
+    for i in 1..1000 {
+        let p = turn * V3::new(0.0, 1e-5 * f64::from(i) - 5e-3, 0.0);
+        let found = touches(&surface, p);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0].depth - R).abs() < 1e-15);
     }
 }
 

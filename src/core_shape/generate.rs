@@ -7,7 +7,8 @@
 //!
 //! Sides are two triangles per chord over the whole length, caps are fans around the axis.
 
-use super::mesh::{MeshError, TriMesh};
+use super::error::MeshError;
+use super::mesh::TriMesh;
 use crate::math::V3;
 use std::f64::consts::{PI, TAU};
 

@@ -15,13 +15,16 @@ pub mod generate;
 pub mod stl;
 
 mod bvh;
+mod error;
 mod feature;
 mod mesh;
 mod surface;
+mod topology;
 mod touch;
 
 pub use bvh::Bvh;
+pub use error::MeshError;
 pub use feature::Nearest;
-pub use mesh::{MeshError, TriMesh};
+pub use mesh::TriMesh;
 pub use surface::Surface;
 pub use touch::Touch;

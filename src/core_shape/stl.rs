@@ -4,7 +4,8 @@
 //! any file that begins with `solid ` for ASCII, although many programs write that into binary
 //! headers, and it knows only lower-case keywords and a named solid.
 
-use super::mesh::{MeshError, TriMesh};
+use super::error::MeshError;
+use super::mesh::TriMesh;
 use crate::math::V3;
 use std::collections::HashMap;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};

@@ -10,9 +10,9 @@
 //! They never leave a hole at a convex edge (three prisms alone do), and a convex solid yields
 //! exactly one. In a concave corner each wall yields its own, and the corner edge none.
 //!
-//! A centre that got under the surface touches at the one nearest surface point, whatever the
-//! feature; what lies on the far side of a thin flange does not pull it through. So the largest
-//! depth is always `r` less the signed distance, hence continuous.
+//! A centre that got under the surface is pushed to the one nearest surface point, whatever the
+//! feature; the far side of a thin flange does not pull it through. So the largest depth is
+//! always `r` less the signed distance, hence continuous.
 //!
 //! # Flat and nearly flat edges
 //!
@@ -101,14 +101,17 @@ impl TriMesh {
                 inside = Some((distance, touch));
             }
         }
-        match inside {
-            Some((distance, touch)) if -distance < least_outside => {
-                out.clear();
-                out.push(touch);
-            }
-            _ if within && out.is_empty() => self.push_nearest(p, r, candidates, out),
-            _ => self.merge(r, out),
+        if let Some((distance, touch)) = inside
+            && -distance < least_outside
+        {
+            // A wall across a narrow gap goes on touching; the rim it slipped under does not.
+            out.retain(|other| (other.point - touch.point).norm() >= SAME_POINT * r);
+            out.push(touch);
         }
+        if within && out.is_empty() {
+            self.push_nearest(p, r, candidates, out);
+        }
+        self.merge(r, out);
     }
 
     /// Whether this triangle is the one that counts the touch at `closest`.

@@ -1,0 +1,122 @@
+//! What can be wrong with a mesh, and where.
+
+/// Why vertices and triangles make no surface to wind on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MeshError {
+    /// There is no triangle.
+    #[error("the mesh has no triangles")]
+    Empty,
+    /// Indices are 32 bit.
+    #[error("the mesh has {count} {what}, more than the {limit} that can be numbered")]
+    TooMany {
+        /// vertices or triangles
+        what: &'static str,
+        /// how many
+        count: usize,
+        /// how many are allowed
+        limit: usize,
+    },
+    /// A coordinate is NaN, infinite or absurd.
+    #[error("vertex {vertex} at ({x}, {y}, {z}) m is not finite or farther than {limit} m out")]
+    Coordinate {
+        /// vertex index
+        vertex: usize,
+        /// position, m
+        x: f64,
+        /// position, m
+        y: f64,
+        /// position, m
+        z: f64,
+        /// largest coordinate, m
+        limit: f64,
+    },
+    /// A triangle names a vertex that does not exist.
+    #[error("triangle {triangle} uses vertex {vertex}, but there are only {count}")]
+    NoSuchVertex {
+        /// triangle index
+        triangle: usize,
+        /// vertex index
+        vertex: u32,
+        /// number of vertices
+        count: usize,
+    },
+    /// A triangle has no area.
+    #[error(
+        "triangle {triangle} is degenerate: height {height:.3e} m on a side of {longest:.3e} m"
+    )]
+    Degenerate {
+        /// triangle index
+        triangle: usize,
+        /// least height, m
+        height: f64,
+        /// longest side, m
+        longest: f64,
+    },
+    /// An edge has a triangle on one side only.
+    #[error("the mesh is open: edge {from}-{to} has only triangle {triangle}")]
+    Open {
+        /// vertex index
+        from: u32,
+        /// vertex index
+        to: u32,
+        /// the only triangle
+        triangle: u32,
+    },
+    /// An edge has more than two triangles.
+    #[error(
+        "the mesh is not a surface: edge {from}-{to} has {count} triangles, triangle {triangle} among them"
+    )]
+    NonManifold {
+        /// vertex index
+        from: u32,
+        /// vertex index
+        to: u32,
+        /// how many triangles
+        count: usize,
+        /// the first of them
+        triangle: u32,
+    },
+    /// Two neighbours disagree about which side is out.
+    #[error(
+        "triangles {first} and {second} run along edge {from}-{to} in the same direction: one is turned over"
+    )]
+    Twisted {
+        /// vertex index
+        from: u32,
+        /// vertex index
+        to: u32,
+        /// triangle index
+        first: u32,
+        /// triangle index
+        second: u32,
+    },
+    /// Two neighbours lie back to back.
+    #[error("triangles {first} and {second} are folded flat onto each other at edge {from}-{to}")]
+    Folded {
+        /// vertex index
+        from: u32,
+        /// vertex index
+        to: u32,
+        /// triangle index
+        first: u32,
+        /// triangle index
+        second: u32,
+    },
+    /// Normals point inwards.
+    #[error("the mesh is inside out: its signed volume is {volume:.3e} m^3, not positive")]
+    InsideOut {
+        /// signed volume, m^3
+        volume: f64,
+    },
+    /// A dimension of a generated shape is out of range.
+    #[error("{name} = {value} is out of range: {allowed}")]
+    Dimension {
+        /// which one
+        name: &'static str,
+        /// what was given
+        value: f64,
+        /// what is allowed
+        allowed: String,
+    },
+}
