@@ -17,19 +17,30 @@ pub struct Spin {
 impl Spin {
     /// Pose at a core angle, rad.
     pub fn new(angle: f64) -> Self {
-        Self { c: libm::cos(angle), s: libm::sin(angle) }
+        Self {
+            c: libm::cos(angle),
+            s: libm::sin(angle),
+        }
     }
 
     /// Core frame to lab frame.
     #[inline]
     pub fn to_lab(self, p: V3) -> V3 {
-        V3::new(self.c * p.x + self.s * p.z, p.y, -self.s * p.x + self.c * p.z)
+        V3::new(
+            self.c * p.x + self.s * p.z,
+            p.y,
+            -self.s * p.x + self.c * p.z,
+        )
     }
 
     /// Lab frame to core frame.
     #[inline]
     pub fn to_core(self, p: V3) -> V3 {
-        V3::new(self.c * p.x - self.s * p.z, p.y, self.s * p.x + self.c * p.z)
+        V3::new(
+            self.c * p.x - self.s * p.z,
+            p.y,
+            self.s * p.x + self.c * p.z,
+        )
     }
 }
 

@@ -1,1 +1,35 @@
-//! Gap, overlap and bulge of the settled turns, and the verdict drawn from them.
+//! What the settled wire looks like: gap, overlap and bulge per turn and polar angle.
+//!
+//! Works on the centreline in the core frame, where settled wire is at rest. A *turn* is 2 pi of
+//! polar angle from the clamp, on the wire and not of the spindle. The turns are sampled at
+//! [`STATIONS_PER_TURN`] fixed polar angles, so that the same place of two turns, and of two runs,
+//! can be compared one to one.
+//!
+//! [`Coil`] takes nodes one by one as wire comes to rest and gives them back in reverse order when
+//! the spindle reverses. Whatever it knows after a node is stored with that node, so giving nodes
+//! back is truncation and leaves exactly what was there before.
+
+mod coil;
+mod polar;
+mod profile;
+mod runs;
+mod state;
+mod station;
+mod turn;
+
+pub use coil::{Coil, CoilSpec, SettledNode};
+pub use polar::{polar_angle, unwrap_angles, wrap_to_pi};
+pub use profile::Profile;
+pub use state::{DefectFlags, DefectPlace, Worst};
+pub use station::{Neighbour, Station};
+pub use turn::{TurnMeasures, Verdict};
+
+/// Polar stations per turn, one per degree.
+///
+/// Equal polar angles are dense on a long face and sparse on a short one and at corners. One per
+/// degree gives the 12 x 30 mm core 29 on each short face and 11 on each 2 mm corner, where the
+/// measures ask for at least 10 and 3.
+pub const STATIONS_PER_TURN: usize = 360;
+
+/// Polar angle between stations, rad.
+pub const STATION_STEP: f64 = std::f64::consts::TAU / STATIONS_PER_TURN as f64;

@@ -1,0 +1,160 @@
+//! Numbers that describe the settled coil as a whole, as the machine sees them.
+
+use super::coil::{Coil, Record};
+use super::station::Station;
+use super::{STATIONS_PER_TURN, Verdict};
+use serde::Serialize;
+use std::f64::consts::{PI, TAU};
+
+/// Kinds of defect that are measured on settled wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum DefectKind {
+    Bulge = 0,
+    Gap = 1,
+    Overlap = 2,
+}
+
+impl DefectKind {
+    pub(crate) const ALL: [Self; 3] = [Self::Bulge, Self::Gap, Self::Overlap];
+}
+
+/// Defects present in the settled wire. A flag falls only when the spindle unwinds the defect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct DefectFlags {
+    /// wire stands off further than allowed
+    pub bulge: bool,
+    /// wire lies beside its place
+    pub gap: bool,
+    /// wire rides on its neighbour or has changed places with it
+    pub overlap: bool,
+}
+
+/// Where a defect was found: the end of the first run long enough to count.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DefectPlace {
+    /// turn, from 1
+    pub turn: u32,
+    /// polar angle from the clamp within that turn, rad in 0..2 pi
+    pub angle: f64,
+}
+
+/// Largest values over the last 2 pi of settled wire, m; 0 before there is any.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Worst {
+    /// absolute height over the core or the layer below
+    pub bulge_height: f64,
+    /// clear distance to the neighbour one turn back
+    pub gap_width: f64,
+    /// diameter minus axial distance where wire overlaps
+    pub overlap_depth: f64,
+}
+
+impl Coil {
+    /// Defects present in the settled wire.
+    pub fn flags(&self) -> DefectFlags {
+        let [bulge, gap, overlap] = self.raised().map(|count| count > 0);
+        DefectFlags {
+            bulge,
+            gap,
+            overlap,
+        }
+    }
+
+    /// Number of defects in the settled wire, of all kinds.
+    pub fn defect_count(&self) -> u32 {
+        self.raised().iter().sum()
+    }
+
+    /// Where the latest defect was found.
+    pub fn last_defect(&self) -> Option<DefectPlace> {
+        let index = self.records.last()?.last_defect?;
+        Some(DefectPlace {
+            turn: (index / STATIONS_PER_TURN) as u32 + 1,
+            angle: (index % STATIONS_PER_TURN) as f64 * super::STATION_STEP,
+        })
+    }
+
+    /// Worst of the last settled turn; the neighbourhood of the clamp is left out.
+    pub fn worst(&self) -> Worst {
+        self.last_turn()
+            .iter()
+            .map(|record| &record.station)
+            .filter(|s| s.measured)
+            .fold(Worst::default(), |worst, station: &Station| Worst {
+                bulge_height: worst.bulge_height.max(station.bulge),
+                gap_width: station
+                    .neighbour
+                    .map_or(worst.gap_width, |n| worst.gap_width.max(n.gap)),
+                overlap_depth: worst.overlap_depth.max(station.overlap_depth),
+            })
+    }
+
+    /// Turns settled, counted on the wire from the clamp.
+    pub fn turns_settled(&self) -> f64 {
+        self.nodes
+            .last()
+            .map_or(0.0, |node| node.angle.max(0.0) / TAU)
+    }
+
+    /// Layer of the last settled wire, from 1.
+    pub fn layer(&self) -> u32 {
+        self.records.last().map_or(1, |record| record.station.layer)
+    }
+
+    /// Extent of the settled wire along y with its thickness, m.
+    pub fn coil_width(&self) -> f64 {
+        self.nodes
+            .last()
+            .map_or(0.0, |node| node.y_max - node.y_min + self.spec.diameter)
+    }
+
+    /// Mean axial distance of neighbouring turns, m; 0 before the second turn.
+    pub fn mean_pitch(&self) -> f64 {
+        match self.records.last() {
+            Some(last) if last.axial_count > 0 => last.axial_sum / f64::from(last.axial_count),
+            _ => 0.0,
+        }
+    }
+
+    /// Share of wire in the rectangle that the coil's section occupies.
+    ///
+    /// Section area of the wire times `turns_settled` (the mean number of wires in a section round
+    /// the core), over `coil_width` times the largest height of the wire's outer side over the
+    /// core. Bulging wire thus lowers it, as it does in a slot.
+    pub fn fill_factor(&self) -> f64 {
+        let d = self.spec.diameter;
+        self.nodes.last().map_or(0.0, |node| {
+            let rectangle = self.coil_width() * (node.height_max.max(0.0) + d);
+            self.turns_settled() * PI / 4.0 * d * d / rectangle
+        })
+    }
+
+    /// Largest plastic stretch of the last settled turn.
+    pub fn wire_strain(&self) -> f64 {
+        let end = self.nodes.last().map_or(0.0, |node| node.angle);
+        self.nodes
+            .iter()
+            .rev()
+            .take_while(|node| node.angle > end - TAU)
+            .fold(0.0, |most, node| node.settled.plastic_strain.max(most))
+    }
+
+    /// The worst verdict of the turns that have a neighbour, from the second on, each judged once
+    /// half of it has settled; [`Verdict::Unsettled`] before that.
+    pub fn verdict(&self) -> Verdict {
+        let turns = self.turns();
+        let judged = turns.iter().skip(1).filter(|turn| turn.settled >= 0.5);
+        judged
+            .map(|turn| turn.verdict)
+            .max()
+            .unwrap_or(Verdict::Unsettled)
+    }
+
+    fn raised(&self) -> [u32; 3] {
+        self.records.last().map_or([0; 3], |record| record.raised)
+    }
+
+    fn last_turn(&self) -> &[Record] {
+        &self.records[self.records.len().saturating_sub(STATIONS_PER_TURN)..]
+    }
+}

@@ -1,0 +1,80 @@
+//! What is measured at one polar angle of one turn.
+
+use crate::math::V3;
+use serde::Serialize;
+
+/// Half the polar angle over which the neighbour one turn back is looked for, rad
+/// (default scene, `gap_m`).
+pub(crate) const NEIGHBOUR_WINDOW: f64 = 0.5;
+
+/// The wire one turn back, seen from a station.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Neighbour {
+    /// distance of the centrelines minus the diameter, m
+    pub gap: f64,
+    /// axial part of that distance, positive in the direction of the traverse, m
+    pub axial: f64,
+}
+
+/// The wire at one polar angle, interpolated between nodes; core frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Station {
+    /// winding angle from the clamp, rad; grows by 2 pi per turn whatever the direction
+    pub angle: f64,
+    /// centreline, m
+    pub position: V3,
+    /// unstretched length from the clamp, m
+    pub arc: f64,
+    /// time at which the wire came to rest here, s
+    pub time: f64,
+    /// distance of the centreline from the core minus the radius, m
+    pub height: f64,
+    /// clear distance to what the wire should lie on: the core in the first pass of the traverse,
+    /// wire of earlier passes later on, m
+    pub bulge: f64,
+    /// `bulge` minus the quasi-static height at this angle, m; `None` without a profile
+    pub bulge_excess: Option<f64>,
+    /// wire of the same pass one turn back
+    pub neighbour: Option<Neighbour>,
+    /// diameter minus axial distance where the wire stands on its neighbour or has changed places
+    /// with it, else 0, m
+    pub overlap_depth: f64,
+    /// one more than the layer of earlier wire right below, 1 without any
+    pub layer: u32,
+    /// pass of the traverse, from 1; grows when the traverse turns back
+    pub pass: u32,
+    /// false where the clamp still shapes this wire or its neighbour
+    pub measured: bool,
+}
+
+impl Station {
+    /// Distance from the core axis, m.
+    pub fn radius(&self) -> f64 {
+        (self.position.x * self.position.x + self.position.z * self.position.z).sqrt()
+    }
+}
+
+/// Point of the segment `a b` nearest to `p`.
+pub(crate) fn closest_point_segment(p: V3, a: V3, b: V3) -> V3 {
+    let along = b - a;
+    let length2 = along.norm_squared();
+    if length2 == 0.0 {
+        return a;
+    }
+    a + along * ((p - a).dot(&along) / length2).clamp(0.0, 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearest_point_lies_inside_or_at_the_ends() {
+        let (a, b) = (V3::new(0.0, 0.0, 0.0), V3::new(2.0, 0.0, 0.0));
+        let near = |x, y| closest_point_segment(V3::new(x, y, 0.0), a, b);
+        assert_eq!(near(0.5, 3.0), V3::new(0.5, 0.0, 0.0));
+        assert_eq!(near(-1.0, 3.0), a);
+        assert_eq!(near(5.0, -1.0), b);
+        assert_eq!(closest_point_segment(b, a, a), a);
+    }
+}

@@ -1,0 +1,215 @@
+//! Measures and verdict of each turn.
+
+use super::coil::{Coil, Record};
+use super::runs::Run;
+use super::state::DefectKind;
+use super::{STATION_STEP, STATIONS_PER_TURN};
+use serde::Serialize;
+use std::f64::consts::{PI, TAU};
+
+/// Limits of an aligned turn, from the default scene: gap within this many diameters ...
+const ALIGNED_GAP: f64 = 0.10;
+/// ... at this share of the stations ...
+const ALIGNED_SHARE: f64 = 0.95;
+/// ... and its root mean square below this many diameters.
+const ALIGNED_RMS: f64 = 0.05;
+
+/// What a turn looks like, mildest first. A turn with several defects has the last of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Verdict {
+    /// nothing has come to rest where it could be measured
+    #[default]
+    Unsettled,
+    /// gap within 0.10 d at 95 % of the stations, root mean square below 0.05 d, no defect
+    Aligned,
+    /// anything between
+    Marginal,
+    /// stands off further than allowed
+    Bulge,
+    /// lies beside its place over a run of stations
+    Gap,
+    /// rides on its neighbour, or has changed places with it, at any station
+    Overlap,
+}
+
+impl Verdict {
+    /// The word for it, as in `summary.json`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Unsettled => "unsettled",
+            Self::Aligned => "aligned",
+            Self::Marginal => "marginal",
+            Self::Bulge => "bulge",
+            Self::Gap => "gap",
+            Self::Overlap => "overlap",
+        }
+    }
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// Measures of one turn over its settled stations, without the neighbourhood of the clamp.
+///
+/// Lengths in m. Gaps are signed (negative: closer than a diameter) and `None` for a turn without
+/// neighbour.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TurnMeasures {
+    /// turn, from 1
+    pub turn: u32,
+    /// settled fraction, 0..1
+    pub settled: f64,
+    /// stations measured
+    pub stations: u32,
+    /// mean gap
+    pub gap_mean: Option<f64>,
+    /// root mean square of the gap
+    pub gap_rms: Option<f64>,
+    /// largest gap
+    pub gap_max: Option<f64>,
+    /// share of the stations with a neighbour whose gap is above the limit
+    pub gap_over: f64,
+    /// longest run above the limit, as a fraction of a whole turn
+    pub gap_run: f64,
+    /// mean axial distance to the neighbour, positive in the direction of the traverse
+    pub axial_mean: Option<f64>,
+    /// largest height over the faces on +x, +z, -x, -z; 0 where nothing is measured
+    pub bulge_faces: [f64; 4],
+    /// largest height over all faces
+    pub bulge_max: f64,
+    /// largest height over the quasi-static one; `None` without a profile
+    pub bulge_excess_max: Option<f64>,
+    /// largest overlap depth
+    pub overlap_max: f64,
+    /// largest geometric layer
+    pub layer_max: u32,
+    /// what it comes to
+    pub verdict: Verdict,
+}
+
+impl Coil {
+    /// Measures of every turn that has begun to settle, first turn first (linear in the wire).
+    pub fn turns(&self) -> Vec<TurnMeasures> {
+        let turns = self.records.chunks(STATIONS_PER_TURN).enumerate();
+        turns
+            .map(|(turn, records)| self.measure_turn(turn, records))
+            .collect()
+    }
+
+    fn measure_turn(&self, turn: usize, records: &[Record]) -> TurnMeasures {
+        let d = self.spec.diameter;
+        let mut result = TurnMeasures {
+            turn: turn as u32 + 1,
+            settled: records.len() as f64 / STATIONS_PER_TURN as f64,
+            ..TurnMeasures::default()
+        };
+        let mut gaps = GapSums::default();
+        let mut runs = [Run::default(); 3];
+        let mut has = [false; 3];
+        for record in records {
+            let station = &record.station;
+            for kind in DefectKind::ALL {
+                let (value, limit, least) = self.criterion(kind, station);
+                let run = &mut runs[kind as usize];
+                *run = run.next(value, limit);
+                has[kind as usize] |= run.counts(least);
+                if kind == DefectKind::Gap {
+                    result.gap_run = result.gap_run.max(run.fraction());
+                    gaps.over += u32::from(value.is_some_and(|gap| gap > limit));
+                }
+            }
+            if !station.measured {
+                continue;
+            }
+            result.stations += 1;
+            if let Some(neighbour) = station.neighbour {
+                gaps.add(neighbour.gap, neighbour.axial, ALIGNED_GAP * d);
+            }
+            let face = &mut result.bulge_faces[self.face(station.angle)];
+            *face = face.max(station.bulge);
+            result.bulge_max = result.bulge_max.max(station.bulge);
+            result.bulge_excess_max = match (result.bulge_excess_max, station.bulge_excess) {
+                (Some(a), Some(b)) => Some(f64::max(a, b)),
+                (a, b) => a.or(b),
+            };
+            result.overlap_max = result.overlap_max.max(station.overlap_depth);
+            result.layer_max = result.layer_max.max(station.layer);
+        }
+        gaps.write(&mut result);
+        result.verdict = gaps.verdict(&result, has, d);
+        result
+    }
+
+    /// Face at a winding angle: 0 on +x, 1 on +z, 2 on -x, 3 on -z.
+    fn face(&self, angle: f64) -> usize {
+        let polar = self.spec.start_angle + self.spec.direction * angle;
+        let c = self.spec.corner_angle;
+        // The hair keeps a station right at a corner from changing sides by rounding.
+        let from_corner = (polar + c + 1e-6 * STATION_STEP).rem_euclid(TAU);
+        [2.0 * c, PI, PI + 2.0 * c]
+            .iter()
+            .filter(|&&edge| from_corner >= edge)
+            .count()
+    }
+}
+
+/// Sums over the stations that have a neighbour.
+#[derive(Default)]
+struct GapSums {
+    count: u32,
+    sum: f64,
+    squares: f64,
+    most: f64,
+    axial: f64,
+    over: u32,
+    within: u32,
+}
+
+impl GapSums {
+    fn add(&mut self, gap: f64, axial: f64, aligned: f64) {
+        self.most = if self.count == 0 {
+            gap
+        } else {
+            self.most.max(gap)
+        };
+        self.count += 1;
+        self.sum += gap;
+        self.squares += gap * gap;
+        self.axial += axial;
+        self.within += u32::from(gap.abs() <= aligned);
+    }
+
+    fn write(&self, result: &mut TurnMeasures) {
+        if self.count == 0 {
+            return;
+        }
+        let n = f64::from(self.count);
+        result.gap_mean = Some(self.sum / n);
+        result.gap_rms = Some((self.squares / n).sqrt());
+        result.gap_max = Some(self.most);
+        result.axial_mean = Some(self.axial / n);
+        result.gap_over = f64::from(self.over) / n;
+    }
+
+    fn verdict(&self, turn: &TurnMeasures, has: [bool; 3], d: f64) -> Verdict {
+        let aligned = f64::from(self.within) >= ALIGNED_SHARE * f64::from(self.count)
+            && turn.gap_rms.is_none_or(|rms| rms < ALIGNED_RMS * d);
+        if turn.stations == 0 {
+            Verdict::Unsettled
+        } else if turn.overlap_max > 0.0 {
+            Verdict::Overlap
+        } else if has[DefectKind::Gap as usize] {
+            Verdict::Gap
+        } else if has[DefectKind::Bulge as usize] {
+            Verdict::Bulge
+        } else if aligned {
+            Verdict::Aligned
+        } else {
+            Verdict::Marginal
+        }
+    }
+}

@@ -1,0 +1,686 @@
+//! Measures of made coils whose gaps, heights and places are known beforehand.
+
+use coilwind::math::V3;
+use coilwind::measure::{
+    Coil, CoilSpec, DefectFlags, Profile, STATION_STEP, STATIONS_PER_TURN, SettledNode, Station,
+    Verdict, Worst,
+};
+use coilwind::scene::Defects;
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
+
+const D: f64 = 0.7e-3;
+const RADIUS: f64 = 10e-3;
+
+fn limits() -> Defects {
+    Defects {
+        gap: 0.15,
+        gap_fraction: 0.10,
+        bulge_excess: 0.5,
+        bulge_absolute: 0.0,
+        overlap_axial: 0.9,
+        overlap_height: 0.3,
+        skip_angle: 1.2,
+    }
+}
+
+fn spec() -> CoilSpec {
+    CoilSpec {
+        diameter: D,
+        limits: limits(),
+        profile: Profile::new(vec![0.0]),
+        start_angle: 0.0,
+        direction: 1.0,
+        traverse: 1.0,
+        clamp_arc: 0.0,
+        corner_angle: FRAC_PI_4,
+    }
+}
+
+/// Wire on a cylinder: `place` gives (y, height) at each winding angle.
+fn on_cylinder(turns: f64, direction: f64, place: impl Fn(f64) -> (f64, f64)) -> Vec<SettledNode> {
+    let step = 0.4e-3 / RADIUS;
+    (0..=(turns * TAU / step) as usize)
+        .map(|node| {
+            let angle = node as f64 * step;
+            let (y, height) = place(angle);
+            let r = RADIUS + D / 2.0 + height;
+            let polar = direction * angle;
+            SettledNode {
+                position: V3::new(r * libm::cos(polar), y, r * libm::sin(polar)),
+                arc: angle * r,
+                height,
+                plastic_strain: 1e-3 * angle,
+                time: angle / 30.0,
+            }
+        })
+        .collect()
+}
+
+fn helix(turns: f64, pitch: f64) -> Vec<SettledNode> {
+    on_cylinder(turns, 1.0, |angle| (pitch * angle / TAU, 0.0))
+}
+
+fn wound(spec: CoilSpec, nodes: &[SettledNode]) -> Coil {
+    let mut coil = Coil::new(spec);
+    for &node in nodes {
+        coil.settle(node);
+    }
+    coil
+}
+
+/// Distance of neighbouring turns of a helix that advances `pitch` per length `around`.
+fn developed_distance(pitch: f64, around: f64) -> f64 {
+    pitch * around / (pitch * pitch + around * around).sqrt()
+}
+
+#[test]
+fn nothing_settled_says_nothing() {
+    let coil = Coil::new(spec());
+    assert_eq!(coil.flags(), DefectFlags::default());
+    assert_eq!(coil.worst(), Worst::default());
+    assert_eq!(coil.defect_count(), 0);
+    assert_eq!(coil.last_defect(), None);
+    assert_eq!(
+        (coil.turns_settled(), coil.coil_width(), coil.mean_pitch()),
+        (0.0, 0.0, 0.0)
+    );
+    assert_eq!(
+        (coil.fill_factor(), coil.wire_strain(), coil.layer()),
+        (0.0, 0.0, 1)
+    );
+    assert_eq!(coil.verdict(), Verdict::Unsettled);
+    assert!(coil.turns().is_empty());
+}
+
+#[test]
+fn helix_on_a_cylinder_has_the_gap_of_its_pitch() {
+    let around = TAU * (RADIUS + D / 2.0);
+    for pitch in [D, 1.1 * D, 1.6 * D] {
+        let coil = wound(spec(), &helix(3.2, pitch));
+        let distance = developed_distance(pitch, around);
+        // The nearest point lies square to the wire, so its axial part is shorter once more.
+        let (expected, axial) = (distance - D, distance * distance / pitch);
+        for station in coil.stations().filter(|s| s.angle > TAU + 1.0) {
+            let neighbour = station.neighbour.expect("second turn has a neighbour");
+            // Chords 0.4 mm long cut 2 um into the cylinder, aslant to the distance.
+            assert!(
+                (neighbour.gap - expected).abs() < 5e-9,
+                "{pitch} {station:?}"
+            );
+            assert!(
+                (neighbour.axial - pitch).abs() < 2e-4 * pitch,
+                "{station:?}"
+            );
+        }
+        let turns = coil.turns();
+        assert_eq!(turns[0].gap_mean, None);
+        assert_eq!(turns[0].verdict, Verdict::Aligned);
+        assert!((turns[1].gap_mean.unwrap() - expected).abs() < 5e-9);
+        assert!((coil.mean_pitch() - axial).abs() < 1e-6 * pitch);
+        assert!((coil.coil_width() - (3.2 * pitch + D)).abs() < 0.01 * pitch);
+        assert!((coil.turns_settled() - 3.2).abs() < 0.01);
+    }
+}
+
+#[test]
+fn verdicts_follow_the_pitch() {
+    let cases = [
+        (1.0, Verdict::Aligned),
+        (1.04, Verdict::Aligned),
+        (1.12, Verdict::Marginal),
+        (1.3, Verdict::Gap),
+    ];
+    for (pitch, verdict) in cases {
+        let coil = wound(spec(), &helix(2.3, pitch * D));
+        assert_eq!(coil.turns()[1].verdict, verdict, "{pitch}");
+        assert_eq!(coil.verdict(), verdict);
+        assert_eq!(coil.flags().gap, verdict == Verdict::Gap);
+    }
+}
+
+#[test]
+fn wire_wound_backwards_measures_the_same() {
+    let place = |angle: f64| (1.1 * D * angle / TAU, 0.0);
+    let forward = wound(spec(), &on_cylinder(2.5, 1.0, place));
+    let backward = wound(
+        CoilSpec {
+            direction: -1.0,
+            ..spec()
+        },
+        &on_cylinder(2.5, -1.0, place),
+    );
+    for (a, b) in forward.stations().zip(backward.stations()) {
+        assert!((a.position.z + b.position.z).abs() < 1e-12);
+        assert_eq!(a.neighbour.is_some(), b.neighbour.is_some());
+        if let (Some(a), Some(b)) = (a.neighbour, b.neighbour) {
+            assert!((a.gap - b.gap).abs() < 1e-12);
+        }
+    }
+    assert_eq!(forward.turns()[1].verdict, backward.turns()[1].verdict);
+}
+
+#[test]
+fn traverse_towards_minus_y_has_positive_axial_distance() {
+    let nodes = on_cylinder(2.2, 1.0, |angle| (-D * angle / TAU, 0.0));
+    let coil = wound(
+        CoilSpec {
+            traverse: -1.0,
+            ..spec()
+        },
+        &nodes,
+    );
+    assert!((coil.mean_pitch() - D).abs() < 2e-4 * D);
+    assert_eq!(coil.verdict(), Verdict::Aligned);
+}
+
+/// A point at length `s` round a rectangle `w` by `h` (along x and z) rounded by `r`, from the
+/// middle of the face on +x towards +z.
+fn on_rounded_rectangle(w: f64, h: f64, r: f64, s: f64) -> (f64, f64) {
+    let (a, b, corner) = (w / 2.0 - r, h / 2.0 - r, PI / 2.0 * r);
+    let quarter = a + b + corner;
+    let s = s.rem_euclid(4.0 * quarter);
+    let (quadrant, mut t) = ((s / quarter) as usize, s % quarter);
+    // Opposite quadrants run the other way round: mirror the length and then the axes.
+    if quadrant % 2 == 1 {
+        t = quarter - t;
+    }
+    let (x, z) = if t < b {
+        (a + r, t)
+    } else if t < b + corner {
+        let phi = (t - b) / r;
+        (a + r * libm::cos(phi), b + r * libm::sin(phi))
+    } else {
+        (a - (t - b - corner), b + r)
+    };
+    match quadrant {
+        0 => (x, z),
+        1 => (-x, z),
+        2 => (-x, -z),
+        _ => (x, -z),
+    }
+}
+
+#[test]
+fn helix_on_a_rounded_box_has_the_gap_of_its_pitch_at_enough_stations() {
+    let (w, h, r) = (12e-3 + D, 30e-3 + D, 2e-3 + D / 2.0);
+    let around = 2.0 * (w + h) - 8.0 * r + TAU * r;
+    let pitch = 1.2 * D;
+    let nodes: Vec<_> = (0..=(2.4 * around / 0.4e-3) as usize)
+        .map(|node| {
+            let s = node as f64 * 0.4e-3;
+            let (x, z) = on_rounded_rectangle(w, h, r, s);
+            SettledNode {
+                position: V3::new(x, pitch * s / around, z),
+                arc: s,
+                height: 0.0,
+                plastic_strain: 0.0,
+                time: 0.0,
+            }
+        })
+        .collect();
+    let corner_angle = libm::atan2(15e-3, 6e-3);
+    let coil = wound(
+        CoilSpec {
+            corner_angle,
+            ..spec()
+        },
+        &nodes,
+    );
+    let expected = developed_distance(pitch, around) - D;
+    let second: Vec<&Station> = coil
+        .stations()
+        .skip(STATIONS_PER_TURN)
+        .take(STATIONS_PER_TURN)
+        .collect();
+    for station in &second {
+        // At a 2.35 mm corner chords of 0.4 mm cut 9 um deep.
+        assert!(
+            (station.neighbour.unwrap().gap - expected).abs() < 2e-7,
+            "{station:?}"
+        );
+    }
+    assert_eq!(coil.turns()[1].verdict, Verdict::Gap);
+    let on = |test: &dyn Fn(f64, f64) -> bool| {
+        second
+            .iter()
+            .filter(|s| test(s.position.x, s.position.z))
+            .count()
+    };
+    let (a, b) = (w / 2.0 - r, h / 2.0 - r);
+    assert!(on(&|x, z| x > 0.0 && z.abs() < b) >= 10);
+    assert!(on(&|x, z| z > 0.0 && x.abs() < a) >= 10);
+    assert!(on(&|x, z| x > a && z > b) >= 3);
+}
+
+#[test]
+fn a_made_gap_is_found_where_it_is() {
+    // Turn 2 steps aside by 0.4 d from 2 to 3 rad of its angle.
+    let aside = |angle: f64| {
+        let within = angle - TAU;
+        D * angle / TAU
+            + if (2.0..3.0).contains(&within) {
+                0.4 * D
+            } else {
+                0.0
+            }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, |angle| (aside(angle), 0.0)));
+    let turn = &coil.turns()[1];
+    assert_eq!(turn.verdict, Verdict::Gap);
+    assert!((turn.gap_max.unwrap() - 0.4 * D).abs() < 2e-3 * D);
+    assert!((turn.gap_run - 1.0 / TAU).abs() < 1.5 / STATIONS_PER_TURN as f64);
+    assert_eq!(
+        coil.flags(),
+        DefectFlags {
+            gap: true,
+            ..DefectFlags::default()
+        }
+    );
+    let place = coil.last_defect().unwrap();
+    assert_eq!(place.turn, 2);
+    // Found when a tenth of a turn is above the limit.
+    assert!(
+        (place.angle - (2.0 + 0.1 * TAU)).abs() < 2.0 * STATION_STEP,
+        "{place:?}"
+    );
+    assert_eq!(coil.defect_count(), 1);
+    assert!((coil.worst().gap_width - 0.4 * D).abs() < 2e-3 * D);
+}
+
+#[test]
+fn a_gap_shorter_than_its_fraction_is_no_defect() {
+    let aside = |angle: f64| {
+        let within = angle - TAU;
+        D * angle / TAU
+            + if (2.0..2.5).contains(&within) {
+                0.4 * D
+            } else {
+                0.0
+            }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, |angle| (aside(angle), 0.0)));
+    assert_eq!(coil.turns()[1].verdict, Verdict::Marginal);
+    assert!(!coil.flags().gap);
+}
+
+#[test]
+fn swapped_turns_overlap() {
+    // Turn 2 lands on the far side of turn 1.
+    let y = |angle: f64| if angle < TAU { 0.0 } else { -1.02 * D };
+    let coil = wound(spec(), &on_cylinder(1.8, 1.0, |angle| (y(angle), 0.0)));
+    let turn = &coil.turns()[1];
+    assert_eq!(turn.verdict, Verdict::Overlap);
+    assert!((turn.overlap_max - 2.02 * D).abs() < 2e-3 * D);
+    assert!(coil.flags().overlap);
+}
+
+#[test]
+fn wire_riding_up_overlaps_and_is_in_the_second_layer() {
+    // Turn 2 lies at 0.3 d from turn 1 and touches it from above, from 2 to 4 rad.
+    let place = |angle: f64| {
+        let within = angle - TAU;
+        if within < 0.0 {
+            (0.0, 0.0)
+        } else if (2.0..4.0).contains(&within) {
+            (0.3 * D, (1.0f64 - 0.09).sqrt() * D)
+        } else {
+            (1.02 * D, 0.0)
+        }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, place));
+    let turn = &coil.turns()[1];
+    assert_eq!(turn.verdict, Verdict::Overlap);
+    assert!((turn.overlap_max - 0.7 * D).abs() < 1e-3 * D);
+    assert_eq!(turn.layer_max, 2);
+    assert!(coil.flags().overlap && !coil.flags().gap);
+    let on_top = coil.stations().nth(STATIONS_PER_TURN + 170).unwrap();
+    assert_eq!(on_top.layer, 2);
+    assert!(on_top.neighbour.unwrap().gap.abs() < 2e-3 * D);
+    let beside = coil.stations().nth(STATIONS_PER_TURN + 300).unwrap();
+    assert_eq!(beside.layer, 1);
+}
+
+#[test]
+fn a_second_layer_after_the_traverse_turned_back_is_no_defect() {
+    // Three turns out, then turns in the valleys above on the way back.
+    let valley = 0.75f64.sqrt() * D;
+    let out = on_cylinder(3.0, 1.0, |angle| (D * (angle / TAU).floor(), 0.0));
+    let all = on_cylinder(5.0, 1.0, |angle| {
+        let turn = (angle / TAU).floor();
+        if turn < 3.0 {
+            (D * turn, 0.0)
+        } else {
+            (D * (4.5 - turn), valley)
+        }
+    });
+    let mut coil = wound(spec(), &out);
+    coil.set_traverse(-1.0);
+    for &node in &all[out.len()..] {
+        coil.settle(node);
+    }
+    assert_eq!(coil.flags(), DefectFlags::default());
+    assert_eq!(coil.layer(), 2);
+    let station = coil.stations().nth(3 * STATIONS_PER_TURN + 100).unwrap();
+    assert_eq!(
+        (station.pass, station.layer, station.neighbour),
+        (2, 2, None)
+    );
+    assert!((station.height - valley).abs() < 1e-9);
+    assert!(station.bulge.abs() < 1e-9, "lies on the wires below");
+    let last = coil.stations().nth(4 * STATIONS_PER_TURN + 100).unwrap();
+    assert!((last.neighbour.unwrap().axial - D).abs() < 1e-6 * D);
+}
+
+#[test]
+fn bulge_is_judged_against_the_quasi_static_height() {
+    let stand_off = |angle: f64| 1.5 * D * libm::sin(angle).powi(2);
+    let profile = Profile::new(
+        (0..720)
+            .map(|k| stand_off(f64::from(k) * TAU / 720.0))
+            .collect(),
+    );
+    let nodes = |share: f64| {
+        on_cylinder(2.0, 1.0, move |angle| {
+            (D * angle / TAU, share * stand_off(angle))
+        })
+    };
+    let quiet = wound(
+        CoilSpec {
+            profile: profile.clone(),
+            ..spec()
+        },
+        &nodes(1.0),
+    );
+    assert!(!quiet.flags().bulge);
+    assert!(
+        (quiet.worst().bulge_height - 1.5 * D).abs() < 1e-3 * D,
+        "reported as it is"
+    );
+    assert!(quiet.turns()[1].bulge_excess_max.unwrap().abs() < 2e-3 * D);
+
+    let fast = wound(
+        CoilSpec {
+            profile: profile.clone(),
+            ..spec()
+        },
+        &nodes(1.5),
+    );
+    assert!(fast.flags().bulge);
+    assert_eq!(fast.turns()[1].verdict, Verdict::Bulge);
+    assert!((fast.turns()[1].bulge_excess_max.unwrap() - 0.75 * D).abs() < 2e-3 * D);
+
+    let no_yardstick = wound(
+        CoilSpec {
+            profile: None,
+            ..spec()
+        },
+        &nodes(1.5),
+    );
+    assert!(!no_yardstick.flags().bulge);
+    assert_eq!(no_yardstick.turns()[1].bulge_excess_max, None);
+    let absolute = Defects {
+        bulge_absolute: 1e-3,
+        ..limits()
+    };
+    assert!(
+        wound(
+            CoilSpec {
+                profile: None,
+                limits: absolute,
+                ..spec()
+            },
+            &nodes(1.0)
+        )
+        .flags()
+        .bulge
+    );
+}
+
+#[test]
+fn bulge_is_given_per_face() {
+    for (face, middle) in [0.0, PI / 2.0, PI, 1.5 * PI].into_iter().enumerate() {
+        for direction in [1.0, -1.0] {
+            let place = |angle: f64| {
+                let from = libm::cos(direction * angle - middle);
+                (D * angle / TAU, if from > 0.9 { D } else { 0.0 })
+            };
+            let coil = wound(
+                CoilSpec {
+                    direction,
+                    ..spec()
+                },
+                &on_cylinder(2.5, direction, place),
+            );
+            let faces = coil.turns()[1].bulge_faces;
+            for (k, &height) in faces.iter().enumerate() {
+                let expected = if k == face { D } else { 0.0 };
+                assert!(
+                    (height - expected).abs() < 1e-9,
+                    "{face} {direction}: {faces:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn one_noisy_station_raises_no_flag() {
+    // Every kind of wrong, over two nodes (3 degrees) each.
+    let place = |angle: f64| {
+        let y = D * angle / TAU;
+        let within = |from: f64| (from..from + 0.06).contains(&(angle - TAU));
+        if within(2.0) {
+            (y + D, 0.0)
+        } else if within(3.0) {
+            (y - 0.5 * D, 0.9 * D)
+        } else if within(4.0) {
+            (y, 2.0 * D)
+        } else {
+            (y, 0.0)
+        }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, place));
+    let noisy = coil
+        .stations()
+        .filter(|s| s.measured && s.bulge > 0.5 * D)
+        .count();
+    assert!(noisy > 0, "the noise is seen");
+    assert_eq!(coil.flags(), DefectFlags::default());
+    assert_eq!(coil.defect_count(), 0);
+}
+
+#[test]
+fn the_neighbourhood_of_the_clamp_is_left_out() {
+    // Wild within 1 rad of the clamp in turns 1 and 2, orderly elsewhere.
+    let place = |angle: f64| {
+        let wild = angle < 2.0 * TAU && angle.rem_euclid(TAU) < 1.0;
+        if wild {
+            (D * (angle / TAU).floor() * 3.0, 3.0 * D)
+        } else {
+            (D * angle / TAU, 0.0)
+        }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, place));
+    assert_eq!(coil.flags(), DefectFlags::default());
+    assert_eq!(coil.turns()[1].verdict, Verdict::Aligned);
+    // Judged from the clamp on, the same wire is bad.
+    let all = Defects {
+        skip_angle: 0.0,
+        ..limits()
+    };
+    assert!(
+        wound(
+            CoilSpec {
+                limits: all,
+                ..spec()
+            },
+            &on_cylinder(2.0, 1.0, place)
+        )
+        .flags()
+        .bulge
+    );
+}
+
+/// Three turns with a gap in the second, a turn that rides up, and a traverse that turns back.
+fn eventful() -> Vec<SettledNode> {
+    on_cylinder(4.3, 1.0, |angle| match angle / TAU {
+        turn if turn < 1.4 => (D * turn, 0.0),
+        turn if turn < 2.2 => (D * turn + 0.3 * D, 0.0),
+        turn if turn < 2.6 => (D * (turn - 0.7), 0.9 * D),
+        turn => (D * turn, 0.2 * D),
+    })
+}
+
+fn settle_all(coil: &mut Coil, nodes: &[SettledNode], from: usize) {
+    for (node, &settled) in nodes.iter().enumerate().skip(from) {
+        coil.set_traverse(if node < 600 { 1.0 } else { -1.0 });
+        coil.settle(settled);
+    }
+}
+
+#[test]
+fn what_was_taken_back_was_never_settled() {
+    let nodes = eventful();
+    for keep in [0, 1, 2, 150, 300, 450, 599, 600, 601, 670] {
+        let mut straight = Coil::new(spec());
+        settle_all(&mut straight, &nodes[..keep], 0);
+        let mut back = Coil::new(spec());
+        settle_all(&mut back, &nodes, 0);
+        back.unsettle(nodes.len() - keep);
+        // The traverse is the caller's: both are told the same.
+        straight.set_traverse(1.0);
+        back.set_traverse(1.0);
+        assert_eq!(straight, back, "keep {keep}");
+        // And goes on the same.
+        settle_all(&mut straight, &nodes, keep);
+        settle_all(&mut back, &nodes, keep);
+        assert_eq!(straight, back, "keep {keep}, wound again");
+        assert!(straight.defect_count() >= 2);
+    }
+}
+
+#[test]
+fn taking_back_more_than_there_is_leaves_nothing() {
+    let mut coil = wound(spec(), &helix(1.2, D));
+    coil.unsettle(usize::MAX);
+    assert!(coil.is_empty());
+    assert_eq!(coil, Coil::new(spec()));
+}
+
+#[test]
+fn flags_fall_when_the_defect_is_unwound() {
+    let nodes = helix(2.0, 1.4 * D);
+    let mut coil = wound(spec(), &nodes);
+    assert!(coil.flags().gap);
+    coil.unsettle(nodes.len() / 2);
+    assert_eq!(coil.flags(), DefectFlags::default());
+    assert_eq!(coil.last_defect(), None);
+    assert!(coil.turns_settled() < 1.01);
+}
+
+/// The obvious twin: every station against every segment of the whole wire one turn back.
+fn gap_by_brute_force(station: &Station, nodes: &[SettledNode], angles: &[f64]) -> f64 {
+    let target = station.angle - TAU;
+    let near = |k: usize| (angles[k] - target).abs() <= 0.5 + 0.04;
+    let least = (1..nodes.len())
+        .filter(|&k| near(k - 1) && near(k))
+        .map(|k| {
+            let (a, b) = (nodes[k - 1].position, nodes[k].position);
+            let (ab, ap) = (b - a, station.position - a);
+            let t = (ap.dot(&ab) / ab.norm_squared()).clamp(0.0, 1.0);
+            (ap - ab * t).norm()
+        })
+        .fold(f64::INFINITY, f64::min);
+    least - D
+}
+
+#[test]
+fn pointer_search_finds_what_brute_force_finds() {
+    let nodes = eventful();
+    let points: Vec<V3> = nodes.iter().map(|node| node.position).collect();
+    let angles = coilwind::measure::unwrap_angles(&points, 0.0, 1.0);
+    let coil = wound(spec(), &nodes);
+    let mut compared = 0;
+    for station in coil.stations() {
+        if let Some(neighbour) = station.neighbour {
+            let gap = gap_by_brute_force(station, &nodes, &angles);
+            assert!((neighbour.gap - gap).abs() < 1e-15, "{station:?}: {gap}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 3 * STATIONS_PER_TURN);
+}
+
+#[test]
+fn incremental_measures_equal_those_of_a_whole_coil() {
+    let nodes = eventful();
+    let whole = wound(spec(), &nodes);
+    let (laid, live) = nodes.split_at(500);
+    let coil = wound(spec(), laid);
+    let before = coil.clone();
+    assert_eq!(coil.what_if(live), whole);
+    assert_eq!(coil, before, "a look ahead changes nothing");
+    assert_eq!(coil.what_if(live).turns(), whole.turns());
+}
+
+#[test]
+fn new_limits_judge_old_wire() {
+    let mut coil = wound(spec(), &helix(2.0, 1.3 * D));
+    assert!(coil.flags().gap);
+    let loose = Defects {
+        gap: 0.5,
+        ..limits()
+    };
+    coil.set_limits(loose);
+    assert!(!coil.flags().gap);
+    assert_eq!(
+        coil,
+        wound(
+            CoilSpec {
+                limits: loose,
+                ..spec()
+            },
+            &helix(2.0, 1.3 * D)
+        )
+    );
+}
+
+#[test]
+fn node_positions_do_not_move_the_stations() {
+    let a = wound(spec(), &helix(2.0, D));
+    let finer: Vec<_> = (0..=2000)
+        .map(|k| {
+            let angle = f64::from(k) * TAU / 1000.0;
+            let r = RADIUS + D / 2.0;
+            SettledNode {
+                position: V3::new(r * libm::cos(angle), D * angle / TAU, r * libm::sin(angle)),
+                arc: r * angle,
+                height: 0.0,
+                plastic_strain: 0.0,
+                time: 0.0,
+            }
+        })
+        .collect();
+    let b = wound(spec(), &finer);
+    for (a, b) in a.stations().zip(b.stations()) {
+        assert_eq!(a.angle, b.angle);
+        assert!((a.position - b.position).norm() < 3e-6);
+        assert!((a.arc - b.arc).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn coil_state_is_that_of_the_made_coil() {
+    let coil = wound(spec(), &helix(3.0, D));
+    let fill = PI / 4.0 * 3.0 / 4.0;
+    assert!(
+        (coil.fill_factor() - fill).abs() < 0.01 * fill,
+        "{}",
+        coil.fill_factor()
+    );
+    assert!((coil.wire_strain() - 1e-3 * 3.0 * TAU).abs() < 1e-4);
+    assert_eq!(coil.layer(), 1);
+    let profile = coil.height_profile(2).unwrap();
+    assert_eq!(profile.heights().len(), STATIONS_PER_TURN);
+    assert!(coil.height_profile(0).is_none() && coil.height_profile(4).is_none());
+}
