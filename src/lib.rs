@@ -12,3 +12,4 @@ pub mod output;
 pub mod rod;
 pub mod scene;
 pub mod simulation;
+pub mod variables;

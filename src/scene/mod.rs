@@ -1,6 +1,21 @@
 //! The immutable description of a run, in SI units.
 //!
-//! Made from a TOML file or a packed name by [`file`], validated there; everything else reads it.
+//! [`SceneSettings`] holds the leaves as the user gives them (defaults, then a TOML file or a
+//! packed scene, then single values); its `build` validates them into a [`Scene`], which
+//! everything else reads.
+
+mod build;
+mod error;
+mod file;
+mod key;
+mod material;
+mod settings;
+mod write;
+
+pub use error::{Place, SceneError, Warning};
+pub use file::packed_names;
+pub use key::unit_suffixes;
+pub use settings::{CoreSettings, SceneSettings, SolverSettings, WireSettings};
 
 use crate::rod::Section;
 use std::path::PathBuf;
@@ -22,6 +37,8 @@ pub struct Scene {
     pub nozzle: Nozzle,
     /// tensioner and the line to the nozzle
     pub tensioner: Tensioner,
+    /// where the wire begins
+    pub start: Start,
     /// spindle programme of `coilwind run`
     pub spindle: Spindle,
     /// traverse programme of `coilwind run`
@@ -101,6 +118,25 @@ pub struct Tensioner {
     pub line_length: f64,
     /// damping ratio of mass on line
     pub line_damping_ratio: f64,
+}
+
+/// Where the wire begins: clamped to the middle of the +x face, tangent to it, straight to the
+/// nozzle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Start {
+    /// wire end along the core axis, m
+    pub clamp_y: f64,
+}
+
+impl Start {
+    /// Core angle at which the wire runs straight from clamp to nozzle, rad: `acos((h + r)/D)`.
+    /// The spindle angle counts from here.
+    ///
+    /// `half_width` of the core along x at angle zero, radius of the wire and distance of the
+    /// nozzle from the axis in m, `h + r <= D`.
+    pub fn core_angle(half_width: f64, wire_radius: f64, nozzle_distance: f64) -> f64 {
+        libm::acos((half_width + wire_radius) / nozzle_distance)
+    }
 }
 
 /// Spindle programme of a native run.

@@ -1,0 +1,381 @@
+//! From settings to a scene: every leaf in range, and no two that contradict each other.
+
+use super::error::Warning;
+use super::material::section;
+use super::settings::SceneSettings;
+use super::{Core, Integrator, Preset, Scene, SceneError, Solver};
+use crate::rod::Section;
+use std::path::{Path, PathBuf};
+
+/// A length or force for a message: six digits are enough to act on.
+pub(super) fn si(x: f64) -> String {
+    let rounded = format!("{x:.5e}").parse().unwrap_or(x);
+    crate::variables::Value::Real(rounded).to_string()
+}
+
+impl SceneSettings {
+    /// The immutable scene, or the first thing that makes it impossible.
+    pub fn build(&self) -> Result<Scene, SceneError> {
+        self.build_with_warnings().map(|(scene, _)| scene)
+    }
+
+    /// The scene, and what in it is possible but perhaps not meant.
+    pub fn build_with_warnings(&self) -> Result<(Scene, Vec<Warning>), SceneError> {
+        self.check_ranges()?;
+        let wire = section(self)?;
+        let (core, extent) = self.core()?;
+        self.check_core(&wire, &extent)?;
+        self.check_nozzle(&wire, &extent)?;
+        self.check_wire_and_friction(&wire)?;
+        self.check_spacing(&wire, &extent)?;
+        let warnings = self.warnings(&wire, &core, &extent);
+
+        let preset = match self.preset.as_str() {
+            "paper" => Preset::Paper,
+            _ => Preset::Default,
+        };
+        let integrator = match (self.solver.integrator.as_str(), preset) {
+            ("rk4", _) | ("auto", Preset::Paper) => Integrator::Rk4,
+            _ => Integrator::Verlet,
+        };
+        let scene = Scene {
+            name: self.name.clone(),
+            preset,
+            wire,
+            wire_material: self.wire.material.clone(),
+            core,
+            nozzle: self.nozzle,
+            tensioner: self.tensioner,
+            start: self.start,
+            spindle: self.spindle,
+            traverse: self.traverse,
+            contact: self.contact,
+            friction: self.friction,
+            solver: Solver {
+                integrator,
+                spacing_near: self.solver.spacing_near,
+                spacing_free: self.solver.spacing_free,
+                refine_distance: self.solver.refine_distance,
+                step_share: self.solver.step_share,
+                step: self.solver.step,
+            },
+            freeze: self.freeze,
+            defects: self.defects,
+            output: self.output.clone(),
+        };
+        Ok((scene, warnings))
+    }
+
+    /// An error about a leaf, with its place and value filled in.
+    pub(super) fn impossible(
+        &self,
+        key: &str,
+        reason: impl Into<String>,
+        allowed: impl Into<String>,
+    ) -> SceneError {
+        SceneError::Impossible {
+            place: self.place(key),
+            key: key.to_owned(),
+            value: self.shown(key),
+            reason: reason.into(),
+            allowed: allowed.into(),
+        }
+    }
+
+    fn core(&self) -> Result<(Core, Extent), SceneError> {
+        let c = &self.core;
+        match c.shape.as_str() {
+            "cylinder" => {
+                let half = 0.5 * c.length_y;
+                let core = Core::Cylinder {
+                    radius: c.radius,
+                    length_y: c.length_y,
+                };
+                Ok((
+                    core,
+                    Extent {
+                        turning_radius: c.radius,
+                        y_min: -half,
+                        y_max: half,
+                    },
+                ))
+            }
+            "mesh" => {
+                let unit = match c.unit.as_str() {
+                    "m" => 1.0,
+                    "um" => 1e-6,
+                    "inch" => 0.0254,
+                    _ => 1e-3,
+                };
+                let extent = self.mesh_extent(unit)?;
+                Ok((
+                    Core::Mesh {
+                        path: PathBuf::from(&c.file),
+                        unit,
+                    },
+                    extent,
+                ))
+            }
+            _ => {
+                let (half_x, half_z) = (0.5 * c.width_x, 0.5 * c.height_z);
+                let r = c.corner_radius;
+                if r > half_x.min(half_z) {
+                    return Err(self.impossible(
+                        "core.corner_radius",
+                        "the corner is larger than half the core's smaller side",
+                        format!("0 to {} m", si(half_x.min(half_z))),
+                    ));
+                }
+                let core = Core::RoundedBox {
+                    width_x: c.width_x,
+                    height_z: c.height_z,
+                    length_y: c.length_y,
+                    corner_radius: r,
+                };
+                let turning_radius = libm::hypot(half_x - r, half_z - r) + r;
+                let half = 0.5 * c.length_y;
+                Ok((
+                    core,
+                    Extent {
+                        turning_radius,
+                        y_min: -half,
+                        y_max: half,
+                    },
+                ))
+            }
+        }
+    }
+
+    /// Reads a mesh for its extent alone; its topology is checked where it is wound on.
+    fn mesh_extent(&self, unit: f64) -> Result<Extent, SceneError> {
+        let problem = |reason: String| {
+            self.impossible(
+                "core.file",
+                reason,
+                "an STL file, relative to the scene file",
+            )
+        };
+        if self.core.file.is_empty() {
+            return Err(problem("core.shape = mesh needs a file".to_owned()));
+        }
+        let mut file = std::fs::File::open(Path::new(&self.core.file))
+            .map_err(|e| problem(format!("the mesh cannot be opened ({e})")))?;
+        let mesh = stl_io::read_stl(&mut file)
+            .map_err(|e| problem(format!("the mesh cannot be read ({e})")))?;
+        let mut extent = Extent {
+            turning_radius: 0.0,
+            y_min: f64::INFINITY,
+            y_max: f64::NEG_INFINITY,
+        };
+        for vertex in &mesh.vertices {
+            let [x, y, z] = vertex.0.map(|c| f64::from(c) * unit);
+            if !(x.is_finite() && y.is_finite() && z.is_finite()) {
+                return Err(problem(
+                    "the mesh has a vertex that is not finite".to_owned(),
+                ));
+            }
+            extent.turning_radius = extent.turning_radius.max(libm::hypot(x, z));
+            extent.y_min = extent.y_min.min(y);
+            extent.y_max = extent.y_max.max(y);
+        }
+        if mesh.faces.is_empty() || extent.turning_radius <= 0.0 || extent.y_min >= extent.y_max {
+            return Err(problem("the mesh encloses nothing".to_owned()));
+        }
+        Ok(extent)
+    }
+
+    fn check_core(&self, wire: &Section, extent: &Extent) -> Result<(), SceneError> {
+        let length = extent.y_max - extent.y_min;
+        if wire.diameter > length {
+            return Err(self.impossible(
+                "wire.diameter",
+                format!("the wire is wider than the core is long, {} m", si(length)),
+                format!("at most {} m", si(length)),
+            ));
+        }
+        let (low, high) = (extent.y_min + wire.radius(), extent.y_max - wire.radius());
+        if !(low..=high).contains(&self.start.clamp_y) {
+            return Err(self.impossible(
+                "start.clamp_y",
+                "the wire end is clamped beside the core",
+                format!("{} to {} m", si(low), si(high)),
+            ));
+        }
+        Ok(())
+    }
+
+    fn check_nozzle(&self, wire: &Section, extent: &Extent) -> Result<(), SceneError> {
+        let distance = self.nozzle.distance;
+        let clear = extent.turning_radius + wire.diameter;
+        if distance <= clear {
+            return Err(self.impossible(
+                "nozzle.distance",
+                format!(
+                    "the nozzle is inside the circle the turning core needs, {} m and the wire",
+                    si(extent.turning_radius)
+                ),
+                format!("more than {} m", si(clear)),
+            ));
+        }
+        // Further out the wire would leave the core at more than 45 degrees.
+        let (low, high) = (extent.y_min - distance, extent.y_max + distance);
+        if !(low..=high).contains(&self.nozzle.y_start) {
+            return Err(self.impossible(
+                "nozzle.y_start",
+                "the nozzle is farther beside the core than in front of it",
+                format!("{} to {} m", si(low), si(high)),
+            ));
+        }
+        if self.spindle.ramp_turns > self.spindle.turns {
+            return Err(self.impossible(
+                "spindle.ramp_turns",
+                format!(
+                    "the run ends after {} turns, still accelerating",
+                    si(self.spindle.turns)
+                ),
+                format!("at most spindle.turns, {}", si(self.spindle.turns)),
+            ));
+        }
+        Ok(())
+    }
+
+    fn check_wire_and_friction(&self, wire: &Section) -> Result<(), SceneError> {
+        if self.tensioner.tension >= wire.strength {
+            return Err(self.impossible(
+                "tensioner.tension",
+                format!("the wire breaks at {} N", si(wire.strength)),
+                format!("less than {} N", si(wire.strength)),
+            ));
+        }
+        if self.friction.kinetic > self.friction.static_ {
+            let kinetic_given = self.places.contains_key("friction.kinetic");
+            let (key, allowed) = match kinetic_given {
+                true => (
+                    "friction.kinetic",
+                    ("at most friction.static", self.friction.static_),
+                ),
+                false => (
+                    "friction.static",
+                    ("at least friction.kinetic", self.friction.kinetic),
+                ),
+            };
+            return Err(self.impossible(
+                key,
+                "static friction below kinetic friction",
+                format!("{}, {}", allowed.0, si(allowed.1)),
+            ));
+        }
+        Ok(())
+    }
+
+    fn check_spacing(&self, wire: &Section, extent: &Extent) -> Result<(), SceneError> {
+        // Below a tenth of the diameter a rod is no model of the wire any more and the explicit
+        // step falls with the square; above ten diameters no turn is resolved.
+        let d = wire.diameter;
+        let (finest, coarsest) = (0.1 * d, 10.0 * d);
+        let range = format!(
+            "{} to {} m (0.1 to 10 wire diameters)",
+            si(finest),
+            si(coarsest)
+        );
+        let near = self.solver.spacing_near;
+        if near < finest {
+            return Err(self.impossible("solver.spacing_near", "too fine for a rod", range));
+        }
+        if near > coarsest {
+            return Err(self.impossible("solver.spacing_near", "too coarse for this wire", range));
+        }
+        let span = self.nozzle.distance - extent.turning_radius;
+        let free = self.solver.spacing_free;
+        if free < near || 3.0 * free > span {
+            let reason = match free < near {
+                true => "the free span cannot be finer than the wire near the core",
+                false => "the free span needs at least three edges",
+            };
+            return Err(self.impossible(
+                "solver.spacing_free",
+                reason,
+                format!(
+                    "solver.spacing_near, {} m, to {} m",
+                    si(near),
+                    si(span / 3.0)
+                ),
+            ));
+        }
+        Ok(())
+    }
+
+    fn warnings(&self, wire: &Section, core: &Core, extent: &Extent) -> Vec<Warning> {
+        let mut warnings = Vec::new();
+        let mut warn = |key: &'static str, message: String| {
+            let (place, value) = (self.place(key), self.shown(key));
+            warnings.push(Warning {
+                place,
+                key,
+                value,
+                message,
+            });
+        };
+        let beside = |y: f64| y < extent.y_min || y > extent.y_max;
+        let ends = format!(
+            "the core ends at {} and {} m",
+            si(extent.y_min),
+            si(extent.y_max)
+        );
+        if beside(self.nozzle.y_start) {
+            warn(
+                "nozzle.y_start",
+                format!("the nozzle starts beside the core; {ends}"),
+            );
+        }
+        let travel = self.traverse.lead + self.traverse.per_turn * self.spindle.turns;
+        let last = self.nozzle.y_start + travel;
+        if beside(last) && !beside(self.nozzle.y_start) {
+            let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
+            warn("traverse.per_turn", message);
+        }
+        let tension = self.tensioner.tension;
+        if tension >= wire.n_y {
+            let message = format!(
+                "the wire yields in the free span; N_y is {} N",
+                si(wire.n_y)
+            );
+            warn("tensioner.tension", message);
+        }
+        let corner = match *core {
+            Core::RoundedBox { corner_radius, .. } => Some(corner_radius),
+            Core::Cylinder { radius, .. } => Some(radius),
+            Core::Mesh { .. } => None,
+        };
+        if let Some(corner) = corner {
+            let bend = corner + wire.radius();
+            let near = self.solver.spacing_near;
+            if near > bend {
+                let message = format!(
+                    "coarser than the tightest bend of the wire, radius {} m",
+                    si(bend)
+                );
+                warn("solver.spacing_near", message);
+            }
+            let depth = tension / bend / self.contact.stiffness;
+            if depth > 0.01 * wire.diameter {
+                let message = format!(
+                    "the wire sinks about {} m into the tightest bend, more than 1 % of its \
+                     diameter",
+                    si(depth)
+                );
+                warn("contact.stiffness", message);
+            }
+        }
+        warnings
+    }
+}
+
+/// Room the core takes up.
+struct Extent {
+    /// largest distance from the axis, m
+    turning_radius: f64,
+    /// ends along the axis, m
+    y_min: f64,
+    y_max: f64,
+}

@@ -1,0 +1,201 @@
+//! What can be wrong with a scene: always where, which key, which value, and what is allowed.
+
+use std::fmt;
+use thiserror::Error;
+
+/// Where a value came from.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Place {
+    /// nobody gave it; the default of the program
+    #[default]
+    Default,
+    /// a scene file or packed scene
+    File {
+        /// name as the user knows it
+        file: String,
+        /// line from 1, where known
+        line: Option<usize>,
+    },
+    /// set by name: `--set`, or a parameter of the FMU
+    Set,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Default => f.write_str("default scene"),
+            Self::File {
+                file,
+                line: Some(line),
+            } => write!(f, "{file}:{line}"),
+            Self::File { file, line: None } => f.write_str(file),
+            Self::Set => f.write_str("set by name"),
+        }
+    }
+}
+
+/// A scene that cannot be run, and why.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SceneError {
+    /// Neither a packed scene nor a file.
+    #[error(
+        "no scene {name}: neither a packed scene ({packed}) nor a file{}",
+        also(suggestion)
+    )]
+    NotFound {
+        /// as given
+        name: String,
+        /// names of the packed scenes
+        packed: String,
+        /// packed scene of a similar name
+        suggestion: Option<String>,
+    },
+    /// The file is there but cannot be read as text.
+    #[error("{file}: cannot be read: {reason}")]
+    Unreadable {
+        /// path as given
+        file: String,
+        /// of the operating system
+        reason: String,
+    },
+    /// The text is not TOML.
+    #[error("{place}: not valid TOML: {message}")]
+    Syntax {
+        /// file and line
+        place: Place,
+        /// of the parser
+        message: String,
+    },
+    /// A section that scenes do not have.
+    #[error(
+        "{place}: unknown section [{section}]{}; sections are {allowed}",
+        also(suggestion)
+    )]
+    UnknownSection {
+        /// file and line
+        place: Place,
+        /// as given
+        section: String,
+        /// nearest known section
+        suggestion: Option<String>,
+        /// all sections
+        allowed: String,
+    },
+    /// A key that scenes do not have.
+    #[error(
+        "{place}: unknown key {key} (value {value}){}; {allowed}",
+        also(suggestion)
+    )]
+    UnknownKey {
+        /// file and line
+        place: Place,
+        /// as given, with its section
+        key: String,
+        /// as given
+        value: String,
+        /// nearest known key, with its unit where one was given
+        suggestion: Option<String>,
+        /// the keys of the section
+        allowed: String,
+    },
+    /// A known key with the unit of something else.
+    #[error("{place}: {key} = {value}: {stem} cannot have this unit; allowed are {allowed}")]
+    WrongUnit {
+        /// file and line
+        place: Place,
+        /// as given
+        key: String,
+        /// as given
+        value: String,
+        /// the key without unit
+        stem: String,
+        /// the key with each of its units
+        allowed: String,
+    },
+    /// The same leaf given twice in one file, perhaps in two units.
+    #[error(
+        "{place}: {key} = {value}: {leaf} was already given as {first}; allowed is one of the two"
+    )]
+    Repeated {
+        /// file and line
+        place: Place,
+        /// as given
+        key: String,
+        /// as given
+        value: String,
+        /// name in the variable table
+        leaf: String,
+        /// key that came first
+        first: String,
+    },
+    /// A text where a number belongs, and the like.
+    #[error("{place}: {key} = {value} is {found}; allowed is {allowed}")]
+    WrongType {
+        /// file and line
+        place: Place,
+        /// as given
+        key: String,
+        /// as given
+        value: String,
+        /// what it is
+        found: String,
+        /// what the row takes
+        allowed: String,
+    },
+    /// A value outside the range of its row.
+    #[error("{place}: {key} = {value} is out of range; allowed: {allowed}")]
+    OutOfRange {
+        /// file and line
+        place: Place,
+        /// as given
+        key: String,
+        /// as given
+        value: String,
+        /// range or choices
+        allowed: String,
+    },
+    /// A value that the rest of the scene makes impossible.
+    #[error("{place}: {key} = {value} is impossible here: {reason}; allowed: {allowed}")]
+    Impossible {
+        /// where the value came from
+        place: Place,
+        /// name in the variable table
+        key: String,
+        /// in SI, with unit
+        value: String,
+        /// what it contradicts
+        reason: String,
+        /// what would do
+        allowed: String,
+    },
+}
+
+/// A scene that runs, but perhaps not as meant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Warning {
+    /// where the value came from
+    pub place: Place,
+    /// name in the variable table
+    pub key: &'static str,
+    /// in SI, with unit
+    pub value: String,
+    /// what to expect
+    pub message: String,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{}: {} = {}: {}",
+            self.place, self.key, self.value, self.message
+        )
+    }
+}
+
+fn also(suggestion: &Option<String>) -> String {
+    suggestion
+        .as_ref()
+        .map(|s| format!("; did you mean {s}?"))
+        .unwrap_or_default()
+}

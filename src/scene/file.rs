@@ -1,0 +1,146 @@
+//! Scene files: TOML to settings, each leaf with the line it stands on.
+
+use super::SceneError;
+use super::error::Place;
+use super::key::{nearest, resolve, sections};
+use super::settings::{Given, SceneSettings};
+use crate::variables::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Scenes inside the program, by name.
+const PACKED: &[(&str, &str)] = &[("fig8", include_str!("packed/fig8.toml"))];
+
+/// Names of the packed scenes.
+pub fn packed_names() -> impl Iterator<Item = &'static str> {
+    PACKED.iter().map(|p| p.0)
+}
+
+impl SceneSettings {
+    /// A packed scene; `None` if there is none of that name.
+    pub fn packed(name: &str) -> Option<Result<Self, SceneError>> {
+        let (name, text) = PACKED.iter().find(|p| p.0 == name)?;
+        Some(Self::from_toml_str(text, name, Path::new("")))
+    }
+
+    /// A packed scene or, if none has that name, a file. The empty name is the default scene.
+    pub fn load(name_or_path: &str) -> Result<Self, SceneError> {
+        if name_or_path.is_empty() {
+            return Ok(Self::default());
+        }
+        if let Some(packed) = Self::packed(name_or_path) {
+            return packed;
+        }
+        let path = Path::new(name_or_path);
+        let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => SceneError::NotFound {
+                name: name_or_path.to_owned(),
+                packed: packed_names().collect::<Vec<_>>().join(", "),
+                suggestion: nearest(name_or_path, packed_names()).map(str::to_owned),
+            },
+            _ => SceneError::Unreadable {
+                file: name_or_path.to_owned(),
+                reason: error.to_string(),
+            },
+        })?;
+        Self::from_toml_str(&text, name_or_path, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Defaults, then what the text gives. `file_name` is what messages call it; paths inside are
+    /// relative to `base_dir`.
+    pub fn from_toml_str(text: &str, file_name: &str, base_dir: &Path) -> Result<Self, SceneError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let at = |offset: Option<usize>| Place::File {
+            file: file_name.to_owned(),
+            line: offset.map(|o| 1 + text.bytes().take(o).filter(|&b| b == b'\n').count()),
+        };
+        let table = DeTable::parse(text).map_err(|error| SceneError::Syntax {
+            place: at(error.span().map(|s| s.start)),
+            message: error.message().to_owned(),
+        })?;
+
+        let mut settings = Self {
+            name: Path::new(file_name).file_stem().map_or_else(
+                || file_name.to_owned(),
+                |stem| stem.to_string_lossy().into_owned(),
+            ),
+            file: file_name.to_owned(),
+            ..Self::default()
+        };
+        let mut first_key = BTreeMap::new();
+        let mut leaf = |settings: &mut Self, key: &str, offset, value: &DeValue<'_>| {
+            let (place, given) = (at(Some(offset)), given(value));
+            let name = resolve(key, &given.to_string(), &place)?.variable.name;
+            if let Some(first) = first_key.insert(name, key.to_owned()) {
+                return Err(SceneError::Repeated {
+                    place,
+                    key: key.to_owned(),
+                    value: given.to_string(),
+                    leaf: name.to_owned(),
+                    first,
+                });
+            }
+            settings.set_from(key, given, place)
+        };
+
+        // In the order of the file, so that the first mistake is the one reported.
+        for (key, value) in in_file_order(table.get_ref()) {
+            let (name, offset) = (key.get_ref().as_ref(), key.span().start);
+            match value.get_ref() {
+                DeValue::Table(section) if sections().contains(&name) => {
+                    for (key, value) in in_file_order(section) {
+                        let path = format!("{name}.{}", key.get_ref());
+                        leaf(&mut settings, &path, key.span().start, value.get_ref())?;
+                    }
+                }
+                DeValue::Table(_) => {
+                    return Err(SceneError::UnknownSection {
+                        place: at(Some(offset)),
+                        section: name.to_owned(),
+                        suggestion: nearest(name, sections().into_iter()).map(|s| format!("[{s}]")),
+                        allowed: sections().join(", "),
+                    });
+                }
+                value => leaf(&mut settings, name, offset, value)?,
+            }
+        }
+
+        if settings.places.contains_key("core.file") && !settings.core.file.is_empty() {
+            settings.core.file = base_dir
+                .join(&settings.core.file)
+                .to_string_lossy()
+                .into_owned();
+        }
+        Ok(settings)
+    }
+}
+
+fn in_file_order<'t, 'i>(
+    table: &'t DeTable<'i>,
+) -> Vec<(
+    &'t Spanned<std::borrow::Cow<'i, str>>,
+    &'t Spanned<DeValue<'i>>,
+)> {
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| key.span().start);
+    entries
+}
+
+/// Numbers stay text, so that a unit can shift their decimal exponent exactly.
+fn given(value: &DeValue<'_>) -> Given<'static> {
+    match value {
+        DeValue::String(text) => Given::Value(Value::String(text.to_string())),
+        DeValue::Boolean(b) => Given::Value(Value::Boolean(*b)),
+        DeValue::Float(x) => Given::Number(x.as_str().to_owned()),
+        DeValue::Integer(i) if i.radix() == 10 => Given::Number(i.as_str().to_owned()),
+        DeValue::Integer(i) => match i64::from_str_radix(i.as_str(), i.radix()) {
+            Ok(number) => Given::Number(number.to_string()),
+            Err(_) => Given::Other(i.as_str().to_owned(), "no number"),
+        },
+        DeValue::Datetime(date) => Given::Other(date.to_string(), "a date"),
+        DeValue::Array(_) => Given::Other("[...]".to_owned(), "a list"),
+        DeValue::Table(_) => Given::Other("{...}".to_owned(), "a section"),
+    }
+}

@@ -1,0 +1,337 @@
+//! The rows. A row is one line of cells; the macros below turn them into [`Variable`]s.
+//!
+//! Cells of a number: reference, name, field, unit, shown unit, min, max, nominal, description.
+//! Ranges of inputs and parameters are enforced; those of outputs are what a sane run stays in.
+
+use super::{Access, Causality, Kind, Value, Variability, Variable};
+
+/// A row without a number's cells.
+macro_rules! row {
+    ($reference:expr, $name:expr, $kind:ident, $causality:ident, $variability:ident, $access:expr, $description:expr) => {
+        Variable {
+            reference: $reference,
+            name: $name,
+            kind: Kind::$kind,
+            causality: Causality::$causality,
+            variability: Variability::$variability,
+            unit: "",
+            display_unit: "",
+            min: None,
+            max: None,
+            nominal: None,
+            choices: &[],
+            native_only: false,
+            description: $description,
+            access: $access,
+        }
+    };
+}
+
+/// A row of a real number.
+macro_rules! real {
+    ($unit:expr, $shown:expr, $min:expr, $max:expr, $nominal:expr, $row:expr) => {
+        Variable {
+            unit: $unit,
+            display_unit: $shown,
+            min: Some($min),
+            max: Some($max),
+            nominal: Some($nominal),
+            ..$row
+        }
+    };
+}
+
+macro_rules! input {
+    ($reference:literal, $field:ident, $unit:literal, $shown:literal, $min:expr, $max:expr, $nominal:expr, $description:literal) => {{
+        const ACCESS: Access = Access::Input {
+            get: |i| i.$field,
+            set: |i, x| i.$field = x,
+        };
+        real!(
+            $unit,
+            $shown,
+            $min,
+            $max,
+            $nominal,
+            row!(
+                $reference,
+                stringify!($field),
+                Real,
+                Input,
+                Continuous,
+                ACCESS,
+                $description
+            )
+        )
+    }};
+}
+
+/// Output or local of type Real.
+macro_rules! number {
+    ($causality:ident, $variability:ident, $reference:literal, $field:ident, $unit:literal, $shown:literal, $min:expr, $max:expr, $nominal:expr, $description:literal) => {{
+        const ACCESS: Access = Access::Output(|o| Value::Real(o.$field));
+        real!(
+            $unit,
+            $shown,
+            $min,
+            $max,
+            $nominal,
+            row!(
+                $reference,
+                stringify!($field),
+                Real,
+                $causality,
+                $variability,
+                ACCESS,
+                $description
+            )
+        )
+    }};
+}
+
+macro_rules! output {
+    ($($cell:tt)*) => { number!(Output, Continuous, $($cell)*) };
+}
+
+macro_rules! local {
+    ($($cell:tt)*) => { number!(Local, Continuous, $($cell)*) };
+}
+
+/// Output or local of type Integer.
+macro_rules! count {
+    ($causality:ident, $reference:literal, $field:ident, $description:literal) => {
+        row!(
+            $reference,
+            stringify!($field),
+            Integer,
+            $causality,
+            Discrete,
+            Access::Output(|o| Value::Integer(o.$field)),
+            $description
+        )
+    };
+}
+
+/// Output of type Boolean.
+macro_rules! flag {
+    ($reference:literal, $field:ident, $description:literal) => {
+        row!(
+            $reference,
+            stringify!($field),
+            Boolean,
+            Output,
+            Discrete,
+            Access::Output(|o| Value::Boolean(o.$field)),
+            $description
+        )
+    };
+}
+
+/// Accessors of a leaf whose field has the type of the value's kind.
+macro_rules! leaf {
+    ($kind:ident, $section:ident . $field:ident) => {
+        Access::Parameter {
+            get: |s| Value::$kind(s.$section.$field.clone()),
+            set: |s, v| {
+                if let Value::$kind(x) = v {
+                    s.$section.$field = x;
+                }
+            },
+        }
+    };
+    ($kind:ident, $field:ident) => {
+        Access::Parameter {
+            get: |s| Value::$kind(s.$field.clone()),
+            set: |s, v| {
+                if let Value::$kind(x) = v {
+                    s.$field = x;
+                }
+            },
+        }
+    };
+}
+
+/// Parameter of type Real, fixed.
+macro_rules! fixed {
+    ($reference:literal, $name:literal, $section:ident . $field:ident, $unit:literal, $shown:literal, $min:expr, $max:expr, $nominal:expr, $description:literal) => {{
+        const ACCESS: Access = leaf!(Real, $section.$field);
+        real!(
+            $unit,
+            $shown,
+            $min,
+            $max,
+            $nominal,
+            row!(
+                $reference,
+                $name,
+                Real,
+                Parameter,
+                Fixed,
+                ACCESS,
+                $description
+            )
+        )
+    }};
+}
+
+/// Parameter of type Real that may change between steps.
+macro_rules! tunable {
+    ($($cell:tt)*) => { Variable { variability: Variability::Tunable, ..fixed!($($cell)*) } };
+}
+
+/// Parameter of type Real that only the native command reads.
+macro_rules! native {
+    ($($cell:tt)*) => { Variable { native_only: true, ..fixed!($($cell)*) } };
+}
+
+/// Parameter of type Boolean.
+macro_rules! switch {
+    ($reference:literal, $name:literal, $section:ident . $field:ident, $description:literal) => {
+        row!(
+            $reference,
+            $name,
+            Boolean,
+            Parameter,
+            Fixed,
+            leaf!(Boolean, $section.$field),
+            $description
+        )
+    };
+}
+
+/// Parameter of type String; with choices where only those are allowed.
+macro_rules! text {
+    ($reference:literal, $name:literal, ($($path:tt)*), [$($choice:literal),*], $description:literal) => {
+        Variable {
+            choices: &[$($choice),*],
+            ..row!($reference, $name, String, Parameter, Fixed, leaf!(String, $($path)*), $description)
+        }
+    };
+}
+
+macro_rules! table {
+    ($($row:ident ( $($cell:tt)* ) ;)*) => {
+        pub(super) static TABLE: &[Variable] = &[$($row!($($cell)*)),*];
+    };
+}
+
+table! {
+    input(0, spindle_speed, "rad/s", "rpm", -2000.0, 2000.0, 100.0, "angular velocity of the core about +y");
+    input(1, nozzle_position, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis, y");
+    input(2, tension_setpoint, "N", "", 0.0, 1e4, 10.0, "pull of the tensioner");
+
+    output(100, wire_tension, "N", "", -1e4, 1e5, 10.0, "tension in the free span at the nozzle exit");
+    output(101, wire_tension_min, "N", "", -1e4, 1e5, 10.0, "smallest wire_tension since the last communication point");
+    output(102, wire_tension_max, "N", "", -1e4, 1e5, 10.0, "largest wire_tension since the last communication point");
+    flag(103, defect_bulge, "wire stands off a face of the core by more than allowed");
+    flag(104, defect_gap, "neighbouring turns lie apart by more than allowed");
+    flag(105, defect_overlap, "a turn has climbed on its neighbour or changed places with it");
+    flag(106, defect_break, "tension above the strength of the wire");
+    flag(107, defect_slack, "tension fell to zero");
+    count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16");
+    count(Output, 109, defect_count, "defects found so far");
+    output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect");
+    output(111, defect_angle, "rad", "deg", -1e7, 1e7, 1.0, "polar angle of the last defect within its turn");
+    output(112, bulge_height, "m", "mm", -10.0, 10.0, 1e-3, "largest height over the core or the layer below, last settled turn");
+    output(113, gap_width, "m", "mm", -10.0, 10.0, 1e-4, "widest gap to the neighbouring turn, last settled turn");
+    output(114, overlap_depth, "m", "mm", -10.0, 10.0, 1e-4, "deepest overlap with the neighbouring turn, last settled turn");
+    output(115, turns_wound, "1", "", -1e6, 1e6, 1.0, "turns laid, counted from the clamp");
+    output(116, turns_settled, "1", "", -1e6, 1e6, 1.0, "turns come to rest; falls on reversal");
+    count(Output, 117, layer, "layer being wound, from 1");
+    output(118, spindle_angle, "rad", "deg", -1e7, 1e7, 10.0, "core angle from the start position");
+    output(119, spindle_torque, "N.m", "N.mm", -1e4, 1e4, 0.1, "moment of the wire on the core about +y; negative when it resists positive speed");
+    output(120, feed_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire leaving the nozzle");
+    output(121, fed_length, "m", "", -1e6, 1e6, 0.1, "wire that has left the nozzle since the start");
+    output(122, free_length, "m", "mm", -1.0, 1e3, 5e-2, "wire between lift-off and nozzle");
+    output(123, layon_position, "m", "mm", -10.0, 10.0, 1e-2, "where the wire meets the coil, along y");
+    output(124, layon_angle, "rad", "deg", -1e7, 1e7, 1.0, "where the wire meets the coil, polar angle in the core frame");
+    output(125, coil_width, "m", "mm", -1.0, 10.0, 1e-3, "extent of the settled wire along y");
+    output(126, mean_pitch, "m", "mm", -10.0, 10.0, 1e-3, "mean axial advance per turn of the settled wire");
+    output(127, fill_factor, "1", "", 0.0, 10.0, 1.0, "wire section over the winding section it takes up, settled wire");
+    output(128, wire_strain, "1", "", -10.0, 10.0, 1e-2, "largest plastic stretch of the last settled turn");
+
+    local(200, solver_steps, "1", "", 0.0, 1e18, 1e5, "time steps taken");
+    local(201, solver_rejects, "1", "", 0.0, 1e18, 1.0, "time steps rejected");
+    count(Local, 202, live_nodes, "nodes still computed");
+    local(203, penetration_max, "m", "um", -1.0, 1.0, 1e-6, "deepest penetration in contact since the last communication point");
+    local(204, energy_residual, "1", "", -1e9, 1e9, 1e-2, "energy balance error over the energy dissipated");
+
+    text(1000, "wire.material", (wire.material), ["copper", "table1", "custom"], "copper: section-consistent; table1: the paper's wire of 0.7 mm; custom: every rigidity given");
+    switch(1001, "wire.elastic", wire.elastic, "true: no yield, no moment cap, and no break unless wire.strength is given");
+    fixed(1002, "wire.diameter", wire.diameter, "m", "mm", 2e-5, 5e-3, 1e-3, "diameter of the bare round wire");
+    fixed(1003, "wire.density", wire.density, "kg/m3", "", 100.0, 3e4, 1e4, "density");
+    fixed(1004, "wire.yield_stress", wire.yield_stress, "Pa", "MPa", 1e5, 1e10, 1e8, "stress at first yield; makes N_y, M_y and T_y where those are 0");
+    fixed(1005, "wire.flow_stress", wire.flow_stress, "Pa", "MPa", 1e5, 1e10, 1e8, "stress at the end of hardening; makes strength and copper's moment cap where those are 0");
+    fixed(1006, "wire.EA", wire.ea, "N", "", 0.0, 1e9, 1e4, "stretch rigidity; 0: of the material");
+    fixed(1007, "wire.EAp", wire.ea_p, "N", "", 0.0, 1e9, 1e3, "stretch rigidity beyond yield; 0: of the material");
+    fixed(1008, "wire.EI", wire.ei, "N.m2", "", 0.0, 1e3, 1e-3, "bending rigidity; 0: of the material");
+    fixed(1009, "wire.EIp", wire.ei_p, "N.m2", "", 0.0, 1e3, 1e-4, "bending rigidity beyond yield; 0: of the material");
+    fixed(1010, "wire.GJ", wire.gj, "N.m2", "", 0.0, 1e3, 1e-3, "torsional rigidity; 0: of the material");
+    fixed(1011, "wire.GJp", wire.gj_p, "N.m2", "", 0.0, 1e3, 1e-4, "torsional rigidity beyond yield; 0: of the material");
+    fixed(1012, "wire.N_y", wire.n_y, "N", "", 0.0, 1e6, 10.0, "axial force at yield; 0: yield_stress times area");
+    fixed(1013, "wire.M_y", wire.m_y, "N.m", "N.mm", 0.0, 1e3, 1e-2, "bending moment at yield; 0: yield_stress d^3/6");
+    fixed(1014, "wire.T_y", wire.t_y, "N.m", "N.mm", 0.0, 1e3, 1e-2, "torque at yield; 0: yield_stress/sqrt(3) pi d^3/12");
+    fixed(1015, "wire.moment_cap", wire.moment_cap, "N.m", "N.mm", 0.0, 1e3, 1e-2, "largest bending moment; 0: flow_stress d^3/6 for copper, none for the others");
+    fixed(1016, "wire.strength", wire.strength, "N", "", 0.0, 1e6, 100.0, "tension at break; 0: flow_stress times area");
+
+    text(1100, "core.shape", (core.shape), ["rounded-box", "cylinder", "mesh"], "shape of the core");
+    fixed(1101, "core.width_x", core.width_x, "m", "mm", 1e-4, 1.0, 1e-2, "rounded box: full width along x");
+    fixed(1102, "core.height_z", core.height_z, "m", "mm", 1e-4, 1.0, 1e-2, "rounded box: full height along z");
+    fixed(1103, "core.length_y", core.length_y, "m", "mm", 1e-4, 10.0, 1e-2, "rounded box and cylinder: full length along the axis");
+    fixed(1104, "core.corner_radius", core.corner_radius, "m", "mm", 0.0, 1.0, 1e-3, "rounded box: radius of the four long edges");
+    fixed(1105, "core.radius", core.radius, "m", "mm", 5e-5, 1.0, 1e-2, "cylinder: radius");
+    text(1106, "core.file", (core.file), [], "mesh: STL file, relative to the scene file; axis along y");
+    text(1107, "core.unit", (core.unit), ["m", "mm", "um", "inch"], "mesh: unit of the STL file");
+
+    fixed(1200, "nozzle.distance", nozzle.distance, "m", "mm", 1e-3, 10.0, 0.1, "nozzle exit from the core axis, on +x");
+    fixed(1201, "nozzle.y_start", nozzle.y_start, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis at the start");
+    fixed(1202, "nozzle.exit_friction", nozzle.exit_friction, "1", "", 0.0, 2.0, 0.1, "friction at the exit, share of tension per rad of deflection");
+
+    fixed(1300, "tensioner.tension", tensioner.tension, "N", "", 0.0, 1e4, 10.0, "set pull; start value of tension_setpoint");
+    fixed(1301, "tensioner.mass", tensioner.mass, "kg", "g", 0.0, 100.0, 1e-3, "equivalent mass of the tensioner; 0: constant pull at the nozzle");
+    fixed(1302, "tensioner.line_length", tensioner.line_length, "m", "", 0.0, 100.0, 1.0, "wire between tensioner and nozzle");
+    fixed(1303, "tensioner.line_damping_ratio", tensioner.line_damping_ratio, "1", "", 0.0, 10.0, 0.1, "damping ratio of the mass on the line");
+
+    fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face");
+
+    native(1500, "spindle.speed", spindle.speed, "rad/s", "rpm", 0.1, 2000.0, 100.0, "final speed of the native programme");
+    native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "turns over which the speed rises, at constant acceleration");
+    native(1502, "spindle.turns", spindle.turns, "1", "", 1e-3, 1e5, 1.0, "turns of the spindle until the native programme ends");
+
+    native(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "nozzle travel per turn of the native programme; the sign is its direction along y");
+    native(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law");
+
+    fixed(1700, "contact.stiffness", contact.stiffness, "N/m2", "", 1e6, 1e13, 1e10, "line load per depth");
+    fixed(1701, "contact.restitution", contact.restitution, "1", "", 0.0, 1.0, 1.0, "rebound over impact speed");
+
+    tunable(1800, "friction.static", friction.static_, "1", "", 0.0, 5.0, 0.1, "coefficient at rest, wire on core and wire on wire");
+    tunable(1801, "friction.kinetic", friction.kinetic, "1", "", 0.0, 5.0, 0.1, "coefficient at high slip speed");
+    fixed(1802, "friction.slip_speed", friction.slip_speed, "m/s", "mm/s", 1e-5, 100.0, 1e-2, "slip speed over which static turns into kinetic");
+
+    text(1900, "solver.integrator", (solver.integrator), ["auto", "rk4", "verlet"], "time integrator; auto: rk4 for preset paper, else verlet");
+    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 1e-6, 5e-2, 1e-3, "node spacing near the core");
+    fixed(1902, "solver.spacing_free", solver.spacing_free, "m", "mm", 1e-6, 0.1, 1e-3, "node spacing in the free span");
+    fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core at which free-span edges are split");
+    fixed(1904, "solver.step_share", solver.step_share, "1", "", 1e-3, 1.0, 1.0, "time step as a share of the stability limit");
+    fixed(1905, "solver.step", solver.step, "s", "us", 0.0, 1e-2, 1e-6, "time step; 0: from the stability limit");
+
+    switch(2000, "freeze.enabled", freeze.enabled, "false keeps all wire in the computation");
+    fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");
+    fixed(2002, "freeze.creep", freeze.creep, "m/rad", "um/rad", 0.0, 1.0, 1e-6, "largest motion of wire at rest per core angle");
+    fixed(2003, "freeze.keep_length", freeze.keep_length, "m", "mm", 0.0, 100.0, 1e-2, "settled wire kept live behind lift-off; 0: 1.75 sqrt(EI/T)");
+    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core");
+
+    tunable(2100, "defects.gap", defects.gap, "1", "", 0.0, 100.0, 0.1, "gap above this many diameters ...");
+    tunable(2101, "defects.gap_fraction", defects.gap_fraction, "1", "", 0.0, 1.0, 0.1, "... over at least this fraction of a turn in one run");
+    tunable(2102, "defects.bulge_excess", defects.bulge_excess, "1", "", 0.0, 100.0, 1.0, "height over the quasi-static height, diameters");
+    tunable(2103, "defects.bulge_absolute", defects.bulge_absolute, "m", "mm", 0.0, 1.0, 1e-3, "height allowed; 0: bulge_excess decides");
+    tunable(2104, "defects.overlap_axial", defects.overlap_axial, "1", "", 0.0, 1.0, 1.0, "axial distance to the neighbour below this many diameters ...");
+    tunable(2105, "defects.overlap_height", defects.overlap_height, "1", "", 0.0, 100.0, 1.0, "... while standing above its layer by this many diameters");
+    tunable(2106, "defects.skip_angle", defects.skip_angle, "rad", "deg", 0.0, 1e3, 1.0, "polar angle after the clamp that is left out");
+
+    native(2200, "output.history_interval", output.history_interval, "rad", "deg", 1e-5, 1e3, 1e-2, "core angle between rows of history.csv");
+    text(2201, "output.directory", (output.directory), [], "where result files go; empty: the FMU writes none");
+
+    text(2300, "scene.file", (file), [], "packed name or path of a scene; empty: default");
+    text(2301, "preset", (preset), ["default", "paper"], "default: the best this version has; paper: the paper's method (rk4)");
+}
