@@ -5,7 +5,11 @@
 //! and the FMU drive it. SI units everywhere, see `ARCHITECTURE.md` for the map.
 #![forbid(unsafe_code)]
 
+pub mod contact;
 pub mod core_shape;
+pub mod feed;
+pub mod freeze;
+pub mod integrate;
 pub mod math;
 pub mod measure;
 pub mod output;

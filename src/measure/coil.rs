@@ -58,7 +58,7 @@ pub struct SettledNode {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Node {
     pub(crate) settled: SettledNode,
-    polar: f64,
+    pub(crate) polar: f64,
     /// winding angle from the clamp, rad
     pub(crate) angle: f64,
     /// largest winding angle up to here, rad

@@ -89,6 +89,11 @@ impl Coil {
             })
     }
 
+    /// Angle along the wire from the clamp and polar angle of the last settled node, rad.
+    pub fn end_angle(&self) -> Option<(f64, f64)> {
+        self.nodes.last().map(|n| (n.angle, n.polar))
+    }
+
     /// Turns settled, counted on the wire from the clamp.
     pub fn turns_settled(&self) -> f64 {
         self.nodes

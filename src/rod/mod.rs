@@ -1,5 +1,17 @@
 //! The wire as a discrete rod: section law, stretch, bend and twist.
+//!
+//! Mass points joined by straight, bending and torsional springs (the paper's section II).
+//! Node 0 is the oldest wire (the clamp), the last node the youngest (the nozzle); edge `j` runs
+//! from node `j` to node `j + 1`; joint `i` is the bend and twist at node `i`.
 
+mod forces;
+mod joint;
+mod plasticity;
 mod section;
+mod state;
 
+pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
+pub use joint::{Joint, align, frame_along, relative, rotate, rotate_back};
+pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
 pub use section::Section;
+pub use state::Rod;

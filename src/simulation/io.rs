@@ -1,4 +1,4 @@
-//! The one door to a run: scene in, inputs in, outputs and events out.
+//! What goes in and what comes out of a run.
 
 use crate::math::{Quat, V3};
 use serde::Serialize;
@@ -69,4 +69,72 @@ pub struct Centreline {
     pub tension: Vec<f64>,
     /// the first `frozen` nodes are fixed geometry, the rest is live
     pub frozen: usize,
+}
+
+/// What kind of thing happened.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EventKind {
+    /// a turn is complete and at rest
+    Turn,
+    /// a defect was found
+    Defect,
+    /// tension fell to zero
+    Slack,
+    /// tension rose above the wire's strength
+    Break,
+}
+
+/// Something worth telling.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// when, s
+    pub time: f64,
+    /// turns wound by then
+    pub turn: f64,
+    /// what kind
+    pub kind: EventKind,
+    /// in words
+    pub text: String,
+}
+
+impl std::fmt::Display for Event {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "t = {:.6} s, turn {:.3}: {}",
+            self.time, self.turn, self.text
+        )
+    }
+}
+
+/// The run can't start or can't go on.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub struct SimError {
+    /// when, s
+    pub time: f64,
+    /// where: live node from the clamp, if one is to blame
+    pub node: Option<usize>,
+    /// why
+    pub reason: String,
+}
+
+impl SimError {
+    /// An error of the set-up, before any time has passed.
+    pub fn setup(reason: String) -> Self {
+        Self {
+            time: 0.0,
+            node: None,
+            reason,
+        }
+    }
+}
+
+impl std::fmt::Display for SimError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "at t = {:.9} s", self.time)?;
+        if let Some(node) = self.node {
+            write!(f, ", live node {node}")?;
+        }
+        write!(f, ": {}", self.reason)
+    }
 }

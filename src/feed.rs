@@ -1,0 +1,231 @@
+//! Wire paid out through the nozzle against the tensioner.
+//!
+//! The last edge ends at the nozzle and grows. A tensioner of equivalent mass `m` pulls back with
+//! the set force; between it and the nozzle lies an elastic line `k = EA / length` with a
+//! dashpot. Line and last edge are in series and massless between them, so the unstretched
+//! length that passes the nozzle in a step follows from equal forces, solved implicitly: the
+//! last edge is much stiffer than the dashpot's share and an explicit law would cut the step.
+//!
+//! ```text
+//! m s_t'' = T_line - T_set          T_line = k (s - s_t) + c (s' - s_t'),  never below zero
+//! T_nozzle = T_line exp(mu_exit beta)   beta: deflection at the exit, paying out
+//! ```
+//!
+//! A slack line cannot push: below zero the last edge is free of tension and the wire waits.
+
+use crate::rod::Law;
+
+/// Constants of the feed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FeedSpec {
+    /// equivalent mass, kg (0: the set force acts at the nozzle)
+    pub mass: f64,
+    /// line stiffness, N/m (infinite: the tensioner's mass sits at the nozzle)
+    pub line_stiffness: f64,
+    /// line dashpot, N s/m
+    pub line_damping: f64,
+    /// exit friction coefficient
+    pub exit_friction: f64,
+}
+
+/// State of the feed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Feed {
+    /// unstretched wire that has passed the nozzle, m
+    pub fed: f64,
+    /// its rate over the last step, m/s
+    pub rate: f64,
+    /// wire let go by the tensioner beyond what preloads the line, m
+    pub paid: f64,
+    /// its rate, m/s
+    pub paid_rate: f64,
+    /// tension in the line, N
+    pub line_tension: f64,
+}
+
+/// What one feed step did.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct FeedStep {
+    /// unstretched length added to the last edge, m
+    pub grown: f64,
+    /// work taken out of the wire by the line, J (negative: put in)
+    pub taken: f64,
+}
+
+impl Feed {
+    /// At rest with the line loaded to `tension`.
+    pub fn at_rest(spec: &FeedSpec, tension: f64) -> Self {
+        let paid = if spec.line_stiffness.is_finite() {
+            -tension / spec.line_stiffness
+        } else {
+            0.0
+        };
+        Self {
+            fed: 0.0,
+            rate: 0.0,
+            paid,
+            paid_rate: 0.0,
+            line_tension: tension,
+        }
+    }
+
+    /// Advances by `dt` with the last edge of unstretched length `rest` now `length` long.
+    ///
+    /// `plastic` is the edge's plastic stretch, `deflection` the angle at the exit, rad, `set` the
+    /// tensioner's pull, N.
+    pub fn step(
+        &mut self,
+        spec: &FeedSpec,
+        stretch: &Law,
+        set: f64,
+        dt: f64,
+        rest: f64,
+        length: f64,
+        plastic: f64,
+        deflection: f64,
+    ) -> FeedStep {
+        // friction at the exit holds back whichever way the wire moves
+        let grip =
+            libm::exp(spec.exit_friction * deflection * if self.rate >= 0.0 { 1.0 } else { -1.0 });
+        let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
+        let line = |grown: f64| -> (f64, f64) {
+            // line tension and its slope with the wire grown in this step
+            if spec.mass == 0.0 {
+                return (set, 0.0);
+            }
+            if !elastic_line {
+                // mass at the nozzle: m s'' = T - T_set, backward Euler
+                let slope = spec.mass / (dt * dt);
+                return (set + slope * (grown - self.rate * dt), slope);
+            }
+            // the tensioner moves by its momentum in this step
+            let paid = self.paid + dt * self.paid_rate;
+            let t = spec.line_stiffness * (self.fed + grown - paid)
+                + spec.line_damping * (grown / dt - self.paid_rate);
+            if t > 0.0 {
+                (t, spec.line_stiffness + spec.line_damping / dt)
+            } else {
+                (0.0, 0.0)
+            }
+        };
+        // equal forces by Newton; both branches are monotonic, so the clamp at zero is harmless
+        let mut grown = self.rate * dt;
+        let mut tension = 0.0;
+        for _ in 0..8 {
+            let l = rest + grown;
+            let wire = stretch.modulus * (length / l - 1.0 - plastic);
+            let (t, slope) = line(grown);
+            tension = t;
+            let residual = wire - grip * t;
+            let step = residual / (stretch.modulus * length / (l * l) + grip * slope);
+            grown += step;
+            if step.abs() <= 1e-15 {
+                break;
+            }
+        }
+        self.fed += grown;
+        self.rate = grown / dt;
+        self.line_tension = tension;
+        if elastic_line {
+            self.paid += dt * self.paid_rate;
+            self.paid_rate += dt * (tension - set) / spec.mass;
+        } else {
+            self.paid = self.fed;
+            self.paid_rate = self.rate;
+        }
+        FeedStep {
+            grown,
+            taken: tension * grip * grown,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law() -> Law {
+        Law::new(48900.0, 1100.0, 38.5, f64::INFINITY)
+    }
+
+    fn spec() -> FeedSpec {
+        let (m, k) = (1e-3, 97_800.0_f64);
+        FeedSpec {
+            mass: m,
+            line_stiffness: k,
+            line_damping: 0.2 * (k * m).sqrt(),
+            exit_friction: 0.0,
+        }
+    }
+
+    /// Pulls the far end of the last edge away at `speed(t)` and returns the tensions seen.
+    fn pull(spec: &FeedSpec, speed: impl Fn(f64) -> f64, end: f64, dt: f64) -> (Feed, Vec<f64>) {
+        let l = law();
+        let mut feed = Feed::at_rest(spec, 15.0);
+        let mut rest = 1e-3;
+        let mut length = rest * (1.0 + 15.0 / l.modulus);
+        let mut seen = Vec::new();
+        let mut t = 0.0;
+        while t < end {
+            length += speed(t) * dt;
+            let s = feed.step(spec, &l, 15.0, dt, rest, length, 0.0, 0.0);
+            rest += s.grown;
+            // keep the edge short: drop whole wire behind it at the same strain
+            let drop = rest - 1e-3;
+            rest -= drop;
+            length -= drop * (1.0 + l.modulus.recip() * feed.line_tension);
+            seen.push(feed.line_tension);
+            t += dt;
+        }
+        (feed, seen)
+    }
+
+    #[test]
+    fn steady_pull_settles_at_the_set_force() {
+        let (feed, seen) = pull(&spec(), |_| 2.0, 0.05, 1e-6);
+        assert!((seen.last().expect("steps were taken") - 15.0).abs() < 0.05);
+        assert!((feed.rate - 2.0 / (1.0 + 15.0 / 48900.0)).abs() < 1e-3);
+    }
+
+    #[test]
+    fn line_rings_at_its_own_frequency() {
+        // a velocity step v excites the mass on the line: stretch x with x(0) = 0, x'(0) = v
+        let s = spec();
+        let (v, dt) = (0.2, 1e-7);
+        let (_, seen) = pull(&s, |_| v, 1e-3, dt);
+        let w = (s.line_stiffness / s.mass).sqrt();
+        let zeta: f64 = 0.1;
+        let wd = w * (1.0 - zeta * zeta).sqrt();
+        let scale = v * (s.line_stiffness * s.mass).sqrt();
+        for k in (200..seen.len()).step_by(100) {
+            let t = (k + 1) as f64 * dt;
+            let exact = scale
+                * (-zeta * w * t).exp()
+                * (2.0 * zeta * (wd * t).cos()
+                    + (1.0 - 2.0 * zeta * zeta) / (1.0 - zeta * zeta).sqrt() * (wd * t).sin());
+            // the last edge's own compliance is 1/500 of the line's
+            assert!(
+                (seen[k] - 15.0 - exact).abs() < 0.01 * scale,
+                "{k}: {} {exact}",
+                seen[k] - 15.0
+            );
+        }
+    }
+
+    #[test]
+    fn sudden_stop_goes_slack_and_never_pushes() {
+        let (_, seen) = pull(&spec(), |t| if t < 0.01 { 8.0 } else { 0.0 }, 0.02, 1e-6);
+        assert!(seen.iter().all(|t| *t >= 0.0));
+        assert!(seen.contains(&0.0), "8 m/s on 1 g must overrun 15 N");
+    }
+
+    #[test]
+    fn massless_tensioner_is_a_constant_pull() {
+        let s = FeedSpec {
+            mass: 0.0,
+            ..spec()
+        };
+        let (_, seen) = pull(&s, |t| 3.0 * (900.0 * t).sin(), 0.01, 1e-6);
+        assert!(seen.iter().all(|t| (t - 15.0).abs() < 1e-12));
+    }
+}

@@ -1,0 +1,146 @@
+//! When a node counts as at rest (the paper's eq. 8 and 9, mended).
+//!
+//! The paper asks for a small velocity relative to the core and a place inside a region round
+//! it. A threshold on the instantaneous speed passes at every turning point of a vibration, so
+//! rest is judged here by the displacement in the core frame over a window of core angle. The
+//! region is every place whose wire surface is within `margin` of the core. Nodes leave in
+//! order from the clamp, and not before they are a bending length behind lift-off.
+
+use crate::math::V3;
+
+/// The limits.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreezePolicy {
+    /// window of core angle, rad
+    pub window: f64,
+    /// largest displacement over the window, m
+    pub displacement: f64,
+    /// length behind lift-off that stays live, m
+    pub keep_length: f64,
+    /// largest height of the wire's surface over the core, m
+    pub margin: f64,
+}
+
+/// Looks a window is split into; a check takes place at each.
+const LOOKS: usize = 4;
+
+/// Remembers where each live node was, look by look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Watch {
+    /// positions at the last looks, newest last; one entry per live node
+    seen: Vec<[V3; LOOKS]>,
+    /// how many looks each node has had
+    count: Vec<usize>,
+    /// core angle of the last look, rad
+    last: f64,
+}
+
+impl Watch {
+    /// Watch over `nodes` live nodes from a core angle on.
+    pub fn new(nodes: usize, angle: f64) -> Self {
+        Self {
+            seen: vec![[V3::zeros(); LOOKS]; nodes],
+            count: vec![0; nodes],
+            last: angle,
+        }
+    }
+
+    /// A node was inserted before index `at`.
+    pub fn insert(&mut self, at: usize) {
+        self.seen.insert(at, [V3::zeros(); LOOKS]);
+        self.count.insert(at, 0);
+    }
+
+    /// The first `n` nodes left.
+    pub fn remove_front(&mut self, n: usize) {
+        self.seen.drain(..n);
+        self.count.drain(..n);
+    }
+
+    /// Whether the next look is due.
+    pub fn due(&self, policy: &FreezePolicy, angle: f64) -> bool {
+        (angle - self.last).abs() >= policy.window / LOOKS as f64
+    }
+
+    /// Takes a look; returns how many nodes from the clamp on have stayed in place over the window.
+    ///
+    /// `position` gives the core-frame position of a live node.
+    pub fn look(
+        &mut self,
+        policy: &FreezePolicy,
+        angle: f64,
+        position: impl Fn(usize) -> V3,
+    ) -> usize {
+        self.last = angle;
+        let mut still = 0;
+        let mut in_order = true;
+        for i in 0..self.seen.len() {
+            let p = position(i);
+            let seen = &mut self.seen[i];
+            let full = self.count[i] >= LOOKS;
+            let moved = seen
+                .iter()
+                .map(|q| (p - q).norm_squared())
+                .fold(0.0, f64::max);
+            if in_order && full && moved <= policy.displacement * policy.displacement {
+                still = i + 1;
+            } else {
+                in_order = false;
+            }
+            seen.rotate_left(1);
+            seen[LOOKS - 1] = p;
+            self.count[i] += 1;
+        }
+        still
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn policy() -> FreezePolicy {
+        FreezePolicy {
+            window: 0.4,
+            displacement: 1e-6,
+            keep_length: 0.0,
+            margin: 1e-3,
+        }
+    }
+
+    #[test]
+    fn a_turning_point_is_not_rest() {
+        let p = policy();
+        let mut w = Watch::new(2, 0.0);
+        let mut still = 0;
+        for k in 1..=40 {
+            let angle = 0.1 * k as f64;
+            assert!(w.due(&p, angle + 1e-9));
+            still = w.look(&p, angle, |i| {
+                V3::x()
+                    * if i == 0 {
+                        0.0
+                    } else {
+                        1e-4 * (angle * 9.0).sin()
+                    }
+            });
+            if k <= 4 {
+                assert_eq!(still, 0, "a whole window must have been seen");
+            }
+        }
+        assert_eq!(still, 1);
+    }
+
+    #[test]
+    fn nodes_leave_in_order() {
+        let p = policy();
+        let mut w = Watch::new(3, 0.0);
+        let mut still = 9;
+        for k in 1..=10 {
+            still = w.look(&p, k as f64, |i| {
+                V3::x() * if i == 1 { k as f64 } else { 0.0 }
+            });
+        }
+        assert_eq!(still, 1, "the third is at rest but behind a moving one");
+    }
+}

@@ -1,0 +1,109 @@
+//! The rod's state: the least that restarts it.
+
+use super::joint::{align, frame_along, rotate};
+use super::plasticity::{Bend, Scalar};
+use super::section::Section;
+use crate::math::{Quat, V3};
+
+/// Arrays over `n + 1` nodes and `n` edges, lab frame.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rod {
+    /// node positions, m
+    pub x: Vec<V3>,
+    /// node velocities, m/s
+    pub v: Vec<V3>,
+    /// unstretched edge lengths, m
+    pub rest: Vec<f64>,
+    /// edge frames, body z along the edge
+    pub frame: Vec<Quat>,
+    /// angular velocity of the edge about its own axis, rad/s
+    pub spin: Vec<f64>,
+    /// plastic stretch per edge
+    pub stretch: Vec<Scalar>,
+    /// plastic bending per joint (node)
+    pub bend: Vec<Bend>,
+    /// plastic twist per joint (node)
+    pub twist: Vec<Scalar>,
+}
+
+impl Rod {
+    /// Rod through these points, unstretched unless `rest` says otherwise, untwisted, at rest,
+    /// with no plastic strain. The stress-free shape is straight.
+    pub fn through(points: &[V3], rest: Option<Vec<f64>>) -> Self {
+        let edges = points.len().saturating_sub(1);
+        let lengths: Vec<f64> = points.windows(2).map(|p| (p[1] - p[0]).norm()).collect();
+        let mut frame: Vec<Quat> = Vec::with_capacity(edges);
+        for j in 0..edges {
+            let t = (points[j + 1] - points[j]) / lengths[j];
+            frame.push(frame_along(&t, frame.last()));
+        }
+        Self {
+            x: points.to_vec(),
+            v: vec![V3::zeros(); points.len()],
+            rest: rest.unwrap_or(lengths),
+            frame,
+            spin: vec![0.0; edges],
+            stretch: vec![Scalar::default(); edges],
+            bend: vec![Bend::default(); points.len()],
+            twist: vec![Scalar::default(); points.len()],
+        }
+    }
+
+    /// Number of edges.
+    pub fn edges(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.x.len()
+    }
+
+    /// Length that joint `i` stands for: half of each neighbouring edge (at a clamped end only
+    /// the one inside edge), m.
+    pub fn voronoi(&self, i: usize) -> f64 {
+        let before = if i > 0 { self.rest[i - 1] } else { 0.0 };
+        let after = if i < self.edges() { self.rest[i] } else { 0.0 };
+        0.5 * (before + after)
+    }
+
+    /// Unit direction of edge `j`.
+    pub fn tangent(&self, j: usize) -> V3 {
+        let d = self.x[j + 1] - self.x[j];
+        d / d.norm()
+    }
+
+    /// Sets every frame along its edge again after the nodes were moved by hand.
+    pub fn realign(&mut self) {
+        for j in 0..self.edges() {
+            let t = self.tangent(j);
+            let q = if rotate(&self.frame[j], &V3::z()).dot(&t) < -0.99 {
+                frame_along(&t, Some(&self.frame[j]))
+            } else {
+                align(&self.frame[j], &t, 0.0)
+            };
+            self.frame[j] = q;
+        }
+    }
+
+    /// Lumped mass of node `i`, kg.
+    pub fn mass(&self, section: &Section, i: usize) -> f64 {
+        section.mass_per_length() * self.voronoi(i)
+    }
+
+    /// Kinetic energy of nodes `from..to` and the spin of the edges that start there, J.
+    pub fn kinetic_energy(&self, section: &Section, from: usize, to: usize) -> f64 {
+        let mut e = 0.0;
+        for i in from..to {
+            e += 0.5 * self.mass(section, i) * self.v[i].norm_squared();
+            if i < self.edges() {
+                e += 0.5
+                    * section.spin_inertia_per_length()
+                    * self.rest[i]
+                    * self.spin[i]
+                    * self.spin[i];
+            }
+        }
+        e
+    }
+}

@@ -1,0 +1,189 @@
+//! Keeping house between steps: insert, refine, freeze, watch for trouble.
+
+use super::{EventKind, HOUSE_STEPS, SimError, Simulation};
+use crate::freeze::FrozenNode;
+use crate::integrate::turn_about_y;
+use crate::math::{Spin, V3};
+
+impl Simulation {
+    pub(super) fn keep_house(&mut self) -> Result<(), SimError> {
+        let mut changed = self.insert_at_nozzle();
+        if self.steps.is_multiple_of(HOUSE_STEPS) {
+            self.check_health()?;
+            changed |= self.refine_near_core();
+        }
+        if self.scene.freeze.enabled && self.watch.due(&self.policy, self.sys.spindle.angle) {
+            changed |= self.freeze();
+        }
+        if changed {
+            // the arrays moved: bring the forces in line with them before the next kick
+            self.sys.evaluate(Some(0.0));
+        }
+        Ok(())
+    }
+
+    /// The last edge has grown to two spacings: a new node halfway.
+    fn insert_at_nozzle(&mut self) -> bool {
+        let last = self.sys.rod.edges() - 1;
+        if self.sys.rod.rest[last] < 2.0 * self.scene.solver.spacing_free {
+            return false;
+        }
+        self.sys.split(last);
+        self.watch.insert(last + 1);
+        true
+    }
+
+    /// Edges of the free span that come near the core are halved.
+    fn refine_near_core(&mut self) -> bool {
+        let solver = self.scene.solver;
+        let mut changed = false;
+        if solver.spacing_free < 1.5 * solver.spacing_near {
+            return false;
+        }
+        let spin = Spin::new(self.sys.spindle.angle);
+        let radius = self.scene.wire.radius();
+        let mut j = 0;
+        // the edge at the nozzle keeps its length for the feed
+        while j + 1 < self.sys.rod.edges() {
+            if self.sys.rod.rest[j] > 1.5 * solver.spacing_near
+                && self.distance_to_coil(spin.to_core(self.sys.rod.x[j]))
+                    < solver.refine_distance + radius
+            {
+                self.sys.split(j);
+                self.watch.insert(j + 1);
+                changed = true;
+            }
+            j += 1;
+        }
+        changed
+    }
+
+    fn distance_to_coil(&self, p: V3) -> f64 {
+        match &self.sys.contacts {
+            Some(c) => c.surface.nearest(p).distance,
+            None => f64::INFINITY,
+        }
+    }
+
+    /// Wire at rest, in order from the clamp, becomes fixed geometry.
+    fn freeze(&mut self) -> bool {
+        let angle = self.sys.spindle.angle;
+        let spin = Spin::new(angle);
+        let x = &self.sys.rod.x;
+        let still = self.watch.look(&self.policy, angle, |i| spin.to_core(x[i]));
+        // the last one that is at rest becomes the clamp
+        let mut count = still.saturating_sub(1).min(self.behind_lift_off());
+        let radius = self.scene.wire.radius();
+        for i in 0..count {
+            if self.distance_to_coil(spin.to_core(self.sys.rod.x[i + 1]))
+                > 2.0 * radius + self.policy.margin
+            {
+                count = i;
+                break;
+            }
+        }
+        if count == 0 {
+            return false;
+        }
+        let back = turn_about_y(-angle);
+        let mut arc = self.sys.arc0;
+        for i in 0..count {
+            let node = FrozenNode {
+                point: spin.to_core(self.sys.rod.x[i]),
+                frame: back * self.sys.rod.frame[i],
+                arc,
+                tension: self.sys.load.tension[i],
+                plastic_strain: self.sys.rod.stretch[i].strain,
+            };
+            let settled = self.settled(node.point, arc, node.plastic_strain);
+            if let Some(c) = &mut self.sys.contacts {
+                if i > 0 {
+                    self.rest_depth = self.rest_depth.max(c.nodes[i].depth());
+                }
+                c.tube.push(node);
+            }
+            let (turns, defects) = (self.coil.turns_settled(), self.coil.defect_count());
+            self.coil.settle(settled);
+            self.tell(turns, defects);
+            arc += self.sys.rod.rest[i];
+        }
+        self.sys.freeze_front(count);
+        self.watch.remove_front(count);
+        if let Some(c) = &mut self.sys.contacts {
+            c.forget_surroundings();
+        }
+        true
+    }
+
+    fn tell(&mut self, turns: f64, defects: u32) {
+        let now = self.coil.turns_settled();
+        if now.floor() > turns.floor() {
+            self.report(
+                EventKind::Turn,
+                format!("turn {} has come to rest", now.floor()),
+            );
+        }
+        if self.coil.defect_count() > defects
+            && let Some(d) = self.coil.last_defect()
+        {
+            let f = self.coil.flags();
+            let names: Vec<&str> = [(f.bulge, "bulge"), (f.gap, "gap"), (f.overlap, "overlap")]
+                .iter()
+                .filter(|(on, _)| *on)
+                .map(|(_, name)| *name)
+                .collect();
+            self.report(
+                EventKind::Defect,
+                format!(
+                    "defect in turn {} at {:.0} deg ({})",
+                    d.turn,
+                    d.angle.to_degrees(),
+                    names.join(", ")
+                ),
+            );
+        }
+    }
+
+    /// How many nodes from the clamp lie at least the keep length behind lift-off.
+    fn behind_lift_off(&self) -> usize {
+        let mut left = self.policy.keep_length;
+        let mut i = self.lift_off();
+        while i > 0 && left > 0.0 {
+            i -= 1;
+            left -= self.sys.rod.rest[i];
+        }
+        if left > 0.0 { 0 } else { i }
+    }
+
+    /// Values must be finite, the wire below its strength.
+    fn check_health(&mut self) -> Result<(), SimError> {
+        for (i, (x, v)) in self.sys.rod.x.iter().zip(&self.sys.rod.v).enumerate() {
+            if !(x.sum() + v.sum()).is_finite() {
+                return Err(SimError {
+                    time: self.sys.time,
+                    node: Some(i),
+                    reason: format!(
+                        "a node's position or velocity is not finite after {} steps; the step {:.3e} s is likely too long for the contact stiffness",
+                        self.steps, self.last_step
+                    ),
+                });
+            }
+        }
+        let strength = self.scene.wire.strength;
+        if let Some((j, t)) = self
+            .sys
+            .load
+            .tension
+            .iter()
+            .enumerate()
+            .find(|(_, t)| **t > strength)
+        {
+            let text = format!(
+                "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N"
+            );
+            self.broken = true;
+            self.report(EventKind::Break, text);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,458 @@
+//! The one door to a run: scene in, inputs in, outputs and events out.
+//!
+//! A step reads as a list of stages: move, feed, forces ([`crate::integrate`]), then keeping
+//! house (insert wire at the nozzle, refine near the core, let settled wire go), then measure.
+
+mod house;
+mod io;
+mod programme;
+mod start;
+mod summary;
+
+pub use io::{Centreline, Event, EventKind, Inputs, Outputs, SimError};
+pub use programme::Programme;
+pub use start::core_surface;
+pub use summary::{EnergySummary, PenetrationSummary, Summary};
+
+use crate::freeze::{FreezePolicy, Watch};
+use crate::integrate::{self, RK4_LIMIT, System, VERLET_LIMIT, highest_frequency};
+use crate::math::{Spin, V3};
+use crate::measure::{Coil, SettledNode, polar_angle, wrap_to_pi};
+use crate::scene::{Integrator, Scene};
+
+/// Steps between looks for edges to refine and values that are not finite.
+const HOUSE_STEPS: u64 = 32;
+
+/// A winding run.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    scene: Scene,
+    sys: System,
+    coil: Coil,
+    watch: Watch,
+    policy: FreezePolicy,
+    programme: Programme,
+    /// core angle at the start, rad
+    angle0: f64,
+    longest_step: f64,
+    last_step: f64,
+    time: f64,
+    steps: u64,
+    outputs: Outputs,
+    events: Vec<Event>,
+    /// deepest penetration of wire when it came to rest, m
+    rest_depth: f64,
+    broken: bool,
+    was_slack: bool,
+}
+
+impl Simulation {
+    /// Wire clamped to the core and straight to the nozzle at the set tension, everything at rest.
+    pub fn new(scene: &Scene) -> Result<Self, SimError> {
+        let inputs = Inputs {
+            spindle_speed: 0.0,
+            nozzle_position: scene.nozzle.y_start + scene.traverse.lead,
+            tension_setpoint: scene.tensioner.tension,
+        };
+        Self::starting_with(scene, inputs)
+    }
+
+    /// The same with these inputs at the start.
+    pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
+        check_finite(&inputs, 0.0)?;
+        let (mut sys, coil, angle0) = start::wire(scene, &inputs)?;
+        let limit = match scene.solver.integrator {
+            Integrator::Rk4 => RK4_LIMIT,
+            Integrator::Verlet => VERLET_LIMIT,
+        };
+        let spacing = scene.solver.spacing_near.min(scene.solver.spacing_free);
+        let stable = limit / highest_frequency(&scene.wire, spacing, scene.contact.stiffness, true);
+        let longest_step = if scene.solver.step > 0.0 {
+            scene.solver.step
+        } else {
+            stable * scene.solver.step_share
+        };
+        if longest_step > stable {
+            return Err(SimError::setup(format!(
+                "solver.step = {:.4e} s is too long for the explicit method: the limit of this wire at {} mm spacing is {:.4e} s",
+                scene.solver.step,
+                spacing * 1e3,
+                stable
+            )));
+        }
+        sys.evaluate(Some(0.0));
+        sys.books.initial = sys.stored() + sys.kinetic();
+        let policy = FreezePolicy {
+            window: scene.freeze.window,
+            displacement: scene.freeze.creep * scene.freeze.window,
+            keep_length: if scene.freeze.keep_length > 0.0 {
+                scene.freeze.keep_length
+            } else {
+                1.75 * (scene.wire.ei / inputs.tension_setpoint.max(0.01 * scene.tensioner.tension))
+                    .sqrt()
+            },
+            margin: scene.freeze.margin,
+        };
+        let mut sim = Self {
+            programme: Programme::new(scene),
+            watch: Watch::new(sys.rod.nodes(), sys.spindle.angle),
+            scene: scene.clone(),
+            sys,
+            coil,
+            policy,
+            angle0,
+            longest_step,
+            last_step: longest_step,
+            time: 0.0,
+            steps: 0,
+            outputs: Outputs::default(),
+            events: Vec::new(),
+            rest_depth: 0.0,
+            broken: false,
+            was_slack: false,
+        };
+        sim.sys.spindle.speed = inputs.spindle_speed;
+        sim.sys.place_supports();
+        sim.reset_extremes();
+        sim.update_outputs();
+        Ok(sim)
+    }
+
+    /// Input values at this moment.
+    pub fn inputs(&self) -> Inputs {
+        Inputs {
+            spindle_speed: self.sys.spindle.speed,
+            nozzle_position: self.sys.support[1].point.y,
+            tension_setpoint: self.sys.set_tension,
+        }
+    }
+
+    /// Starts over with other inputs; only before the first step.
+    pub fn set_start(&mut self, inputs: Inputs) -> Result<(), SimError> {
+        *self = Self::starting_with(&self.scene, inputs)?;
+        Ok(())
+    }
+
+    /// Advances by `dt` with the inputs held: spindle speed and tension from now on, the nozzle
+    /// moving evenly so that it reaches its position at the end (a jump would be a hammer blow).
+    pub fn advance(&mut self, inputs: Inputs, dt: f64) -> Result<(), SimError> {
+        check_finite(&inputs, self.time)?;
+        let target = inputs.nozzle_position;
+        let travel = target - self.sys.support[1].point.y;
+        self.sys.spindle.speed = inputs.spindle_speed;
+        self.sys.spindle.acceleration = 0.0;
+        self.sys.set_tension = inputs.tension_setpoint;
+        self.reset_extremes();
+        let (count, step) = self.divide(dt);
+        self.sys.place_supports();
+        for _ in 0..count {
+            self.sys.support[1].velocity = V3::new(0.0, travel / dt, 0.0);
+            self.step(step)?;
+        }
+        self.sys.support[1].velocity = V3::zeros();
+        self.sys.support[1].point.y = target;
+        self.finish(dt);
+        Ok(())
+    }
+
+    /// Advances by `dt` along the scene's own spindle ramp and traverse, which are continuous.
+    pub fn advance_programme(&mut self, dt: f64) -> Result<(), SimError> {
+        self.reset_extremes();
+        let end = self.time + dt;
+        for piece in self.programme.pieces(self.time, end) {
+            let (count, step) = self.divide(piece.duration);
+            self.sys.spindle.speed = piece.speed;
+            self.sys.spindle.acceleration = piece.acceleration;
+            for _ in 0..count {
+                let s = self.sys.spindle;
+                let rate = (s.after(step).angle - s.angle) / step;
+                self.sys.support[1].velocity =
+                    V3::new(0.0, self.programme.travel_per_angle * rate, 0.0);
+                self.step(step)?;
+            }
+        }
+        self.finish(dt);
+        Ok(())
+    }
+
+    /// Splits `dt` into the fewest equal steps within the stability limit.
+    fn divide(&mut self, dt: f64) -> (u64, f64) {
+        let count = (dt / self.longest_step).ceil().max(1.0);
+        self.last_step = dt / count;
+        (count as u64, self.last_step)
+    }
+
+    fn step(&mut self, dt: f64) -> Result<(), SimError> {
+        if self.broken {
+            // the wire has parted: the core turns on, the rest stays as it was
+            self.sys.time += dt;
+            self.sys.spindle = self.sys.spindle.after(dt);
+            return Ok(());
+        }
+        match self.scene.solver.integrator {
+            Integrator::Rk4 => integrate::rk4::step(&mut self.sys, dt),
+            Integrator::Verlet => integrate::verlet::step(&mut self.sys, dt),
+        }
+        self.steps += 1;
+        self.watch_tension();
+        self.keep_house()
+    }
+
+    fn watch_tension(&mut self) {
+        let t = self.wire_tension();
+        self.outputs.wire_tension_min = self.outputs.wire_tension_min.min(t);
+        self.outputs.wire_tension_max = self.outputs.wire_tension_max.max(t);
+        let slack = t <= 0.0;
+        if slack && !self.was_slack {
+            self.report(EventKind::Slack, "the wire went slack at the nozzle".into());
+        }
+        self.was_slack = slack;
+    }
+
+    fn wire_tension(&self) -> f64 {
+        // below zero the wire hangs loose in the nozzle, which holds nothing
+        self.sys
+            .load
+            .tension
+            .last()
+            .copied()
+            .unwrap_or(0.0)
+            .max(0.0)
+    }
+
+    fn reset_extremes(&mut self) {
+        let t = self.wire_tension();
+        self.outputs.wire_tension_min = t;
+        self.outputs.wire_tension_max = t;
+    }
+
+    fn finish(&mut self, dt: f64) {
+        self.time += dt;
+        self.sys.time = self.time;
+        self.update_outputs();
+    }
+
+    /// Elapsed time, s.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The scene this run was made from.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Outputs at the last communication point.
+    pub fn outputs(&self) -> &Outputs {
+        &self.outputs
+    }
+
+    /// Settled wire and its measures.
+    pub fn coil(&self) -> &Coil {
+        &self.coil
+    }
+
+    /// The settled wire and, taken as if it were settled, the live wire up to lift-off.
+    pub fn coil_with_live_wire(&self) -> Coil {
+        let spin = Spin::new(self.sys.spindle.angle);
+        let lift = self.lift_off();
+        let mut arc = self.sys.arc0;
+        let mut extra = Vec::new();
+        for i in 0..=lift {
+            let p = spin.to_core(self.sys.rod.x[i]);
+            extra.push(self.settled(
+                p,
+                arc,
+                self.sys.rod.stretch[i.min(self.sys.rod.edges() - 1)].strain,
+            ));
+            arc += self.sys.rod.rest.get(i).copied().unwrap_or(0.0);
+        }
+        self.coil.what_if(&extra)
+    }
+
+    fn settled(&self, position: V3, arc: f64, plastic_strain: f64) -> SettledNode {
+        let height = match &self.sys.contacts {
+            Some(c) => c.surface.nearest(position).distance - self.scene.wire.radius(),
+            None => 0.0,
+        };
+        SettledNode {
+            position,
+            arc,
+            height,
+            plastic_strain,
+            time: self.time,
+        }
+    }
+
+    /// The programme of the scene.
+    pub fn programme(&self) -> &Programme {
+        &self.programme
+    }
+
+    /// What happened since the last call.
+    pub fn drain_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.events)
+    }
+
+    fn report(&mut self, kind: EventKind, text: String) {
+        let turn = self.outputs.turns_wound;
+        self.events.push(Event {
+            time: self.sys.time,
+            turn,
+            kind,
+            text,
+        });
+    }
+
+    /// Takes over the tunable parameters of another version of the scene.
+    pub fn retune(&mut self, scene: &Scene) {
+        self.scene.defects = scene.defects;
+        self.scene.friction = scene.friction;
+        self.coil.set_limits(scene.defects);
+        if let Some(c) = &mut self.sys.contacts {
+            c.law.mu_static = scene.friction.static_;
+            c.law.mu_kinetic = scene.friction.kinetic;
+            c.law.slip_speed = scene.friction.slip_speed;
+        }
+    }
+
+    /// Last node from the clamp that touches something: where the wire leaves the coil.
+    fn lift_off(&self) -> usize {
+        match &self.sys.contacts {
+            Some(c) => (1..self.sys.rod.nodes() - 1)
+                .rev()
+                .find(|i| c.nodes[*i].touches())
+                .unwrap_or(0),
+            None => 0,
+        }
+    }
+
+    fn update_outputs(&mut self) {
+        let spin = Spin::new(self.sys.spindle.angle);
+        let lift = self.lift_off();
+        let rod = &self.sys.rod;
+        // polar angle along the wire from the last settled node
+        let mut last = match self.coil.end_angle() {
+            Some((angle, polar)) => (angle, polar),
+            None => (0.0, self.coil.spec().start_angle),
+        };
+        let direction = self.coil.spec().direction;
+        for i in 0..=lift {
+            let polar = polar_angle(spin.to_core(rod.x[i]));
+            last = (last.0 + direction * wrap_to_pi(polar - last.1), polar);
+        }
+        let free: f64 = (lift..rod.edges())
+            .map(|j| (rod.x[j + 1] - rod.x[j]).norm())
+            .sum();
+        let residual = self.sys.energy_residual(self.last_step, self.staggered());
+        let feed = self.sys.feed.map(|(_, f)| f).unwrap_or_default();
+        let flags = self.coil.flags();
+        let worst = self.coil.worst();
+        let tension = self.wire_tension();
+        let rod = &self.sys.rod;
+        let o = &mut self.outputs;
+        o.wire_tension = tension;
+        o.defect_bulge = flags.bulge;
+        o.defect_gap = flags.gap;
+        o.defect_overlap = flags.overlap;
+        o.defect_break = self.broken;
+        o.defect_slack = self.was_slack;
+        o.defect_code = i32::from(flags.bulge)
+            + 2 * i32::from(flags.gap)
+            + 4 * i32::from(flags.overlap)
+            + 8 * i32::from(self.broken)
+            + 16 * i32::from(self.was_slack);
+        o.defect_count = self.coil.defect_count() as i32;
+        if let Some(d) = self.coil.last_defect() {
+            o.defect_turn = f64::from(d.turn);
+            o.defect_angle = d.angle;
+        }
+        o.bulge_height = worst.bulge_height;
+        o.gap_width = worst.gap_width;
+        o.overlap_depth = worst.overlap_depth;
+        o.turns_wound = last.0.max(0.0) / std::f64::consts::TAU;
+        o.turns_settled = self.coil.turns_settled();
+        o.layer = self.coil.layer().max(1) as i32;
+        o.spindle_angle = self.sys.spindle.angle - self.angle0;
+        o.spindle_torque = self.sys.torque_on_core;
+        o.feed_speed = feed.rate;
+        o.fed_length = feed.fed;
+        o.free_length = free;
+        o.layon_position = rod.x[lift].y;
+        o.layon_angle = last.0;
+        o.coil_width = self.coil.coil_width();
+        o.mean_pitch = self.coil.mean_pitch();
+        o.fill_factor = self.coil.fill_factor();
+        o.wire_strain = self.coil.wire_strain();
+        o.solver_steps = self.steps as f64;
+        o.solver_rejects = 0.0;
+        o.live_nodes = rod.nodes() as i32;
+        o.penetration_max = self.sys.deepest;
+        o.energy_residual = residual;
+    }
+
+    fn staggered(&self) -> bool {
+        self.scene.solver.integrator == Integrator::Verlet
+    }
+
+    /// The whole wire in the core frame.
+    pub fn centreline(&self) -> Centreline {
+        let spin = Spin::new(self.sys.spindle.angle);
+        let back = integrate::turn_about_y(-self.sys.spindle.angle);
+        let rod = &self.sys.rod;
+        let mut line = match &self.sys.contacts {
+            Some(c) => Centreline {
+                points: c.tube.points.clone(),
+                frames: c.tube.frames.clone(),
+                arc: c.tube.arc.clone(),
+                plastic_strain: c.tube.plastic_strain.clone(),
+                tension: c.tube.tension.clone(),
+                frozen: c.tube.len(),
+            },
+            None => Centreline::default(),
+        };
+        let mut arc = self.sys.arc0;
+        for i in 0..rod.nodes() {
+            let j = i.min(rod.edges() - 1);
+            line.points.push(spin.to_core(rod.x[i]));
+            line.frames.push(back * rod.frame[j]);
+            line.arc.push(arc);
+            line.plastic_strain.push(rod.stretch[j].strain);
+            line.tension.push(self.sys.load.tension[j]);
+            arc += rod.rest.get(i).copied().unwrap_or(0.0);
+        }
+        line
+    }
+
+    /// The mechanical system, for verification and tests.
+    pub fn system(&self) -> &System {
+        &self.sys
+    }
+}
+
+fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {
+    for (name, value) in [
+        ("spindle_speed", inputs.spindle_speed),
+        ("nozzle_position", inputs.nozzle_position),
+        ("tension_setpoint", inputs.tension_setpoint),
+    ] {
+        if !value.is_finite() {
+            return Err(SimError {
+                time,
+                node: None,
+                reason: format!("input {name} = {value} is not a finite number"),
+            });
+        }
+    }
+    if inputs.tension_setpoint < 0.0 {
+        return Err(SimError {
+            time,
+            node: None,
+            reason: format!(
+                "input tension_setpoint = {} N must not be negative",
+                inputs.tension_setpoint
+            ),
+        });
+    }
+    Ok(())
+}

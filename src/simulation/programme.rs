@@ -1,0 +1,104 @@
+//! The scene's own spindle ramp and traverse, as functions of time.
+
+use crate::scene::Scene;
+use std::f64::consts::TAU;
+
+/// Constant acceleration over the ramp, then constant speed; nozzle travel proportional to angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Programme {
+    speed: f64,
+    ramp_angle: f64,
+    end_angle: f64,
+    /// nozzle travel per core angle, m/rad
+    pub travel_per_angle: f64,
+}
+
+/// A stretch of time with constant acceleration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// s
+    pub duration: f64,
+    /// at its start, rad/s
+    pub speed: f64,
+    /// rad/s^2
+    pub acceleration: f64,
+}
+
+impl Programme {
+    /// From a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let s = scene.spindle;
+        Self {
+            speed: s.speed,
+            ramp_angle: s.ramp_turns.min(s.turns) * TAU,
+            end_angle: s.turns * TAU,
+            travel_per_angle: scene.traverse.per_turn / TAU,
+        }
+    }
+
+    fn ramp_time(&self) -> f64 {
+        2.0 * self.ramp_angle / self.speed.abs()
+    }
+
+    /// Angle turned at a time, rad (with the sign of the speed).
+    pub fn angle(&self, time: f64) -> f64 {
+        let ramp = self.ramp_time();
+        let size = if time < ramp {
+            self.ramp_angle * (time / ramp).powi(2)
+        } else {
+            self.ramp_angle + self.speed.abs() * (time - ramp)
+        };
+        size.copysign(self.speed)
+    }
+
+    /// Speed at a time, rad/s.
+    pub fn speed(&self, time: f64) -> f64 {
+        let ramp = self.ramp_time();
+        if time < ramp {
+            self.speed * time / ramp
+        } else {
+            self.speed
+        }
+    }
+
+    /// Time at which this much angle has been turned, s.
+    pub fn time_at(&self, angle: f64) -> f64 {
+        let a = angle.abs();
+        let ramp = self.ramp_time();
+        if a < self.ramp_angle {
+            ramp * (a / self.ramp_angle).sqrt()
+        } else {
+            ramp + (a - self.ramp_angle) / self.speed.abs()
+        }
+    }
+
+    /// When the last turn is done, s.
+    pub fn end(&self) -> f64 {
+        self.time_at(self.end_angle)
+    }
+
+    /// Pieces of constant acceleration between two times.
+    pub fn pieces(&self, from: f64, to: f64) -> Vec<Piece> {
+        let ramp = self.ramp_time();
+        let mut pieces = Vec::with_capacity(2);
+        if from < ramp {
+            let end = to.min(ramp);
+            if end > from {
+                pieces.push(Piece {
+                    duration: end - from,
+                    speed: self.speed(from),
+                    acceleration: self.speed / ramp,
+                });
+            }
+        }
+        let start = from.max(ramp);
+        if to > start {
+            pieces.push(Piece {
+                duration: to - start,
+                speed: self.speed,
+                acceleration: 0.0,
+            });
+        }
+        pieces
+    }
+}

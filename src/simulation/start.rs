@@ -1,0 +1,211 @@
+//! The state at the start: wire clamped at mid-face, straight to the nozzle, at the set tension.
+
+use super::{Inputs, SimError};
+use crate::contact::{ContactLaw, Contacts, damping_for_restitution};
+use crate::core_shape::generate::{cylinder, rounded_box, segments_for_sagitta};
+use crate::core_shape::{Surface, TriMesh};
+use crate::feed::{Feed, FeedSpec};
+use crate::integrate::{Spindle, Support, System, turn_about_y};
+use crate::math::{Spin, V3};
+use crate::measure::{Coil, CoilSpec, polar_angle};
+use crate::rod::{Rod, Scalar, frame_along};
+use crate::scene::{Core, Scene};
+use std::sync::Arc;
+
+/// Facets of a generated core lie at most this far under the true surface, m.
+const SAGITTA: f64 = 0.5e-6;
+
+/// The triangle mesh of a scene's core.
+pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
+    let fail = |e: String| SimError::setup(format!("core: {e}"));
+    let mesh: TriMesh = match core {
+        Core::RoundedBox {
+            width_x,
+            height_z,
+            length_y,
+            corner_radius,
+        } => {
+            let segments = segments_for_sagitta(*corner_radius, SAGITTA)
+                .div_ceil(4)
+                .max(2);
+            rounded_box(*width_x, *height_z, *length_y, *corner_radius, segments)
+                .map_err(|e| fail(e.to_string()))?
+        }
+        Core::Cylinder { radius, length_y } => {
+            cylinder(*radius, *length_y, segments_for_sagitta(*radius, SAGITTA))
+                .map_err(|e| fail(e.to_string()))?
+        }
+        Core::Mesh { path, unit } => {
+            let file = std::fs::File::open(path)
+                .map_err(|e| fail(format!("cannot open {}: {e}", path.display())))?;
+            crate::core_shape::stl::read(&mut std::io::BufReader::new(file), *unit)
+                .map_err(|e| fail(format!("{}: {e}", path.display())))?
+        }
+    };
+    Ok(Surface::new(mesh))
+}
+
+/// Half width of the core on +x at mid-length: where the wire is clamped.
+fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
+    match &scene.core {
+        Core::RoundedBox { width_x, .. } => Ok(0.5 * width_x),
+        Core::Cylinder { radius, .. } => Ok(*radius),
+        Core::Mesh { path, .. } => {
+            // walk in from outside, never farther than the surface is away
+            let mut x = surface.radius_max() * 1.01;
+            for _ in 0..500 {
+                let d = surface
+                    .nearest(V3::new(x, scene.start.clamp_y, 0.0))
+                    .distance;
+                if d < 1e-9 {
+                    return Ok(x);
+                }
+                x -= d;
+                if x < 0.0 {
+                    break;
+                }
+            }
+            Err(SimError::setup(format!(
+                "core: {} has no surface on +x at y = {} to clamp the wire to",
+                path.display(),
+                scene.start.clamp_y
+            )))
+        }
+    }
+}
+
+/// Builds the system at rest, an empty coil and the core angle at the start.
+pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
+    let surface = Arc::new(core_surface(&scene.core)?);
+    let section = scene.wire.clone();
+    let radius = section.radius();
+    let half = half_width(scene, &surface)?;
+    if surface.radius_max() + radius >= scene.nozzle.distance {
+        return Err(SimError::setup(format!(
+            "nozzle.distance = {} m lies inside the circle of radius {} m that the core sweeps",
+            scene.nozzle.distance,
+            surface.radius_max() + radius
+        )));
+    }
+    let angle0 = crate::scene::Start::core_angle(half, radius, scene.nozzle.distance);
+    let clamp_core = V3::new(half + radius, scene.start.clamp_y, 0.0);
+    let clamp = Spin::new(angle0).to_lab(clamp_core);
+    let nozzle = V3::new(scene.nozzle.distance, inputs.nozzle_position, 0.0);
+    let points = line_of_nodes(scene, &surface, clamp, nozzle, angle0);
+    let tension = inputs.tension_setpoint;
+    let plastic = stretch_at(&section, tension);
+    let stretch = 1.0 + tension / section.ea + plastic.strain;
+    let rest = points
+        .windows(2)
+        .map(|p| (p[1] - p[0]).norm() / stretch)
+        .collect();
+    let mut rod = Rod::through(&points, Some(rest));
+    rod.stretch.iter_mut().for_each(|s| *s = plastic);
+    let direction = (nozzle - clamp).normalize();
+    let frame = turn_about_y(-angle0) * frame_along(&direction, Some(&rod.frame[0]));
+    let mut sys = System::new(section.clone(), rod);
+    sys.spindle = Spindle {
+        angle: angle0,
+        speed: 0.0,
+        acceleration: 0.0,
+    };
+    sys.support[0] = Support {
+        hold: [true; 3],
+        point: clamp_core,
+        velocity: V3::zeros(),
+        frame: Some(frame),
+        turning: true,
+    };
+    sys.support[1] = Support::pinned(nozzle);
+    sys.set_tension = tension;
+    let t = scene.tensioner;
+    let line_stiffness = if t.line_length > 0.0 {
+        section.ea / t.line_length
+    } else {
+        f64::INFINITY
+    };
+    let spec = FeedSpec {
+        mass: t.mass,
+        line_stiffness,
+        line_damping: if line_stiffness.is_finite() {
+            2.0 * t.line_damping_ratio * (line_stiffness * t.mass).sqrt()
+        } else {
+            0.0
+        },
+        exit_friction: scene.nozzle.exit_friction,
+    };
+    sys.feed = Some((spec, Feed::at_rest(&spec, tension)));
+    let law = ContactLaw {
+        stiffness: scene.contact.stiffness,
+        damping_ratio: damping_for_restitution(scene.contact.restitution),
+        mu_static: scene.friction.static_,
+        mu_kinetic: scene.friction.kinetic,
+        slip_speed: scene.friction.slip_speed,
+    };
+    sys.contacts = Some(Contacts::new(
+        surface,
+        law,
+        radius,
+        section.diameter,
+        sys.rod.nodes(),
+    ));
+    let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
+    let coil = Coil::new(CoilSpec {
+        diameter: section.diameter,
+        limits: scene.defects,
+        profile: None,
+        start_angle: polar_angle(clamp_core),
+        direction,
+        traverse: scene.traverse.per_turn * direction,
+        clamp_arc: 0.0,
+        corner_angle: corner_angle(&scene.core),
+    });
+    Ok((sys, coil, angle0))
+}
+
+/// Polar angle of the corner between the faces on +x and +z, rad.
+fn corner_angle(core: &Core) -> f64 {
+    match core {
+        Core::RoundedBox {
+            width_x, height_z, ..
+        } => libm::atan2(*height_z, *width_x),
+        Core::Cylinder { .. } | Core::Mesh { .. } => std::f64::consts::FRAC_PI_4,
+    }
+}
+
+/// Plastic stretch that belongs to a tension above yield.
+fn stretch_at(section: &crate::rod::Section, tension: f64) -> Scalar {
+    let law = crate::rod::Laws::new(section).stretch;
+    let over = tension - law.limit;
+    if over <= 0.0 {
+        return Scalar::default();
+    }
+    // on the loading branch: force = limit + H * plastic strain
+    Scalar {
+        strain: over / law.hardening,
+        rise: over,
+    }
+}
+
+/// Nodes on the straight line: near spacing by the core, free spacing beyond, and an edge of at
+/// least one free spacing at the nozzle.
+fn line_of_nodes(scene: &Scene, surface: &Surface, clamp: V3, nozzle: V3, angle: f64) -> Vec<V3> {
+    let s = scene.solver;
+    let spin = Spin::new(angle);
+    let length = (nozzle - clamp).norm();
+    let t = (nozzle - clamp) / length;
+    let near_reach = s.refine_distance + scene.wire.radius();
+    let mut at = 0.0;
+    let mut points = vec![clamp];
+    loop {
+        let near = surface.nearest(spin.to_core(clamp + t * at)).distance < near_reach;
+        let h = if near { s.spacing_near } else { s.spacing_free };
+        if length - at - h < s.spacing_free {
+            break;
+        }
+        at += h;
+        points.push(clamp + t * at);
+    }
+    points.push(nozzle);
+    points
+}

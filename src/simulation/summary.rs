@@ -1,0 +1,156 @@
+//! The numbers that describe a whole run.
+
+use super::Simulation;
+use crate::measure::TurnMeasures;
+use crate::scene::{Integrator, Preset};
+use serde::Serialize;
+
+/// What `summary.json` holds about the run itself.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// scene name
+    pub scene: String,
+    /// `default` or `paper`
+    pub preset: &'static str,
+    /// `rk4` or `verlet`
+    pub integrator: &'static str,
+    /// node spacing near the core and in the free span, m
+    pub spacing_m: [f64; 2],
+    /// last time step, s
+    pub step_s: f64,
+    /// time steps taken
+    pub steps: u64,
+    /// simulated time, s
+    pub simulated_s: f64,
+    /// spindle speed at the end, rad/s
+    pub speed_rad_per_s: f64,
+    /// spindle angle, rad
+    pub spindle_angle_rad: f64,
+    /// turns laid and turns at rest
+    pub turns_wound: f64,
+    /// turns at rest
+    pub turns_settled: f64,
+    /// wire paid out, m
+    pub fed_length_m: f64,
+    /// verdict over all settled turns
+    pub verdict: String,
+    /// energy books
+    pub energy: EnergySummary,
+    /// penetration
+    pub penetration: PenetrationSummary,
+    /// measures per turn
+    pub turns: Vec<TurnMeasures>,
+}
+
+/// Energy since the start, J.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct EnergySummary {
+    /// work of the spindle
+    pub spindle_work_J: f64,
+    /// work of the feed (negative: the wire pulls against the tensioner)
+    pub nozzle_work_J: f64,
+    /// motion energy of incoming wire
+    pub inflow_J: f64,
+    /// elastic energy in live wire and contact
+    pub stored_J: f64,
+    /// motion energy of live wire
+    pub kinetic_J: f64,
+    /// elastic energy locked in frozen wire
+    pub frozen_stored_J: f64,
+    /// motion energy handed to the core with frozen wire
+    pub frozen_kinetic_J: f64,
+    /// plastic work
+    pub plastic_J: f64,
+    /// slip against friction
+    pub friction_J: f64,
+    /// contact dashpots
+    pub damping_J: f64,
+    /// dissipation by the method itself
+    pub numerical_J: f64,
+    /// what is unexplained
+    pub residual_J: f64,
+    /// unexplained over dissipated (plastic, friction, damping)
+    pub residual_over_dissipated: f64,
+    /// numerical over dissipated
+    pub numerical_over_dissipated: f64,
+}
+
+/// Depth of contact, m and in wire diameters.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PenetrationSummary {
+    /// deepest ever (landings)
+    pub largest_m: f64,
+    /// deepest of wire when it came to rest
+    pub at_rest_m: f64,
+    /// deepest ever over d
+    pub largest_over_d: f64,
+    /// deepest at rest over d
+    pub at_rest_over_d: f64,
+}
+
+impl Simulation {
+    /// Energy balance up to now.
+    pub fn energy(&self) -> EnergySummary {
+        let b = self.sys.books;
+        let plastic: f64 = b.plastic.iter().sum();
+        let dissipated = plastic + b.friction + b.damping;
+        let scale = if dissipated > 0.0 {
+            1.0 / dissipated
+        } else {
+            0.0
+        };
+        EnergySummary {
+            spindle_work_J: b.spindle,
+            nozzle_work_J: b.nozzle,
+            inflow_J: b.inflow,
+            stored_J: self.sys.stored(),
+            kinetic_J: self.sys.kinetic(),
+            frozen_stored_J: b.frozen_stored,
+            frozen_kinetic_J: b.frozen_kinetic,
+            plastic_J: plastic,
+            friction_J: b.friction,
+            damping_J: b.damping,
+            numerical_J: b.numerical,
+            residual_J: self.outputs.energy_residual,
+            residual_over_dissipated: self.outputs.energy_residual * scale,
+            numerical_over_dissipated: b.numerical * scale,
+        }
+    }
+
+    /// The run in numbers.
+    pub fn summary(&self) -> Summary {
+        let d = self.scene.wire.diameter;
+        Summary {
+            scene: self.scene.name.clone(),
+            preset: match self.scene.preset {
+                Preset::Default => "default",
+                Preset::Paper => "paper",
+            },
+            integrator: match self.scene.solver.integrator {
+                Integrator::Rk4 => "rk4",
+                Integrator::Verlet => "verlet",
+            },
+            spacing_m: [
+                self.scene.solver.spacing_near,
+                self.scene.solver.spacing_free,
+            ],
+            step_s: self.last_step,
+            steps: self.steps,
+            simulated_s: self.time,
+            speed_rad_per_s: self.sys.spindle.speed,
+            spindle_angle_rad: self.outputs.spindle_angle,
+            turns_wound: self.outputs.turns_wound,
+            turns_settled: self.outputs.turns_settled,
+            fed_length_m: self.outputs.fed_length,
+            verdict: self.coil.verdict().as_str().to_owned(),
+            energy: self.energy(),
+            penetration: PenetrationSummary {
+                largest_m: self.sys.deepest,
+                at_rest_m: self.rest_depth,
+                largest_over_d: self.sys.deepest / d,
+                at_rest_over_d: self.rest_depth / d,
+            },
+            turns: self.coil.turns(),
+        }
+    }
+}
