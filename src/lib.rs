@@ -17,3 +17,4 @@ pub mod rod;
 pub mod scene;
 pub mod simulation;
 pub mod variables;
+pub mod verify;

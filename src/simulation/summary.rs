@@ -42,7 +42,8 @@ pub struct Summary {
     pub turns: Vec<TurnMeasures>,
 }
 
-/// Energy since the start, J.
+/// Energy since the start, J. Field names carry the unit, as the JSON does.
+#[allow(non_snake_case)]
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct EnergySummary {
     /// work of the spindle
