@@ -37,6 +37,15 @@ pub fn step(sys: &mut System, dt: f64) {
     }
     let start = sys.spindle;
     let support = sys.support;
+    // the wire keeps coming during the stages, at the rate of the last step; with the last edge's
+    // length held the far node would pull on a stretch of wire that does not give
+    let inlet = sys.feed.map(|(_, f)| {
+        (
+            sys.rod.edges() - 1,
+            sys.rod.rest[sys.rod.edges() - 1],
+            f.rate,
+        )
+    });
     // the forces of the first stage are those of the last evaluation
     for (stage, (weight, reach)) in [(1.0, 0.5), (2.0, 0.5), (2.0, 1.0), (1.0, 0.0)]
         .into_iter()
@@ -57,7 +66,13 @@ pub fn step(sys: &mut System, dt: f64) {
         sys.support = support;
         sys.carry_supports(reach * dt);
         sys.place_supports();
+        if let Some((edge, rest, rate)) = inlet {
+            sys.rod.rest[edge] = rest + rate * reach * dt;
+        }
         sys.evaluate(None);
+    }
+    if let Some((edge, rest, _)) = inlet {
+        sys.rod.rest[edge] = rest;
     }
     let free = sys.free_nodes();
     for i in free {

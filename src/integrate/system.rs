@@ -110,7 +110,7 @@ pub struct Books {
     pub friction: f64,
     /// contact dashpots
     pub damping: f64,
-    /// losses of the method itself: feed step, splitting, freezing
+    /// losses of the method itself: splitting and freezing
     pub numerical: f64,
     /// elastic energy locked into frozen wire
     pub frozen_stored: f64,
@@ -425,8 +425,8 @@ impl System {
         let last = self.rod.edges() - 1;
         let (a, b) = (self.rod.x[j], self.rod.x[j + 1]);
         let chord = b - a;
-        let kinetic = self.kinetic();
-        let stored = self.stored();
+        let at_nozzle = j == last && self.feed.is_some();
+        let kinetic = if at_nozzle { self.kinetic() } else { 0.0 };
         let mid = if j == last || j == 0 {
             (a + b) * 0.5
         } else {
@@ -434,7 +434,7 @@ impl System {
             let tb = (self.rod.x[j + 2] - self.rod.x[j]).normalize();
             (a + b) * 0.5 + (ta - tb) * (chord.norm() / 8.0)
         };
-        let v = if j == last && self.feed.is_some() {
+        let v = if at_nozzle {
             // at the nozzle the material moves in along the wire at the feed rate
             let stretch = chord.norm() / self.rod.rest[j];
             let rate = self.feed.as_ref().map_or(0.0, |(_, f)| f.rate);
@@ -469,14 +469,10 @@ impl System {
             c.nodes.insert(j + 1, crate::contact::NodeContact::new());
         }
         self.roll.insert(j + 1, self.roll[j]);
-        let gained = self.kinetic() - kinetic;
-        if j == last && self.feed.is_some() {
+        if at_nozzle {
             // the half edge at the nozzle was not in the books before
-            self.books.inflow += gained;
-        } else {
-            self.books.numerical -= gained;
+            self.books.inflow += self.kinetic() - kinetic;
         }
-        self.books.numerical -= self.stored() - stored;
     }
 
     /// Takes the first `count` nodes out of the computation; the node after them becomes the clamp.
@@ -486,7 +482,7 @@ impl System {
     pub fn freeze_front(&mut self, count: usize) {
         let spin = Spin::new(self.spindle.angle);
         let back = turn_about_y(-self.spindle.angle);
-        let (kinetic, stored) = (self.kinetic(), self.stored());
+        let stored = self.stored();
         let mut handed = 0.0;
         for i in 1..=count {
             let v = spin_velocity(self.spindle.speed, self.rod.x[i]);
@@ -521,29 +517,27 @@ impl System {
             c.nodes.drain(..count);
         }
         self.place_supports();
-        let lost = kinetic - self.kinetic();
         self.books.frozen_kinetic += handed;
-        self.books.numerical += lost - handed;
         self.books.frozen_stored += stored - self.stored();
     }
 
     /// Energy that the books cannot explain, J: what should be there minus what is.
     ///
-    /// With a staggered step the motion energy is the product of the velocities before and after
-    /// this instant, which is the quantity the scheme conserves.
-    pub fn energy_residual(&mut self, dt: f64, staggered: bool) -> f64 {
+    /// With a staggered step of `dt` the motion energy is the product of the velocities before and
+    /// after this instant, which is the quantity the scheme conserves; `None` where velocities
+    /// belong to the present time.
+    pub fn energy_residual(&self, staggered: Option<f64>) -> f64 {
         let b = self.books;
         let supply = b.initial + b.spindle + b.nozzle + b.inflow;
         let lost = b.plastic.iter().sum::<f64>() + b.friction + b.damping + b.numerical;
-        let kinetic = if staggered {
-            self.staggered_kinetic(dt)
-        } else {
-            self.kinetic()
+        let kinetic = match staggered {
+            Some(dt) => self.staggered_kinetic(dt),
+            None => self.kinetic(),
         };
         supply - lost - b.frozen_stored - b.frozen_kinetic - self.stored() - kinetic
     }
 
-    fn staggered_kinetic(&mut self, dt: f64) -> f64 {
+    fn staggered_kinetic(&self, dt: f64) -> f64 {
         let mut e = 0.0;
         for i in self.free_nodes() {
             let m = self.rod.mass(&self.section, i);

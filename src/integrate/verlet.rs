@@ -19,6 +19,23 @@ pub fn step(sys: &mut System, dt: f64) {
     sys.evaluate(Some(dt));
 }
 
+/// Moves the velocities by half a step of the present forces: `dt / 2` brings them to the time of
+/// the positions, `-dt / 2` back. Whoever changes the wire between steps (inserts, freezes) does so
+/// in between, or the change of force would do work over half a step that nobody paid for.
+pub fn shift_velocities(sys: &mut System, half: f64) {
+    let per_length = sys.section.mass_per_length();
+    for i in sys.free_nodes() {
+        let m = per_length * sys.rod.voronoi(i);
+        sys.rod.v[i] += sys.load.force[i] * (half / m);
+    }
+    if sys.twist {
+        let inertia = sys.section.spin_inertia_per_length();
+        for j in 0..sys.rod.edges() {
+            sys.rod.spin[j] += sys.load.torque[j] * (half / (inertia * sys.rod.rest[j]));
+        }
+    }
+}
+
 fn kick_and_drift(sys: &mut System, dt: f64) {
     let per_length = sys.section.mass_per_length();
     let free = sys.free_nodes();

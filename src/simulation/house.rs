@@ -6,56 +6,80 @@ use crate::integrate::turn_about_y;
 use crate::math::{Spin, V3};
 
 impl Simulation {
-    pub(super) fn keep_house(&mut self) -> Result<(), SimError> {
-        let mut changed = self.insert_at_nozzle();
-        if self.steps.is_multiple_of(HOUSE_STEPS) {
+    pub(super) fn keep_house(&mut self, dt: f64) -> Result<(), SimError> {
+        let look = self.steps.is_multiple_of(HOUSE_STEPS);
+        if look {
             self.check_health()?;
-            changed |= self.refine_near_core();
         }
-        if self.scene.freeze.enabled && self.watch.due(&self.policy, self.sys.spindle.angle) {
-            changed |= self.freeze();
+        let insert = self.nozzle_edge_is_long();
+        let refine = if look {
+            self.edges_to_refine()
+        } else {
+            Vec::new()
+        };
+        let freeze =
+            if self.scene.freeze.enabled && self.watch.due(&self.policy, self.sys.spindle.angle) {
+                self.nodes_to_freeze()
+            } else {
+                0
+            };
+        if !insert && refine.is_empty() && freeze == 0 {
+            return Ok(());
         }
-        if changed {
-            // the arrays moved: bring the forces in line with them before the next kick
-            self.sys.evaluate(Some(0.0));
+        self.shift_velocities(0.5 * dt);
+        let unexplained = self.sys.energy_residual(None);
+        if insert {
+            let last = self.sys.rod.edges() - 1;
+            self.split(last);
         }
+        // from the nozzle down, so that the numbers of the others stay
+        for j in refine.into_iter().rev() {
+            self.split(j);
+        }
+        if freeze > 0 {
+            self.freeze(freeze);
+        }
+        // bring the forces in line with the new arrays; what the change itself cost is the method's
+        self.sys.evaluate(Some(0.0));
+        self.sys.books.numerical += self.sys.energy_residual(None) - unexplained;
+        self.shift_velocities(-0.5 * dt);
         Ok(())
     }
 
-    /// The last edge has grown to two spacings: a new node halfway.
-    fn insert_at_nozzle(&mut self) -> bool {
-        let last = self.sys.rod.edges() - 1;
-        if self.sys.rod.rest[last] < 2.0 * self.scene.solver.spacing_free {
-            return false;
+    /// With the staggered step, brings velocities to the time of the positions and back.
+    fn shift_velocities(&mut self, half: f64) {
+        if self.staggered() {
+            crate::integrate::verlet::shift_velocities(&mut self.sys, half);
         }
-        self.sys.split(last);
-        self.watch.insert(last + 1);
-        true
     }
 
-    /// Edges of the free span that come near the core are halved.
-    fn refine_near_core(&mut self) -> bool {
+    fn split(&mut self, edge: usize) {
+        self.sys.split(edge);
+        self.watch.insert(edge + 1);
+    }
+
+    /// The last edge has grown to two spacings: time for a new node halfway.
+    fn nozzle_edge_is_long(&self) -> bool {
+        let last = self.sys.rod.edges() - 1;
+        self.sys.rod.rest[last] >= 2.0 * self.scene.solver.spacing_free
+    }
+
+    /// Edges of the free span that came near the core and are too long for it, ascending.
+    fn edges_to_refine(&self) -> Vec<usize> {
         let solver = self.scene.solver;
-        let mut changed = false;
         if solver.spacing_free < 1.5 * solver.spacing_near {
-            return false;
+            return Vec::new();
         }
         let spin = Spin::new(self.sys.spindle.angle);
-        let radius = self.scene.wire.radius();
-        let mut j = 0;
+        let reach = solver.refine_distance + self.scene.wire.radius();
+        let rod = &self.sys.rod;
         // the edge at the nozzle keeps its length for the feed
-        while j + 1 < self.sys.rod.edges() {
-            if self.sys.rod.rest[j] > 1.5 * solver.spacing_near
-                && self.distance_to_coil(spin.to_core(self.sys.rod.x[j]))
-                    < solver.refine_distance + radius
-            {
-                self.sys.split(j);
-                self.watch.insert(j + 1);
-                changed = true;
-            }
-            j += 1;
-        }
-        changed
+        (0..rod.edges() - 1)
+            .filter(|&j| {
+                rod.rest[j] > 1.5 * solver.spacing_near
+                    && self.distance_to_coil(spin.to_core(rod.x[j])) < reach
+            })
+            .collect()
     }
 
     fn distance_to_coil(&self, p: V3) -> f64 {
@@ -65,26 +89,24 @@ impl Simulation {
         }
     }
 
-    /// Wire at rest, in order from the clamp, becomes fixed geometry.
-    fn freeze(&mut self) -> bool {
+    /// How many nodes from the clamp are at rest, settled long enough and in place (eq. 8, 9).
+    fn nodes_to_freeze(&mut self) -> usize {
         let angle = self.sys.spindle.angle;
         let spin = Spin::new(angle);
         let x = &self.sys.rod.x;
         let still = self.watch.look(&self.policy, angle, |i| spin.to_core(x[i]));
         // the last one that is at rest becomes the clamp
-        let mut count = still.saturating_sub(1).min(self.behind_lift_off());
-        let radius = self.scene.wire.radius();
-        for i in 0..count {
-            if self.distance_to_coil(spin.to_core(self.sys.rod.x[i + 1]))
-                > 2.0 * radius + self.policy.margin
-            {
-                count = i;
-                break;
-            }
-        }
-        if count == 0 {
-            return false;
-        }
+        let count = still.saturating_sub(1).min(self.behind_lift_off());
+        let reach = 2.0 * self.scene.wire.radius() + self.policy.margin;
+        (0..count)
+            .find(|&i| self.distance_to_coil(spin.to_core(self.sys.rod.x[i + 1])) > reach)
+            .unwrap_or(count)
+    }
+
+    /// The first `count` nodes become fixed geometry.
+    fn freeze(&mut self, count: usize) {
+        let angle = self.sys.spindle.angle;
+        let spin = Spin::new(angle);
         let back = turn_about_y(-angle);
         let mut arc = self.sys.arc0;
         for i in 0..count {
@@ -112,7 +134,6 @@ impl Simulation {
         if let Some(c) = &mut self.sys.contacts {
             c.forget_surroundings();
         }
-        true
     }
 
     fn tell(&mut self, turns: f64, defects: u32) {

@@ -195,7 +195,7 @@ impl Simulation {
         }
         self.steps += 1;
         self.watch_tension();
-        self.keep_house()
+        self.keep_house(dt)
     }
 
     fn watch_tension(&mut self) {
@@ -344,7 +344,9 @@ impl Simulation {
         let free: f64 = (lift..rod.edges())
             .map(|j| (rod.x[j + 1] - rod.x[j]).norm())
             .sum();
-        let residual = self.sys.energy_residual(self.last_step, self.staggered());
+        let residual = self
+            .sys
+            .energy_residual(self.staggered().then_some(self.last_step));
         let feed = self.sys.feed.map(|(_, f)| f).unwrap_or_default();
         let flags = self.coil.flags();
         let worst = self.coil.worst();

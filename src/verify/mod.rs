@@ -51,23 +51,34 @@ impl Context<'_> {
     /// A number among the inputs.
     pub fn number(&self, name: &str) -> Result<f64, VerifyError> {
         let value = self.inputs.get(name).and_then(serde_json::Value::as_f64);
-        value.filter(|v| v.is_finite()).ok_or_else(|| VerifyError::Input {
-            name: name.to_owned(),
-            problem: "a finite number is wanted".to_owned(),
-        })
+        value
+            .filter(|v| v.is_finite())
+            .ok_or_else(|| VerifyError::Input {
+                name: name.to_owned(),
+                problem: "a finite number is wanted".to_owned(),
+            })
     }
 
     /// A text among the inputs.
     pub fn text(&self, name: &str) -> Result<&str, VerifyError> {
-        self.inputs.get(name).and_then(serde_json::Value::as_str).ok_or_else(|| VerifyError::Input {
-            name: name.to_owned(),
-            problem: "a text is wanted".to_owned(),
-        })
+        self.inputs
+            .get(name)
+            .and_then(serde_json::Value::as_str)
+            .ok_or_else(|| VerifyError::Input {
+                name: name.to_owned(),
+                problem: "a text is wanted".to_owned(),
+            })
     }
 
     /// The section without yield limits.
     pub fn elastic(&self) -> Section {
         let open = f64::INFINITY;
-        Section { n_y: open, m_y: open, t_y: open, moment_cap: open, ..self.section.clone() }
+        Section {
+            n_y: open,
+            m_y: open,
+            t_y: open,
+            moment_cap: open,
+            ..self.section.clone()
+        }
     }
 }
