@@ -168,6 +168,10 @@ fn closest_plain([a, b, c]: [V3; 3], p: V3) -> V3 {
     sides.map(on_side).into_iter().reduce(nearer).unwrap()
 }
 
+/// Feet closer than this are one, m: aside of the true foot by this much, the distance grows by
+/// 1e-13 m only, little more than what rounding leaves of it.
+const SAME: f64 = 1e-8;
+
 /// Points of the surface within `R` of an outside point `p` that are closer than all around them.
 fn local_minima(mesh: &TriMesh, p: V3) -> Vec<V3> {
     let corners = |t: usize| mesh.triangles[t].map(|i| mesh.vertices[i as usize]);
@@ -179,11 +183,11 @@ fn local_minima(mesh: &TriMesh, p: V3) -> Vec<V3> {
             .collect();
         let lowest = here
             .iter()
-            .all(|&s| (closest_plain(corners(s), p) - p).norm() > (q - p).norm() - 1e-12);
+            .all(|&s| (closest_plain(corners(s), p) - p).norm() > (q - p).norm() - 1e-14);
         let seen = here
             .iter()
             .any(|&s| (p - q).dot(&mesh.normal(s as u32)) > 0.0);
-        let new = found.iter().all(|known| (known - q).norm() > 1e-11);
+        let new = found.iter().all(|known| (known - q).norm() > SAME);
         if (q - p).norm() < R && lowest && seen && new {
             found.push(q);
         }
@@ -218,7 +222,7 @@ fn check_touches(surface: &Surface, p: V3) -> Result<(), TestCaseError> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn rounded_box_gives_its_analytic_distance(u in unit(), over in -0.5..1.0f64, pick in 0usize..1000, v in unit()) {
@@ -275,12 +279,14 @@ proptest! {
         // No concave edge of these is a seam, so nothing is merged.
         let surface = [angle_iron, channel, box_surface][shape]();
         let p = over_triangle(&surface, pick, u, v, height * R) + 0.8 * R * V3::from(aside);
-        prop_assume!(surface.nearest(p).distance > 1e-9);
+        if surface.nearest(p).distance <= 1e-9 {
+            return Ok(());
+        }
         let found = touches(&surface, p);
         let expected = local_minima(surface.mesh(), p);
         prop_assert_eq!(found.len(), expected.len(), "{:?} {:?}", found, expected);
         for q in expected {
-            prop_assert!(found.iter().any(|t| (t.point - q).norm() < 1e-11));
+            prop_assert!(found.iter().any(|t| (t.point - q).norm() < SAME));
         }
     }
 

@@ -13,8 +13,8 @@ use crate::math::V3;
 pub(crate) enum Region {
     /// over or under the face
     Face,
-    /// beside side `side`; `share` of the edge record's length from its start
-    Edge { side: usize, share: f64 },
+    /// beside side `side`; `along` is the projection on its edge, see [`Edge::project`]
+    Edge { side: usize, along: f64 },
     /// past corner `corner`
     Vertex { corner: usize },
 }
@@ -44,11 +44,22 @@ pub struct Nearest {
 }
 
 impl Edge {
-    /// Share of the edge at which `p` projects onto it: below 0 before the start, above 1 past
-    /// the end. Every triangle and vertex at the edge decides by this one number.
+    /// Projection of `p` on the edge times the edge's length, m^2: 0 at the first end,
+    /// `length_sq` at the second. Every triangle and vertex at the edge decides by this one number.
     #[inline]
-    pub fn share(&self, p: V3) -> f64 {
-        (p - self.start).dot(&self.along) / self.length_sq
+    pub fn project(&self, p: V3) -> f64 {
+        (p - self.start).dot(&self.along)
+    }
+
+    /// Whether `p` projects past the second end (`second`) or before the first.
+    #[inline]
+    pub fn is_past_end(&self, p: V3, second: bool) -> bool {
+        let along = self.project(p);
+        if second {
+            along >= self.length_sq
+        } else {
+            along <= 0.0
+        }
     }
 }
 
@@ -65,6 +76,12 @@ impl Facet {
         self.side[k].dot(&p) - self.side_offset[k]
     }
 
+    /// [`Facet::beyond`] of all three sides.
+    #[inline]
+    pub fn beyond_sides(&self, p: V3) -> [f64; 3] {
+        [self.beyond(0, p), self.beyond(1, p), self.beyond(2, p)]
+    }
+
     /// Whether `p` projects onto the triangle: eq. 4 with the side normals pointing outwards,
     /// so that all three products must not be positive.
     #[inline]
@@ -77,47 +94,58 @@ impl TriMesh {
     /// The region of triangle `facet` that `p` lies in.
     #[inline]
     pub(crate) fn region(&self, facet: &Facet, p: V3) -> Region {
-        let beyond = [facet.beyond(0, p), facet.beyond(1, p), facet.beyond(2, p)];
+        let beyond = facet.beyond_sides(p);
         if beyond.iter().all(|&b| b <= 0.0) {
             return Region::Face;
         }
         self.region_outside(facet, p, beyond)
     }
 
-    /// The region of a point known to lie beyond a side.
-    fn region_outside(&self, facet: &Facet, p: V3, beyond: [f64; 3]) -> Region {
-        let share = facet.edge.map(|e| self.edges[e as usize].share(p));
+    /// The region of a point that lies `beyond` at least one side.
+    #[inline]
+    pub(crate) fn region_outside(&self, facet: &Facet, p: V3, beyond: [f64; 3]) -> Region {
         for side in 0..3 {
-            if beyond[side] > 0.0 && share[side] > 0.0 && share[side] < 1.0 {
-                return Region::Edge {
-                    side,
-                    share: share[side],
-                };
+            if beyond[side] > 0.0 {
+                let edge = &self.edges[facet.edge[side] as usize];
+                let along = edge.project(p);
+                if along > 0.0 && along < edge.length_sq {
+                    return Region::Edge { side, along };
+                }
             }
         }
+        self.region_past_ends(facet, p)
+    }
+
+    /// The region of a point beside no side.
+    fn region_past_ends(&self, facet: &Facet, p: V3) -> Region {
+        let edge = |side: usize| &self.edges[facet.edge[side] as usize];
         for corner in 0..3 {
             if [corner, (corner + 2) % 3].into_iter().all(|side| {
-                let edge = &self.edges[facet.edge[side] as usize];
-                past_end(share[side], edge.ends[1] == facet.corner[corner])
+                let second = edge(side).ends[1] == facet.corner[corner];
+                edge(side).is_past_end(p, second)
             }) {
                 return Region::Vertex { corner };
             }
         }
         // The regions cover the plane, so only rounding leads here: take the nearest side.
-        let clamped = |side: usize| {
-            let edge = &self.edges[facet.edge[side] as usize];
-            (p - edge.start - share[side].clamp(0.0, 1.0) * edge.along).norm_squared()
+        let distance_sq = |side: usize| {
+            let edge = edge(side);
+            let share = (edge.project(p) / edge.length_sq).clamp(0.0, 1.0);
+            (p - edge.start - share * edge.along).norm_squared()
         };
-        let near = |a: usize, b: usize| if clamped(b) < clamped(a) { b } else { a };
-        let side = near(near(0, 1), 2);
-        let edge = &self.edges[facet.edge[side] as usize];
-        if share[side] > 0.0 && share[side] < 1.0 {
-            return Region::Edge {
-                side,
-                share: share[side],
-            };
+        let nearer = |a: usize, b: usize| {
+            if distance_sq(b) < distance_sq(a) {
+                b
+            } else {
+                a
+            }
+        };
+        let side = nearer(nearer(0, 1), 2);
+        let along = edge(side).project(p);
+        if along > 0.0 && along < edge(side).length_sq {
+            return Region::Edge { side, along };
         }
-        let end = edge.ends[usize::from(share[side] >= 1.0)];
+        let end = edge(side).ends[usize::from(along > 0.0)];
         Region::Vertex {
             corner: if facet.corner[side] == end {
                 side
@@ -131,26 +159,39 @@ impl TriMesh {
     #[inline]
     pub(crate) fn closest(&self, triangle: u32, p: V3) -> Closest {
         let facet = &self.facets[triangle as usize];
-        let region = self.region(facet, p);
+        self.closest_in(self.region(facet, p), facet, p)
+    }
+
+    /// The closest point of a triangle to `p`, which lies in its `region`.
+    #[inline]
+    pub(crate) fn closest_in(&self, region: Region, facet: &Facet, p: V3) -> Closest {
         let (point, outward) = match region {
-            Region::Face => (p - facet.height(p) * facet.normal, facet.normal),
-            Region::Edge { side, share } => {
+            Region::Face => {
+                let height = facet.height(p);
+                let point = p - height * facet.normal;
+                let outward = facet.normal;
+                return Closest {
+                    point,
+                    distance_sq: height * height,
+                    outward,
+                    region,
+                };
+            }
+            Region::Edge { side, along } => {
                 let edge = &self.edges[facet.edge[side] as usize];
-                (edge.start + share * edge.along, edge.outward)
+                (
+                    edge.start + (along / edge.length_sq) * edge.along,
+                    edge.outward,
+                )
             }
             Region::Vertex { corner } => {
                 let vertex = facet.corner[corner] as usize;
                 (self.vertices[vertex], self.corners[vertex].outward)
             }
         };
-        let distance_sq = match region {
-            // The height itself: squaring the difference of two points would cost digits.
-            Region::Face => facet.height(p) * facet.height(p),
-            _ => (p - point).norm_squared(),
-        };
         Closest {
             point,
-            distance_sq,
+            distance_sq: (p - point).norm_squared(),
             outward,
             region,
         }
@@ -161,7 +202,7 @@ impl TriMesh {
         let (start, end) = self.corners[vertex as usize].ring;
         self.rings[start as usize..end as usize]
             .iter()
-            .all(|&(edge, ends_here)| past_end(self.edges[edge as usize].share(p), ends_here))
+            .all(|&(edge, ends_here)| self.edges[edge as usize].is_past_end(p, ends_here))
     }
 
     /// Signed distance and unit normal of `p` whose closest point is `closest`.
@@ -207,10 +248,4 @@ impl TriMesh {
         }
         self.nearest_on(p, best.1)
     }
-}
-
-/// Whether a point at `share` of an edge is past its second end (`second`) or before its first.
-#[inline]
-fn past_end(share: f64, second: bool) -> bool {
-    if second { share >= 1.0 } else { share <= 0.0 }
 }

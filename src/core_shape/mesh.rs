@@ -57,6 +57,9 @@ pub(crate) struct Facet {
     pub across: [u32; 3],
     /// vertex indices
     pub corner: [u32; 3],
+    /// width per height of the strip over each side that lies in both prisms: 0 at flat and convex
+    /// edges, negative at concave edges that are no seams, where both faces touch
+    pub overlap: [f64; 3],
 }
 
 /// An edge shared by two triangles.
@@ -76,10 +79,6 @@ pub(crate) struct Edge {
     pub side_in: [u8; 2],
     /// unit bisector of the two face normals: tells outside from inside at the edge
     pub outward: V3,
-    /// angle between the face normals, rad; positive: convex, negative: concave
-    pub bend: f64,
-    /// width per height of the strip over this edge that lies in both prisms: 0 unless concave
-    pub overlap: f64,
 }
 
 /// A vertex with its surroundings.
@@ -222,6 +221,7 @@ fn facets(vertices: &[V3], triangles: &[[u32; 3]]) -> Result<Vec<Facet>, MeshErr
             edge: [0; 3],
             across: [0; 3],
             corner: *corner,
+            overlap: [0.0; 3],
         });
     }
     Ok(facets)
@@ -295,13 +295,12 @@ mod tests {
         assert!(mesh.is_convex());
         // Euler: V - E + F = 2.
         assert_eq!(8 + mesh.len(), mesh.edges.len() + 2);
-        let flat = mesh.edges.iter().filter(|e| e.bend.abs() < 1e-12).count();
-        let right = mesh
-            .edges
-            .iter()
-            .filter(|e| (e.bend.to_degrees() - 90.0).abs() < 1e-9)
-            .count();
-        assert_eq!((flat, right), (6, 12));
+        let bends = |e: &&Edge| {
+            mesh.normal(e.triangles[0])
+                .dot(&mesh.normal(e.triangles[1]))
+                < 0.5
+        };
+        assert_eq!(mesh.edges.iter().filter(bends).count(), 12);
         for (t, facet) in mesh.facets.iter().enumerate() {
             for k in 0..3 {
                 let other = &mesh.facets[facet.across[k] as usize];

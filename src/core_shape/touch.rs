@@ -18,7 +18,7 @@
 //!
 //! Over the shared edge of two coplanar triangles rounding may put the centre into both prisms or
 //! into none. In none: each triangle finds the edge closest, and the edge rule serves. In both,
-//! and over concave edges that bend less than [`SEAM_BEND`] (tessellated fillets, noise of
+//! and over concave edges that bend less than 15 degrees (tessellated fillets, noise of
 //! files), only the nearer face touches, ties going to the lower index. At a vertex inside a flat
 //! face the same can happen to triangles that share no edge: touches at one point are merged,
 //! and if every triangle passed the touch on to another, the nearest feature is taken.
@@ -27,12 +27,6 @@ use super::feature::{Closest, Region};
 use super::mesh::{Facet, TriMesh};
 use crate::math::V3;
 
-/// A concave edge bending less than this is part of one smooth face, rad.
-///
-/// Chosen (15 degrees): the second touch of a concave edge sets in at depth zero as long as the
-/// first is shallower than `r (1 - cos bend)`, 3.4 % of r here, a depth contact keeps below. For
-/// a smaller bend it would set in with a jump, as if the stiffness doubled.
-const SEAM_BEND: f64 = 15.0 / 180.0 * std::f64::consts::PI;
 /// Touches closer than this share of the radius and with like normals are one.
 const SAME_POINT: f64 = 1e-9;
 /// Cosine between normals that may be one touch.
@@ -75,7 +69,7 @@ impl TriMesh {
         // Nearest touch with the centre inside, and its signed distance.
         let mut inside: Option<(f64, Touch)> = None;
         let mut least_outside = f64::INFINITY;
-        // Some surface is within r, so there must be a touch.
+        // Some surface may be within r; if it is, there must be a touch.
         let mut within = false;
         for triangle in candidates.clone() {
             let facet = &self.facets[triangle as usize];
@@ -85,12 +79,28 @@ impl TriMesh {
             if !close {
                 continue;
             }
-            let closest = self.closest(triangle, p);
-            if closest.distance_sq >= r * r {
+            let beyond = facet.beyond_sides(p);
+            let farthest = beyond[0].max(beyond[1]).max(beyond[2]);
+            let region = if farthest <= 0.0 {
+                Region::Face
+            } else if height * height + farthest * farthest >= r * r {
+                continue;
+            } else {
+                self.region_outside(facet, p, beyond)
+            };
+            within = true;
+            let counts = match region {
+                Region::Face => !self.outranked(triangle, facet, height, beyond, p),
+                Region::Edge { side, .. } => self.is_edge_touch(triangle, facet.edge[side], p),
+                Region::Vertex { corner } => {
+                    self.is_vertex_touch(triangle, facet.corner[corner], p)
+                }
+            };
+            if !counts {
                 continue;
             }
-            within = true;
-            if !self.counts(triangle, facet, p, height, &closest) {
+            let closest = self.closest_in(region, facet, p);
+            if closest.distance_sq >= r * r {
                 continue;
             }
             let (distance, touch) = self.touch(p, r, triangle, &closest);
@@ -114,38 +124,41 @@ impl TriMesh {
         self.merge(r, out);
     }
 
-    /// Whether this triangle is the one that counts the touch at `closest`.
+    /// Whether `p`, beside the edge of this triangle, is so for the other as well; only the lower
+    /// index counts it.
     #[inline]
-    fn counts(&self, triangle: u32, facet: &Facet, p: V3, height: f64, closest: &Closest) -> bool {
-        match closest.region {
-            Region::Face => !self.outranked(triangle, facet, p, height),
-            Region::Edge { side, .. } => {
-                let edge = &self.edges[facet.edge[side] as usize];
-                let [first, second] = edge.triangles;
-                if triangle != first {
-                    return false;
-                }
-                let other = &self.facets[second as usize];
-                other.beyond(edge.side_in[1] as usize, p) > 0.0
-            }
-            Region::Vertex { corner } => {
-                let vertex = facet.corner[corner];
-                triangle == self.corners[vertex as usize].first_triangle
-                    && self.in_normal_cone(vertex, p)
-            }
+    fn is_edge_touch(&self, triangle: u32, edge: u32, p: V3) -> bool {
+        let edge = &self.edges[edge as usize];
+        let [first, second] = edge.triangles;
+        triangle == first && {
+            let other = &self.facets[second as usize];
+            other.beyond(edge.side_in[1] as usize, p) > 0.0
         }
+    }
+
+    /// Whether `p`, past the vertex of this triangle, is so for all others; only the lowest index
+    /// counts it.
+    #[inline]
+    fn is_vertex_touch(&self, triangle: u32, vertex: u32, p: V3) -> bool {
+        triangle == self.corners[vertex as usize].first_triangle && self.in_normal_cone(vertex, p)
     }
 
     /// Whether `p`, at `height` over this face, belongs to a nearer face across a seam.
     #[inline]
-    fn outranked(&self, triangle: u32, facet: &Facet, p: V3, height: f64) -> bool {
+    fn outranked(
+        &self,
+        triangle: u32,
+        facet: &Facet,
+        height: f64,
+        beyond: [f64; 3],
+        p: V3,
+    ) -> bool {
         if height < 0.0 {
             return false;
         }
         (0..3).any(|side| {
-            let edge = &self.edges[facet.edge[side] as usize];
-            let strip = height * edge.overlap + self.tiny;
-            if edge.bend < -SEAM_BEND || facet.beyond(side, p) < -strip {
+            let overlap = facet.overlap[side];
+            if overlap < 0.0 || beyond[side] < -(height * overlap + self.tiny) {
                 return false;
             }
             let across = facet.across[side];
