@@ -326,7 +326,7 @@ mod tests {
                 MeshError::Open {
                     from: 4,
                     to: 6,
-                    triangle: 1
+                    triangle: 0
                 }
             ),
             "{error}"
