@@ -1,0 +1,451 @@
+//! The picture of core and wire, `coil.png`.
+//!
+//! Triangles are drawn into a buffer that keeps the nearest one per pixel, at twice the size in
+//! each direction; each such pixel is then lit once and four make one of the picture.
+
+use super::OutputError;
+use super::camera::{Camera, Frame, Light};
+use super::raster::{NONE, Raster};
+use super::shade::{Lighting, Material, background, shade, to_srgb};
+use super::tube::tube_mesh;
+use super::vtp::{check_mesh, turns_of_nodes};
+use crate::math::V3;
+use crate::simulation::Centreline;
+use image::{Rgb, RgbImage};
+use std::path::Path;
+
+/// Pixels drawn per pixel shown, in each direction.
+const SUPERSAMPLING: u32 = 2;
+/// Width of the view, rad: narrow, as through a long lens.
+const VIEW_ANGLE: f64 = 0.40;
+/// Angle between neighbouring triangles up to which the core is shaded as one round surface, rad.
+const CREASE: f64 = 0.6;
+/// Number of triangles that the wire's smoothness is kept to.
+const WIRE_TRIANGLES: usize = 2_000_000;
+
+/// Surface of the core in its own frame.
+#[derive(Clone, Copy, Debug)]
+pub struct CoreMesh<'a> {
+    /// m
+    pub vertices: &'a [V3],
+    /// three vertices each
+    pub triangles: &'a [[u32; 3]],
+}
+
+/// What the wire's colour tells.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Colouring {
+    /// wire at rest is copper, live wire blue
+    #[default]
+    State,
+    /// each turn its own, live wire too
+    Turn,
+}
+
+/// What is to be seen, from where.
+#[derive(Clone, Copy, Debug)]
+pub struct Picture<'a> {
+    /// core, if any
+    pub core: Option<CoreMesh<'a>>,
+    /// wire in the core frame
+    pub wire: &'a Centreline,
+    /// wire radius, m
+    pub radius: f64,
+    /// what the wire's colour tells
+    pub colouring: Colouring,
+    /// width and height, pixels
+    pub size: (u32, u32),
+    /// direction from the coil to the viewer, core frame
+    pub from: V3,
+}
+
+impl<'a> Picture<'a> {
+    /// A 1200 x 900 picture, seen from the clamp's face, a little from the side and from above.
+    pub fn new(core: Option<CoreMesh<'a>>, wire: &'a Centreline, radius: f64) -> Self {
+        Self {
+            core,
+            wire,
+            radius,
+            colouring: Colouring::State,
+            size: (1200, 900),
+            from: V3::new(1.0, 0.55, 0.62),
+        }
+    }
+}
+
+/// Renders the picture and writes it as PNG.
+pub fn render_png(path: &Path, picture: &Picture) -> Result<(), OutputError> {
+    if let Some(core) = &picture.core {
+        check_mesh(path, core.vertices, core.triangles)?;
+    }
+    render(picture)
+        .save_with_format(path, image::ImageFormat::Png)
+        .map_err(|source| OutputError::Image {
+            path: path.to_owned(),
+            source,
+        })
+}
+
+/// Renders the picture. The core's triangles must name existing vertices.
+pub fn render(picture: &Picture) -> RgbImage {
+    let mut scene = Surface::default();
+    if let Some(core) = &picture.core {
+        scene.add_core(core);
+    }
+    scene.add_wire(picture);
+    let (width, height) = picture.size;
+    let (wide, high) = (width * SUPERSAMPLING, height * SUPERSAMPLING);
+    let framed = framed_points(picture);
+    let frame = Frame::looking_from(picture.from, V3::y());
+    let size = (f64::from(wide), f64::from(high));
+    let camera = Camera::framing(&framed, frame, VIEW_ANGLE, size, 0.06);
+    let light = Light::on(&framed, camera.direction(-0.55, 0.75, 0.62), 2048);
+
+    let mut seen = Raster::new(wide as usize, high as usize);
+    let mut shadow = Raster::new(light.texels, light.texels);
+    for (id, triangle) in scene.triangles.iter().enumerate() {
+        let id = id as u32;
+        shadow.draw(triangle.points.map(|p| light.project(p)), id);
+        let [a, b, c] = triangle.points.map(|p| camera.project(p));
+        if let (Some(a), Some(b), Some(c)) = (a, b, c) {
+            seen.draw([a, b, c], id);
+        }
+    }
+    let reach = 2.5 * picture.radius;
+    let view = View {
+        scene: &scene,
+        camera,
+        light,
+        seen,
+        shadow,
+        disc: Disc::new(),
+        reach,
+    };
+    RgbImage::from_fn(width, height, |x, y| {
+        let mut sum = V3::zeros();
+        for sub in 0..SUPERSAMPLING * SUPERSAMPLING {
+            let column = x * SUPERSAMPLING + sub % SUPERSAMPLING;
+            sum += view.pixel(
+                column as usize,
+                (y * SUPERSAMPLING + sub / SUPERSAMPLING) as usize,
+            );
+        }
+        let mean = sum / f64::from(SUPERSAMPLING * SUPERSAMPLING);
+        Rgb([mean.x, mean.y, mean.z].map(to_srgb))
+    })
+}
+
+/// Points that must be in the picture: the core's section over the length of the coil, and the
+/// wire on it. The free wire leaves the picture, and a long core is cut.
+fn framed_points(picture: &Picture) -> Vec<V3> {
+    let wire = picture.wire;
+    let laid = wire
+        .frozen
+        .clamp(wire.points.len().min(1), wire.points.len());
+    let mut points: Vec<V3> = wire.points[..laid].to_vec();
+    let (low, high) = points
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| {
+            (low.min(p.y), high.max(p.y))
+        });
+    if let Some(core) = &picture.core {
+        // Enough core on both sides of the wire to see where on it the wire lies.
+        let free = 6.0 * picture.radius;
+        let (low, high) = if low <= high {
+            (low - free, high + free)
+        } else {
+            (low, -low)
+        };
+        let inside = |p: &V3| {
+            V3::new(
+                p.x,
+                if low <= high {
+                    p.y.clamp(low, high)
+                } else {
+                    p.y
+                },
+                p.z,
+            )
+        };
+        points.extend(core.vertices.iter().map(inside));
+    }
+    if points.is_empty() {
+        points.push(V3::zeros());
+    }
+    points
+}
+
+/// A triangle with normals at its corners.
+struct Triangle {
+    points: [V3; 3],
+    normals: [V3; 3],
+    material: u32,
+}
+
+/// Everything that is drawn.
+#[derive(Default)]
+struct Surface {
+    triangles: Vec<Triangle>,
+    materials: Vec<Material>,
+}
+
+impl Surface {
+    fn material(&mut self, material: Material) -> u32 {
+        let known = self.materials.iter().position(|&m| m == material);
+        let index = known.unwrap_or_else(|| {
+            self.materials.push(material);
+            self.materials.len() - 1
+        });
+        index as u32
+    }
+
+    fn add_core(&mut self, core: &CoreMesh) {
+        let material = self.material(Material::core());
+        let corners = |t: &[u32; 3]| t.map(|vertex| core.vertices[vertex as usize]);
+        // Twice the area times the unit normal: large triangles count more at a vertex.
+        let areas: Vec<V3> = core
+            .triangles
+            .iter()
+            .map(|t| {
+                let [a, b, c] = corners(t);
+                (b - a).cross(&(c - a))
+            })
+            .collect();
+        // Files such as STL repeat a vertex per triangle: join those at the same place.
+        let place = |p: &V3| [p.x, p.y, p.z].map(|c| (c * 1e9).round() as i64);
+        let mut around = std::collections::BTreeMap::<[i64; 3], Vec<usize>>::new();
+        for (index, t) in core.triangles.iter().enumerate() {
+            for p in corners(t) {
+                around.entry(place(&p)).or_default().push(index);
+            }
+        }
+        let cos_crease = libm::cos(CREASE);
+        for (index, t) in core.triangles.iter().enumerate() {
+            let Some(own) = areas[index].try_normalize(0.0) else {
+                continue;
+            };
+            let points = corners(t);
+            let normals = points.map(|p| {
+                let same = around[&place(&p)].iter().map(|&k| areas[k]);
+                let smooth = same.filter(|area| area.dot(&own) > cos_crease * area.norm());
+                smooth.sum::<V3>().try_normalize(0.0).unwrap_or(own)
+            });
+            self.triangles.push(Triangle {
+                points,
+                normals,
+                material,
+            });
+        }
+    }
+
+    fn add_wire(&mut self, picture: &Picture) {
+        let wire = picture.wire;
+        let sides = 24;
+        let budget = WIRE_TRIANGLES / (2 * sides * wire.points.len().max(1));
+        let pieces = budget.clamp(1, 5);
+        let line = smooth_line(&wire.points, pieces);
+        let mesh = tube_mesh(&line, picture.radius, sides);
+        let turns = turns_of_nodes(&wire.points);
+        let materials: Vec<u32> = (0..wire.points.len())
+            .map(|node| match picture.colouring {
+                Colouring::Turn => Material::turn(turns[node]),
+                Colouring::State if node + 1 < wire.frozen => Material::frozen(),
+                Colouring::State => Material::live(),
+            })
+            .map(|material| self.material(material))
+            .collect();
+        for polygon in mesh.polygons() {
+            let ring = polygon.iter().copied().min().unwrap_or(0) as usize / sides;
+            let node = (ring / pieces).min(materials.len() - 1);
+            let first = polygon[0] as usize;
+            for k in 1..polygon.len() - 1 {
+                let corners = [first, polygon[k] as usize, polygon[k + 1] as usize];
+                self.triangles.push(Triangle {
+                    points: corners.map(|i| mesh.points[i]),
+                    normals: corners.map(|i| mesh.normals[i]),
+                    material: materials[node],
+                });
+            }
+        }
+    }
+}
+
+/// The line through `points` with `pieces` straight pieces per edge, on cubic curves whose
+/// directions at the points are those of the parabola through them and their neighbours.
+fn smooth_line(points: &[V3], pieces: usize) -> Vec<V3> {
+    let edge = |k: usize| points[k + 1] - points[k];
+    let length = |k: usize| edge(k).norm().max(1e-12);
+    let slope = |node: usize| match node {
+        0 => edge(0) / length(0),
+        _ if node + 1 == points.len() => edge(node - 1) / length(node - 1),
+        _ => {
+            let (before, after) = (length(node - 1), length(node));
+            let (a, b) = (edge(node - 1) / before, edge(node) / after);
+            (a * after + b * before) / (before + after)
+        }
+    };
+    let mut line = Vec::with_capacity(points.len() * pieces);
+    for k in 0..points.len().saturating_sub(1) {
+        let (from, to, h) = (slope(k), slope(k + 1), length(k));
+        for piece in 0..pieces {
+            let t = piece as f64 / pieces as f64;
+            let (t2, t3) = (t * t, t * t * t);
+            line.push(
+                points[k] * (2.0 * t3 - 3.0 * t2 + 1.0)
+                    + from * (h * (t3 - 2.0 * t2 + t))
+                    + points[k + 1] * (3.0 * t2 - 2.0 * t3)
+                    + to * (h * (t3 - t2)),
+            );
+        }
+    }
+    line.extend(points.last());
+    line
+}
+
+/// All that is needed to light a pixel.
+struct View<'a> {
+    scene: &'a Surface,
+    camera: Camera,
+    light: Light,
+    seen: Raster,
+    shadow: Raster,
+    disc: Disc,
+    /// distance within which surfaces darken each other, m
+    reach: f64,
+}
+
+impl View<'_> {
+    fn pixel(&self, column: usize, row: usize) -> V3 {
+        let id = self.seen.triangle[row * self.seen.width + column];
+        let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
+        if id == NONE {
+            let aside = x / self.seen.width as f64 - 0.5;
+            return background(y / self.seen.height as f64, aside);
+        }
+        let triangle = &self.scene.triangles[id as usize];
+        let ray = self.camera.ray(x, y);
+        let (point, normal) = hit(triangle, self.camera.eye, ray);
+        let normal = if normal.dot(&ray) > 0.0 {
+            -normal
+        } else {
+            normal
+        };
+        let lighting = Lighting {
+            key: self.light.towards(),
+            up: self.camera.up(),
+            viewer: -ray,
+            lit: self.lit(point, normal, (column, row)),
+            open: self.open(point, normal, (column, row)),
+        };
+        shade(
+            &self.scene.materials[triangle.material as usize],
+            normal,
+            &lighting,
+        )
+    }
+
+    /// Share of the key light that reaches a point, over a small disc of the shadow map.
+    fn lit(&self, point: V3, normal: V3, pixel: (usize, usize)) -> f64 {
+        let texel = self.light.texel();
+        // Off the surface by the slope across the disc, so that it does not shade itself.
+        let p = self.light.project(point + normal * (3.0 * texel));
+        let samples = self.disc.around(pixel, 3.0).filter(|&(dx, dy)| {
+            let (x, y) = (p[0] + dx, p[1] + dy);
+            let size = self.light.texels as f64;
+            if !(0.0..size).contains(&x) || !(0.0..size).contains(&y) {
+                return true;
+            }
+            let texel_index = y as usize * self.light.texels + x as usize;
+            f64::from(self.shadow.near[texel_index]) <= p[2] + 2.0 * texel
+        });
+        samples.count() as f64 / DISC as f64
+    }
+
+    /// Share of the surroundings not hidden by what is near, judged from the depths around the
+    /// pixel (screen-space ambient occlusion).
+    fn open(&self, point: V3, normal: V3, pixel: (usize, usize)) -> f64 {
+        let Some([_, _, near]) = self.camera.project(point) else {
+            return 1.0;
+        };
+        let mut hidden = 0.0;
+        for (dx, dy) in self
+            .disc
+            .around(pixel, self.reach * self.camera.scale(near))
+        {
+            let (x, y) = (pixel.0 as f64 + 0.5 + dx, pixel.1 as f64 + 0.5 + dy);
+            let inside = (0.0..self.seen.width as f64).contains(&x)
+                && (0.0..self.seen.height as f64).contains(&y);
+            if !inside {
+                continue;
+            }
+            let other_near = self.seen.near[y as usize * self.seen.width + x as usize];
+            if other_near <= 0.0 {
+                continue;
+            }
+            let other = self.camera.unproject(x, y, f64::from(other_near)) - point;
+            let distance = other.norm().max(1e-12);
+            // Only what rises over the surface hides, and only nearby: crevices, not whole faces.
+            let rise = (normal.dot(&other) / distance - 0.08).max(0.0);
+            hidden += rise * (1.0 - distance / (2.0 * self.reach)).max(0.0);
+        }
+        (1.0 - 2.2 * hidden / DISC as f64).clamp(0.2, 1.0)
+    }
+}
+
+/// Samples of a disc.
+const DISC: usize = 12;
+
+/// Points spread evenly over the unit disc on a spiral.
+struct Disc([(f64, f64); DISC]);
+
+impl Disc {
+    fn new() -> Self {
+        let golden = 2.399_963_229_728_653;
+        Self(std::array::from_fn(|k| {
+            let (angle, r) = (golden * k as f64, ((k as f64 + 0.5) / DISC as f64).sqrt());
+            (r * libm::cos(angle), r * libm::sin(angle))
+        }))
+    }
+
+    /// The points at `radius` about a pixel, turned from pixel to pixel so that the error is fine
+    /// grain and not bands.
+    fn around(
+        &self,
+        (column, row): (usize, usize),
+        radius: f64,
+    ) -> impl Iterator<Item = (f64, f64)> + '_ {
+        // Interleaved gradient noise (Jimenez 2014): evenly spread over neighbouring pixels.
+        let seed = 0.067_110_56 * column as f64 + 0.005_837_15 * row as f64;
+        let turn = std::f64::consts::TAU * (52.982_918_9 * seed.fract()).fract();
+        let (c, s) = (radius * libm::cos(turn), radius * libm::sin(turn));
+        self.0
+            .iter()
+            .map(move |&(x, y)| (c * x - s * y, s * x + c * y))
+    }
+}
+
+/// Where a ray meets a triangle's plane, and the normal interpolated there.
+fn hit(triangle: &Triangle, eye: V3, ray: V3) -> (V3, V3) {
+    let [a, b, c] = triangle.points;
+    let (u, v) = (b - a, c - a);
+    let plane = u.cross(&v);
+    let across = plane.dot(&ray);
+    let point = if across == 0.0 {
+        a
+    } else {
+        eye + ray * (plane.dot(&(a - eye)) / across)
+    };
+    let area2 = plane.norm_squared();
+    let wb = plane.dot(&(point - a).cross(&v)) / area2;
+    let wc = plane.dot(&u.cross(&(point - a))) / area2;
+    // Pixels at an edge may fall a hair outside.
+    let (wb, wc) = (wb.clamp(0.0, 1.0), wc.clamp(0.0, 1.0));
+    let [na, nb, nc] = triangle.normals;
+    let normal = na * (1.0 - wb - wc) + nb * wb + nc * wc;
+    (
+        point,
+        normal
+            .try_normalize(0.0)
+            .unwrap_or_else(|| plane.normalize()),
+    )
+}
