@@ -108,7 +108,7 @@ fn helix_on_a_cylinder_has_the_gap_of_its_pitch() {
                 "{pitch} {station:?}"
             );
             assert!(
-                (neighbour.axial - pitch).abs() < 2e-4 * pitch,
+                (neighbour.axial - axial).abs() < 5e-6 * pitch,
                 "{station:?}"
             );
         }
