@@ -99,7 +99,7 @@ pub fn render(picture: &Picture) -> RgbImage {
     let frame = Frame::looking_from(picture.from, V3::y());
     let size = (f64::from(wide), f64::from(high));
     let camera = Camera::framing(&framed, frame, VIEW_ANGLE, size, 0.06);
-    let light = Light::on(&framed, camera.direction(-0.55, 0.75, 0.62), 2048);
+    let light = Light::on(&framed, camera.direction(0.30, 0.85, 0.75), 2048);
 
     let mut seen = Raster::new(wide as usize, high as usize);
     let mut shadow = Raster::new(light.texels, light.texels);
@@ -349,7 +349,7 @@ impl View<'_> {
         let texel = self.light.texel();
         // Off the surface by the slope across the disc, so that it does not shade itself.
         let p = self.light.project(point + normal * (3.0 * texel));
-        let samples = self.disc.around(pixel, 3.0).filter(|&(dx, dy)| {
+        let samples = self.disc.around(pixel, 5.0).filter(|&(dx, dy)| {
             let (x, y) = (p[0] + dx, p[1] + dy);
             let size = self.light.texels as f64;
             if !(0.0..size).contains(&x) || !(0.0..size).contains(&y) {

@@ -17,7 +17,7 @@ impl Material {
     /// Core: matt light grey, so that wire and its shadow stand out.
     pub(crate) fn core() -> Self {
         Self {
-            colour: V3::new(0.36, 0.38, 0.42),
+            colour: V3::new(0.42, 0.44, 0.47),
             shine: V3::repeat(0.06),
             polish: 24,
         }
@@ -34,18 +34,18 @@ impl Material {
 
     /// Wire at rest: copper.
     pub(crate) fn frozen() -> Self {
-        Self::metal(V3::new(0.60, 0.20, 0.075))
+        Self::metal(V3::new(0.50, 0.16, 0.06))
     }
 
     /// Wire in motion: pale blue.
     pub(crate) fn live() -> Self {
-        Self::metal(V3::new(0.13, 0.34, 0.60))
+        Self::metal(V3::new(0.08, 0.26, 0.50))
     }
 
     /// Wire of a turn (from 1), in six colours that neighbours do not share.
     pub(crate) fn turn(turn: u32) -> Self {
         const COLOURS: [[f64; 3]; 6] = [
-            [0.60, 0.20, 0.075],
+            [0.50, 0.16, 0.06],
             [0.07, 0.33, 0.42],
             [0.66, 0.42, 0.07],
             [0.36, 0.11, 0.36],
@@ -81,7 +81,7 @@ pub(crate) fn shade(material: &Material, normal: V3, light: &Lighting) -> V3 {
     let facing = normal.dot(&light.key).max(0.0) * light.lit;
     // A weak light from the viewer keeps what is turned away readable.
     let head = 0.16 * normal.dot(&light.viewer).max(0.0) * light.open;
-    let diffuse = ambient + V3::new(1.30, 1.24, 1.14) * facing + V3::repeat(head);
+    let diffuse = ambient + V3::new(1.22, 1.17, 1.09) * facing + V3::repeat(head);
     let half = (light.key + light.viewer).normalize();
     let highlight = normal.dot(&half).max(0.0).powi(material.polish) * light.lit * 1.6;
     // Edges seen at a grazing angle mirror the sky.
@@ -91,7 +91,7 @@ pub(crate) fn shade(material: &Material, normal: V3, light: &Lighting) -> V3 {
 
 /// Background at a height in the picture, 0 at the top to 1 at the bottom.
 pub(crate) fn background(height: f64, aside: f64) -> V3 {
-    let (top, bottom) = (V3::new(0.86, 0.89, 0.93), V3::new(0.60, 0.64, 0.69));
+    let (top, bottom) = (V3::new(0.90, 0.92, 0.95), V3::new(0.62, 0.66, 0.72));
     let vignette = 1.0 - 0.22 * (aside * aside + (height - 0.45) * (height - 0.45));
     (top + (bottom - top) * height * height) * vignette
 }
