@@ -1,0 +1,84 @@
+//! Categories of log messages, declared in the XML and used by the C boundary.
+
+/// One category that an importer can switch on by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Category {
+    /// what happens to the wire: turn laid, layer closed, defect found
+    Events,
+    /// things that are not quite right
+    Warning,
+    /// a step or a question that cannot be served
+    Discard,
+    /// refused calls and failed steps
+    Error,
+    /// the instance is lost
+    Fatal,
+    /// trouble of the solver: rejected and halved steps
+    Solver,
+    /// all of them; never the category of a message
+    All,
+}
+
+/// Every category with its standard name (FMI 2.0.5, table in section 2.2.4) and description.
+pub const CATEGORIES: [(Category, &str, &str); 7] = [
+    (
+        Category::Events,
+        "logEvents",
+        "Turns laid, layers closed, defects found",
+    ),
+    (
+        Category::Warning,
+        "logStatusWarning",
+        "Warnings about the scene or the wire",
+    ),
+    (
+        Category::Discard,
+        "logStatusDiscard",
+        "Information that cannot be given",
+    ),
+    (
+        Category::Error,
+        "logStatusError",
+        "Refused calls and failed steps, with the reason",
+    ),
+    (
+        Category::Fatal,
+        "logStatusFatal",
+        "The instance can only be freed",
+    ),
+    (
+        Category::Solver,
+        "logNonlinearSystems",
+        "Steps that the solver rejected or halved",
+    ),
+    (Category::All, "logAll", "All messages"),
+];
+
+impl Category {
+    /// The name that stands in the XML and goes to the importer's logger.
+    pub fn name(self) -> &'static str {
+        CATEGORIES
+            .iter()
+            .find(|row| row.0 == self)
+            .map_or("logAll", |row| row.1)
+    }
+
+    /// The category of that name.
+    pub fn by_name(name: &str) -> Option<Self> {
+        CATEGORIES.iter().find(|row| row.1 == name).map(|row| row.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_lead_back() {
+        for (category, name, _) in CATEGORIES {
+            assert_eq!(category.name(), name);
+            assert_eq!(Category::by_name(name), Some(category));
+        }
+        assert_eq!(Category::by_name("logStatusPending"), None);
+    }
+}

@@ -1,0 +1,76 @@
+//! `ModelStructure`: which variables are results and what they follow from.
+
+use coilwind::variables::{Causality, Variable, table};
+use quick_xml::Writer;
+use std::io;
+
+/// Writes the element `ModelStructure`.
+///
+/// In step mode an output is a result of the last step; writing an input at a communication point
+/// changes none of them before the next step, so `dependencies` is empty and importers need not
+/// look for algebraic loops through the FMU. At the start every output may follow from the inputs
+/// and from every parameter of the scene.
+pub(crate) fn write(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
+    let outputs = indices(|variable| variable.causality == Causality::Output);
+    let knowns = indices(shapes_the_start);
+    let dependencies = join(&knowns, ToString::to_string);
+    let kinds = join(&knowns, |_| "dependent".to_owned());
+    writer
+        .create_element("ModelStructure")
+        .write_inner_content(|writer| {
+            writer
+                .create_element("Outputs")
+                .write_inner_content(|writer| {
+                    for index in &outputs {
+                        write_unknown(writer, *index, "", "")?;
+                    }
+                    Ok(())
+                })?;
+            writer
+                .create_element("InitialUnknowns")
+                .write_inner_content(|writer| {
+                    for index in &outputs {
+                        write_unknown(writer, *index, &dependencies, &kinds)?;
+                    }
+                    Ok(())
+                })?;
+            Ok(())
+        })?;
+    Ok(())
+}
+
+/// Where files go does not move the wire; everything else that can be set does.
+fn shapes_the_start(variable: &Variable) -> bool {
+    matches!(variable.causality, Causality::Input | Causality::Parameter)
+        && !variable.name.starts_with("output.")
+}
+
+/// Positions in `ModelVariables`, counted from 1 as FMI does.
+fn indices(wanted: fn(&Variable) -> bool) -> Vec<usize> {
+    (1..)
+        .zip(table())
+        .filter(|(_, variable)| wanted(variable))
+        .map(|(index, _)| index)
+        .collect()
+}
+
+fn join(indices: &[usize], text: fn(&usize) -> String) -> String {
+    indices.iter().map(text).collect::<Vec<_>>().join(" ")
+}
+
+fn write_unknown(
+    writer: &mut Writer<Vec<u8>>,
+    index: usize,
+    dependencies: &str,
+    kinds: &str,
+) -> io::Result<()> {
+    writer
+        .create_element("Unknown")
+        .with_attributes([
+            ("index", index.to_string().as_str()),
+            ("dependencies", dependencies),
+            ("dependenciesKind", kinds),
+        ])
+        .write_empty()?;
+    Ok(())
+}

@@ -1,0 +1,93 @@
+//! The archive holds what FMI wants where FMI wants it, and its bytes depend on nothing else.
+
+use coilwind_model_description::{Contents, PackError, model_description, pack};
+use std::fs;
+use std::io::Read;
+use std::path::PathBuf;
+
+fn contents(directory: &std::path::Path) -> Contents {
+    let scenes = directory.join("packed");
+    fs::create_dir_all(&scenes).expect("directory");
+    fs::write(scenes.join("b.toml"), "preset = \"paper\"\n").expect("scene");
+    fs::write(scenes.join("a.toml"), "preset = \"default\"\n").expect("scene");
+    fs::write(scenes.join("notes.txt"), "not a scene").expect("file");
+    let library = directory.join("libCoilWinding.so");
+    fs::write(&library, [7_u8; 5000]).expect("library");
+    Contents {
+        libraries: vec![library],
+        scenes: Some(scenes),
+    }
+}
+
+#[test]
+fn archive_has_the_fmi_layout() {
+    let directory = tempfile::tempdir().expect("directory");
+    let out = directory.path().join("fmu/CoilWinding.fmu");
+    pack(&contents(directory.path()), &out).expect("packed");
+    let mut zip = zip::ZipArchive::new(fs::File::open(&out).expect("FMU")).expect("a zip file");
+    let names: Vec<_> = (0..zip.len())
+        .map(|index| {
+            zip.by_index(index)
+                .expect("entry")
+                .name()
+                .map(|n| n.into_owned())
+                .expect("name")
+        })
+        .collect();
+    assert_eq!(
+        names,
+        [
+            "modelDescription.xml",
+            "binaries/linux64/CoilWinding.so",
+            "resources/scenes/a.toml",
+            "resources/scenes/b.toml"
+        ]
+    );
+    let mut text = String::new();
+    zip.by_name("modelDescription.xml")
+        .expect("description")
+        .read_to_string(&mut text)
+        .expect("text");
+    assert_eq!(text, model_description().expect("description"));
+}
+
+#[test]
+fn same_contents_give_the_same_bytes() {
+    let directory = tempfile::tempdir().expect("directory");
+    let contents = contents(directory.path());
+    let (first, second) = (
+        directory.path().join("1.fmu"),
+        directory.path().join("2.fmu"),
+    );
+    pack(&contents, &first).expect("packed");
+    pack(&contents, &second).expect("packed");
+    assert_eq!(
+        fs::read(first).expect("first"),
+        fs::read(second).expect("second")
+    );
+}
+
+#[test]
+fn missing_scenes_are_left_out_and_odd_libraries_refused() {
+    let directory = tempfile::tempdir().expect("directory");
+    let out = directory.path().join("out.fmu");
+    let mut contents = contents(directory.path());
+    contents.scenes = Some(directory.path().join("absent"));
+    pack(&contents, &out).expect("packed");
+    let library = contents.libraries[0].clone();
+    contents.libraries = vec![library.clone(), library];
+    assert!(matches!(
+        pack(&contents, &out),
+        Err(PackError::Twice {
+            platform: "linux64",
+            ..
+        })
+    ));
+    contents.libraries = vec![PathBuf::from("library.txt")];
+    assert!(matches!(
+        pack(&contents, &out),
+        Err(PackError::Platform { .. })
+    ));
+    contents.libraries = vec![directory.path().join("absent.so")];
+    assert!(matches!(pack(&contents, &out), Err(PackError::File { .. })));
+}
