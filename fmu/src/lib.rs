@@ -1,1 +1,30 @@
-//! placeholder for the C boundary, written next.
+//! FMI 2.0 for co-simulation: the C boundary of coilwind, and the only crate with `unsafe`.
+//!
+//! [`exports`] holds the C functions, a few lines each: pointers are read in [`pointers`], the call
+//! runs inside [`guard`], which asks [`lifecycle`] whether it is allowed, catches panics and
+//! delivers messages through [`logger`]. Everything behind that is safe: [`instance`] with its
+//! [`parameters`] and [`clock`].
+//!
+//! # Invariants
+//!
+//! * A refused call returns `fmi2Error`, says why, and leaves the instance as it was.
+//! * No panic crosses the boundary; after one the instance is fatal and can only be freed.
+//! * No globals but the GUID: instances share nothing and may live in different threads.
+//! * The importer's logger is called when no reference into the instance is alive, so it may call
+//!   back.
+// The library's file name is the model identifier, which FMI wants equal in three places.
+#![allow(non_snake_case)]
+#![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
+
+mod clock;
+pub mod exports;
+pub mod ffi;
+mod guard;
+mod instance;
+mod lifecycle;
+mod logger;
+mod parameters;
+mod pointers;
+mod refusal;
+mod resources;
+mod scalar;

@@ -1,0 +1,109 @@
+//! Where the unpacked FMU keeps its resources, from the URI that importers hand over.
+
+use percent_encoding::percent_decode_str;
+use std::path::{Path, PathBuf};
+
+/// Path of a `file:` URI, or of a plain path, which some importers pass; `None` when it names no
+/// local directory.
+///
+/// Accepts `file:///path`, `file://localhost/path`, `file:/path`, each percent-encoded or not. A
+/// `%` that starts no code stands for itself, so unencoded names survive.
+pub(crate) fn directory(uri: &str) -> Option<PathBuf> {
+    let rest = match uri.get(..5) {
+        Some(scheme) if scheme.eq_ignore_ascii_case("file:") => &uri[5..],
+        _ if uri.contains("://") || uri.is_empty() => return None,
+        _ => return Some(PathBuf::from(uri)),
+    };
+    let path = match rest.strip_prefix("//") {
+        Some(authority_and_path) => {
+            let slash = authority_and_path.find('/')?;
+            let (authority, path) = authority_and_path.split_at(slash);
+            if !(authority.is_empty() || authority.eq_ignore_ascii_case("localhost")) {
+                return None;
+            }
+            path
+        }
+        None => rest,
+    };
+    if path.is_empty() {
+        return None;
+    }
+    let decoded = percent_decode_str(path).decode_utf8().ok()?;
+    Some(PathBuf::from(without_slash_before_drive(&decoded)))
+}
+
+/// `/C:/x` is `C:/x`.
+fn without_slash_before_drive(path: &str) -> &str {
+    match path.as_bytes() {
+        [b'/', drive, b':', ..] if drive.is_ascii_alphabetic() => &path[1..],
+        _ => path,
+    }
+}
+
+/// What to load for a `scene.file` of that name: a file among the resources if there is one, else
+/// the name itself, which is a packed name or a path.
+pub(crate) fn scene(name: &str, resources: Option<&Path>) -> String {
+    let Some(resources) = resources else {
+        return name.to_owned();
+    };
+    [resources.join(name), resources.join("scenes").join(name)]
+        .iter()
+        .filter(|path| path.is_file())
+        .find_map(|path| path.to_str())
+        .unwrap_or(name)
+        .to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_spelling_of_a_directory() {
+        for (uri, path) in [
+            (
+                "file:///data/unpacked/resources",
+                "/data/unpacked/resources",
+            ),
+            ("file:/data/unpacked/resources", "/data/unpacked/resources"),
+            ("FILE://localhost/data/resources", "/data/resources"),
+            ("file:///data/two%20words/r%C3%A9s", "/data/two words/rés"),
+            ("file:///data/two words/rés", "/data/two words/rés"),
+            ("file:///data/50%/resources", "/data/50%/resources"),
+            ("file:///C:/data/resources", "C:/data/resources"),
+            ("/data/resources", "/data/resources"),
+        ] {
+            assert_eq!(directory(uri), Some(PathBuf::from(path)), "{uri}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_local_directory() {
+        for uri in [
+            "",
+            "file:",
+            "file://",
+            "file://server/share",
+            "http://x/y",
+            "file:///%FF",
+        ] {
+            assert_eq!(directory(uri), None, "{uri}");
+        }
+    }
+
+    #[test]
+    fn scenes_among_the_resources_come_first() {
+        let resources = tempfile::tempdir().expect("directory");
+        std::fs::create_dir(resources.path().join("scenes")).expect("directory");
+        let file = resources.path().join("scenes/mine.toml");
+        std::fs::write(&file, "").expect("file");
+        let found = scene("mine.toml", Some(resources.path()));
+        assert_eq!(Path::new(&found), file);
+        assert_eq!(scene("fig8", Some(resources.path())), "fig8");
+        assert_eq!(
+            scene("/elsewhere/a.toml", Some(resources.path())),
+            "/elsewhere/a.toml"
+        );
+        assert_eq!(scene("mine.toml", None), "mine.toml");
+    }
+}
