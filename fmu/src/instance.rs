@@ -8,7 +8,8 @@ use crate::parameters::Parameters;
 use crate::refusal::Refusal;
 use crate::resources;
 use crate::scalar::Scalar;
-use coilwind::simulation::{Event, Inputs, Severity, SimError, Simulation};
+use coilwind::scene::Warning;
+use coilwind::simulation::{Event, EventKind, Inputs, SimError, Simulation};
 use coilwind::variables::{Access, Causality, Value, Variability, Variable, by_reference};
 use coilwind_model_description::{Category, guid};
 use std::collections::BTreeMap;
@@ -97,6 +98,15 @@ impl Instance {
             resources: None,
             logging_on: true,
         })
+    }
+
+    /// In a state as if the calls that lead there had been made.
+    #[cfg(test)]
+    pub(crate) fn planted(state: State) -> Self {
+        Self {
+            state,
+            ..Self::for_tests()
+        }
     }
 
     /// State between calls.
@@ -259,13 +269,15 @@ impl Instance {
         let run = match self.run.take() {
             Some(run) => run,
             None => {
-                let mut simulation =
-                    Simulation::new(&self.parameters.scene()?).map_err(Refusal::Start)?;
-                let mut inputs = simulation.inputs();
+                let (scene, warnings) = self.parameters.scene()?;
+                let mut inputs = self.parameters.start_inputs();
                 for (reference, value) in &self.start_inputs {
                     write_input(&mut inputs, *reference, *value);
                 }
-                simulation.set_start(inputs);
+                let simulation =
+                    Simulation::starting_with(&scene, inputs).map_err(Refusal::Start)?;
+                self.messages
+                    .extend(warnings.iter().map(message_of_warning));
                 Run { simulation, inputs }
             }
         };
@@ -316,7 +328,7 @@ impl Instance {
             .parameters
             .with(changes, self.identity.resources.as_deref())?;
         if self.state == State::StepComplete {
-            let scene = parameters.scene()?;
+            let (scene, _) = parameters.scene()?;
             if let Some(run) = self.run.as_mut() {
                 run.simulation.retune(&scene);
             }
@@ -416,13 +428,23 @@ fn no_status(kind: i32) -> Refusal {
 
 /// An event of the simulation as the importer reads it.
 fn message_of(event: &Event) -> Message {
-    let (status, category) = match event.severity {
-        Severity::Info => (Status::Ok, Category::Events),
-        Severity::Warning => (Status::Warning, Category::Warning),
+    let (status, category) = match event.kind {
+        EventKind::Turn | EventKind::Defect => (Status::Ok, Category::Events),
+        // The wire is still computed, but a machine would have stopped.
+        EventKind::Slack | EventKind::Break => (Status::Warning, Category::Warning),
     };
     Message {
         status,
         category,
         text: event.to_string(),
+    }
+}
+
+/// A scene that runs, but perhaps not as meant.
+fn message_of_warning(warning: &Warning) -> Message {
+    Message {
+        status: Status::Warning,
+        category: Category::Warning,
+        text: warning.to_string(),
     }
 }

@@ -17,6 +17,8 @@
 #![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
 
 mod clock;
+#[cfg(test)]
+mod contract;
 pub mod exports;
 pub mod ffi;
 mod guard;

@@ -126,8 +126,8 @@ mod tests {
     fn errors_always_pass_the_rest_where_switched_on() {
         let error = message(Status::Error, Category::Error);
         let event = message(Status::Ok, Category::Events);
-        let solver = message(Status::Warning, Category::Solver);
-        let passed = |filter: &Filter| [&error, &event, &solver].map(|m| filter.passes(m));
+        let slack = message(Status::Warning, Category::Warning);
+        let passed = |filter: &Filter| [&error, &event, &slack].map(|m| filter.passes(m));
         assert_eq!(passed(&Filter::new(false)), [true, false, false]);
         assert_eq!(passed(&Filter::new(true)), [true, true, true]);
         let some = Filter::with(true, &["logEvents".to_owned()]).expect("declared");

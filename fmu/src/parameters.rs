@@ -2,7 +2,8 @@
 
 use crate::refusal::Refusal;
 use crate::resources;
-use coilwind::scene::{Scene, SceneSettings};
+use coilwind::scene::{Scene, SceneSettings, Warning};
+use coilwind::simulation::Inputs;
 use coilwind::variables::{Access, Value, Variable, by_reference};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -75,8 +76,13 @@ impl Parameters {
         }
     }
 
-    /// The scene they make together.
-    pub(crate) fn scene(&self) -> Result<Scene, Refusal> {
-        Ok(self.settings.build()?)
+    /// The scene they make together, and what is odd about it.
+    pub(crate) fn scene(&self) -> Result<(Scene, Vec<Warning>), Refusal> {
+        Ok(self.settings.build_with_warnings()?)
+    }
+
+    /// Inputs of that scene before the first step.
+    pub(crate) fn start_inputs(&self) -> Inputs {
+        self.settings.start_inputs()
     }
 }

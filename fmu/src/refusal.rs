@@ -56,7 +56,7 @@ pub(crate) enum Refusal {
     },
     /// a parameter or the scene made of all of them is not valid
     #[error("{0}")]
-    Scene(#[from] SceneError),
+    Scene(Box<SceneError>),
     /// the scene has no valid start
     #[error("start: {0}")]
     Start(SimError),
@@ -96,5 +96,12 @@ impl Refusal {
             Refusal::NoStatus { .. } => (Status::Discard, Category::Discard),
             _ => (Status::Error, Category::Error),
         }
+    }
+}
+
+// Scene errors are much larger than all others; boxed they do not weigh on every call.
+impl From<SceneError> for Refusal {
+    fn from(error: SceneError) -> Self {
+        Self::Scene(Box::new(error))
     }
 }

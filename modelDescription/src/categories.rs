@@ -13,14 +13,12 @@ pub enum Category {
     Error,
     /// the instance is lost
     Fatal,
-    /// trouble of the solver: rejected and halved steps
-    Solver,
     /// all of them; never the category of a message
     All,
 }
 
 /// Every category with its standard name (FMI 2.0.5, table in section 2.2.4) and description.
-pub const CATEGORIES: [(Category, &str, &str); 7] = [
+pub const CATEGORIES: [(Category, &str, &str); 6] = [
     (
         Category::Events,
         "logEvents",
@@ -45,11 +43,6 @@ pub const CATEGORIES: [(Category, &str, &str); 7] = [
         Category::Fatal,
         "logStatusFatal",
         "The instance can only be freed",
-    ),
-    (
-        Category::Solver,
-        "logNonlinearSystems",
-        "Steps that the solver rejected or halved",
     ),
     (Category::All, "logAll", "All messages"),
 ];

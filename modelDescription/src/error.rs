@@ -1,18 +1,10 @@
 //! What can go wrong while describing and packing.
 
-use coilwind::scene::SceneError;
-use coilwind::simulation::SimError;
 use std::path::PathBuf;
 
 /// Why the description could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum DescriptionError {
-    /// the default scene, which the start values come from, is not valid
-    #[error("default scene: {0}")]
-    Scene(#[from] SceneError),
-    /// the default scene has no valid start
-    #[error("start of the default scene: {0}")]
-    Start(#[from] SimError),
     /// the XML writer failed
     #[error("writing XML: {0}")]
     Write(#[from] std::io::Error),

@@ -8,8 +8,7 @@ use uuid::Uuid;
 /// GUID of the description, `{xxxxxxxx-...}`: version 5 of the XML with an empty `guid`.
 ///
 /// Any change of a name, unit, limit or start value changes it, so a library and an XML of
-/// different builds never pass for a pair. Computed once per process, since it needs the start
-/// values of the default scene.
+/// different builds never pass for a pair. Computed once per process.
 pub fn guid() -> Result<&'static str, DescriptionError> {
     static GUID: OnceLock<String> = OnceLock::new();
     if let Some(guid) = GUID.get() {

@@ -19,6 +19,15 @@ pub use guid::guid;
 pub use pack::{Contents, pack, platform_of};
 pub use xml::model_description;
 
+use coilwind::variables::{Variable, table};
+
 /// Name of the shared library inside the FMU, without extension; prefix of nothing else, as the
 /// functions of a binary FMU 2.0 carry no prefix.
 pub const MODEL_IDENTIFIER: &str = "CoilWinding";
+
+/// The rows of the variable table that importers see.
+///
+/// The programmes of `coilwind run` are not among them: speed and traverse are inputs here.
+pub fn variables() -> impl Iterator<Item = &'static Variable> {
+    table().iter().filter(|variable| !variable.native_only)
+}

@@ -1,6 +1,7 @@
 //! `ModelStructure`: which variables are results and what they follow from.
 
-use coilwind::variables::{Causality, Variable, table};
+use crate::variables;
+use coilwind::variables::{Causality, Variable};
 use quick_xml::Writer;
 use std::io;
 
@@ -48,7 +49,7 @@ fn shapes_the_start(variable: &Variable) -> bool {
 /// Positions in `ModelVariables`, counted from 1 as FMI does.
 fn indices(wanted: fn(&Variable) -> bool) -> Vec<usize> {
     (1..)
-        .zip(table())
+        .zip(variables())
         .filter(|(_, variable)| wanted(variable))
         .map(|(index, _)| index)
         .collect()

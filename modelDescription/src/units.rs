@@ -1,5 +1,6 @@
 //! `UnitDefinitions`: every unit of the table with its SI exponents and display units.
 
+use crate::xml::number;
 use coilwind::variables::{Unit, units};
 use quick_xml::Writer;
 use std::io;
@@ -27,11 +28,14 @@ fn write_unit(writer: &mut Writer<Vec<u8>>, unit: &Unit) -> io::Result<()> {
                 base = base.with_attribute((*name, exponent.to_string().as_str()));
             }
             base.write_empty()?;
-            for (name, factor) in unit.display {
-                writer
+            for (name, factor, offset) in unit.display {
+                let mut display = writer
                     .create_element("DisplayUnit")
-                    .with_attributes([("name", *name), ("factor", factor.to_string().as_str())])
-                    .write_empty()?;
+                    .with_attributes([("name", *name), ("factor", number(*factor).as_str())]);
+                if *offset != 0.0 {
+                    display = display.with_attribute(("offset", number(*offset).as_str()));
+                }
+                display.write_empty()?;
             }
             Ok(())
         })?;

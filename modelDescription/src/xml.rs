@@ -1,9 +1,8 @@
 //! `modelDescription.xml` (FMI 2.0.5, section 2.2) from the variable table.
 
-use crate::{CATEGORIES, DescriptionError, MODEL_IDENTIFIER, guid, structure, units};
+use crate::{CATEGORIES, DescriptionError, MODEL_IDENTIFIER, guid, structure, units, variables};
 use coilwind::scene::SceneSettings;
-use coilwind::simulation::{Inputs, Simulation};
-use coilwind::variables::{Access, Causality, Kind, Value, Variability, Variable, table};
+use coilwind::variables::{Causality, Kind, Value, Variable};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use std::io;
@@ -31,7 +30,7 @@ pub fn model_description() -> Result<String, DescriptionError> {
 
 /// The file with a given `guid`; the empty one is what the GUID is computed from.
 pub(crate) fn render(guid: &str) -> Result<String, DescriptionError> {
-    let start = Start::of_default_scene()?;
+    let settings = SceneSettings::default();
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
     writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
     writer
@@ -72,8 +71,8 @@ pub(crate) fn render(guid: &str) -> Result<String, DescriptionError> {
             writer
                 .create_element("ModelVariables")
                 .write_inner_content(|writer| {
-                    for variable in table() {
-                        write_variable(writer, variable, &start)?;
+                    for variable in variables() {
+                        write_variable(writer, variable, &settings)?;
                     }
                     Ok(())
                 })?;
@@ -84,34 +83,20 @@ pub(crate) fn render(guid: &str) -> Result<String, DescriptionError> {
     Ok(text)
 }
 
-/// Where start values are read from.
-struct Start {
-    settings: SceneSettings,
-    inputs: Inputs,
+/// A number as `xs:double`: the shortest decimal that reads back to the same bits.
+pub(crate) fn number(x: f64) -> String {
+    if x.is_infinite() {
+        return if x > 0.0 { "INF" } else { "-INF" }.to_owned();
+    }
+    x.to_string()
 }
 
-impl Start {
-    fn of_default_scene() -> Result<Self, DescriptionError> {
-        let settings = SceneSettings::default();
-        let inputs = Simulation::new(&settings.build()?)?.inputs();
-        Ok(Self { settings, inputs })
-    }
-
-    /// Start value as XML wants it; outputs are calculated and have none.
-    ///
-    /// Rust prints the shortest decimal that reads back to the same number, without exponent.
-    fn text(&self, variable: &Variable) -> Option<String> {
-        let value = match variable.access {
-            Access::Input { get, .. } => Value::Real(get(&self.inputs)),
-            Access::Output(_) => return None,
-            Access::Parameter { get, .. } => get(&self.settings),
-        };
-        Some(match value {
-            Value::Real(x) => x.to_string(),
-            Value::Integer(i) => i.to_string(),
-            Value::Boolean(b) => b.to_string(),
-            Value::String(s) => s,
-        })
+fn text(value: Value) -> String {
+    match value {
+        Value::Real(x) => number(x),
+        Value::Integer(i) => i.to_string(),
+        Value::Boolean(b) => b.to_string(),
+        Value::String(s) => s,
     }
 }
 
@@ -133,15 +118,15 @@ fn write_categories(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
 fn write_variable(
     writer: &mut Writer<Vec<u8>>,
     variable: &Variable,
-    start: &Start,
+    settings: &SceneSettings,
 ) -> io::Result<()> {
     let reference = variable.reference.to_string();
     let mut element = writer.create_element("ScalarVariable").with_attributes([
         ("name", variable.name),
         ("valueReference", reference.as_str()),
         ("description", variable.description),
-        ("causality", causality(variable.causality)),
-        ("variability", variability(variable.variability)),
+        ("causality", variable.causality.as_str()),
+        ("variability", variable.variability.as_str()),
     ]);
     match variable.causality {
         // FMI forbids `initial` on inputs.
@@ -151,11 +136,15 @@ fn write_variable(
             element = element.with_attribute(("initial", "calculated"));
         }
     }
-    element.write_inner_content(|writer| write_type(writer, variable, start))?;
+    element.write_inner_content(|writer| write_type(writer, variable, settings))?;
     Ok(())
 }
 
-fn write_type(writer: &mut Writer<Vec<u8>>, variable: &Variable, start: &Start) -> io::Result<()> {
+fn write_type(
+    writer: &mut Writer<Vec<u8>>,
+    variable: &Variable,
+    settings: &SceneSettings,
+) -> io::Result<()> {
     let mut attributes: Vec<(&str, String)> = Vec::new();
     if variable.kind == Kind::Real {
         for (key, unit) in [
@@ -169,49 +158,18 @@ fn write_type(writer: &mut Writer<Vec<u8>>, variable: &Variable, start: &Start) 
     }
     if matches!(variable.kind, Kind::Real | Kind::Integer) {
         for (key, limit) in [("min", variable.min), ("max", variable.max)] {
-            attributes.extend(limit.map(|limit| (key, limit.to_string())));
+            attributes.extend(limit.map(|limit| (key, number(limit))));
         }
     }
     if variable.kind == Kind::Real {
-        attributes.extend(
-            variable
-                .nominal
-                .map(|nominal| ("nominal", nominal.to_string())),
-        );
+        attributes.extend(variable.nominal.map(|nominal| ("nominal", number(nominal))));
     }
-    attributes.extend(start.text(variable).map(|value| ("start", value)));
+    attributes.extend(variable.start(settings).map(|value| ("start", text(value))));
     writer
-        .create_element(type_name(variable.kind))
+        .create_element(variable.kind.as_str())
         .with_attributes(attributes.iter().map(|(key, value)| (*key, value.as_str())))
         .write_empty()?;
     Ok(())
-}
-
-fn type_name(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Real => "Real",
-        Kind::Integer => "Integer",
-        Kind::Boolean => "Boolean",
-        Kind::String => "String",
-    }
-}
-
-fn causality(causality: Causality) -> &'static str {
-    match causality {
-        Causality::Input => "input",
-        Causality::Output => "output",
-        Causality::Parameter => "parameter",
-        Causality::Local => "local",
-    }
-}
-
-fn variability(variability: Variability) -> &'static str {
-    match variability {
-        Variability::Continuous => "continuous",
-        Variability::Discrete => "discrete",
-        Variability::Fixed => "fixed",
-        Variability::Tunable => "tunable",
-    }
 }
 
 #[cfg(test)]
@@ -220,25 +178,17 @@ mod tests {
 
     #[test]
     fn start_values_have_the_declared_type() {
-        let start = Start::of_default_scene().expect("default scene is valid");
-        for variable in table() {
-            let Access::Parameter { get, .. } = variable.access else {
-                continue;
-            };
-            let same = matches!(
-                (get(&start.settings), variable.kind),
-                (Value::Real(_), Kind::Real)
-                    | (Value::Integer(_), Kind::Integer)
-                    | (Value::Boolean(_), Kind::Boolean)
-                    | (Value::String(_), Kind::String)
-            );
-            assert!(same, "{} is declared {:?}", variable.name, variable.kind);
+        let settings = SceneSettings::default();
+        for variable in variables() {
+            if let Some(start) = variable.start(&settings) {
+                assert_eq!(start.kind(), variable.kind, "{}", variable.name);
+            }
         }
     }
 
     #[test]
     fn units_of_variables_are_defined() {
-        for variable in table().iter().filter(|variable| !variable.unit.is_empty()) {
+        for variable in variables().filter(|variable| !variable.unit.is_empty()) {
             let unit = coilwind::variables::units()
                 .iter()
                 .find(|unit| unit.name == variable.unit);
@@ -265,7 +215,7 @@ mod tests {
             9.549_296_585_513_72,
             f64::MIN_POSITIVE,
         ] {
-            let text = x.to_string();
+            let text = number(x);
             assert!(!text.contains(['e', 'E']));
             assert_eq!(
                 text.parse::<f64>().expect("a number").to_bits(),

@@ -1,0 +1,188 @@
+//! The C functions as an importer sees them in every state of an instance.
+//!
+//! States are planted, so that a failed step and a lost instance need no failing solver.
+
+use crate::exports::*;
+use crate::ffi::*;
+use crate::guard;
+use crate::instance::Instance;
+use crate::lifecycle::{Function, State};
+use crate::logger::Host;
+use std::ffi::{CStr, c_void};
+use std::ptr::{null, null_mut};
+
+/// Messages of one instance.
+type Log = Vec<(fmi2Status, String, String)>;
+
+/// The fixed-arity twin of the variadic logger.
+unsafe extern "C" fn record(
+    environment: fmi2ComponentEnvironment,
+    _name: fmi2String,
+    status: fmi2Status,
+    category: fmi2String,
+    format: fmi2String,
+    text: fmi2String,
+) {
+    // SAFETY: the environment is the log of the test, the strings end with a NUL.
+    unsafe {
+        assert_eq!(CStr::from_ptr(format), c"%s");
+        let owned = |text| CStr::from_ptr(text).to_string_lossy().into_owned();
+        (*environment.cast::<Log>()).push((status, owned(category), owned(text)));
+    }
+}
+
+fn callbacks(log: &mut Log) -> fmi2CallbackFunctions {
+    let record: unsafe extern "C" fn(_, _, _, _, _, _) = record;
+    // SAFETY: on x86-64 and AArch64 Linux and on Windows x86-64, pointers and ints are passed to a
+    // variadic function exactly as to one with that many arguments.
+    let logger = unsafe {
+        std::mem::transmute::<
+            unsafe extern "C" fn(
+                fmi2ComponentEnvironment,
+                fmi2String,
+                fmi2Status,
+                fmi2String,
+                fmi2String,
+                fmi2String,
+            ),
+            fmi2CallbackLogger,
+        >(record)
+    };
+    fmi2CallbackFunctions {
+        logger: Some(logger),
+        allocateMemory: null(),
+        freeMemory: null(),
+        stepFinished: null(),
+        componentEnvironment: std::ptr::from_mut(log).cast::<c_void>(),
+    }
+}
+
+fn planted(state: State, log: &mut Log) -> fmi2Component {
+    let callbacks = callbacks(log);
+    // SAFETY: the log outlives the instance in every test.
+    let host = unsafe { Host::new("planted", Some(&callbacks)) };
+    guard::instantiate(host, || Ok(Instance::planted(state)))
+}
+
+/// Calls a function with arguments that ask for nothing.
+unsafe fn call(function: Function, c: fmi2Component) -> fmi2Status {
+    use Function as F;
+    let (mut real, mut int, mut text) = (0.0, 0, null());
+    // SAFETY: arrays are empty, targets are locals.
+    unsafe {
+        match function {
+            F::SetDebugLogging => fmi2SetDebugLogging(c, 1, 0, null()),
+            F::FreeInstance => unreachable!("frees the instance"),
+            F::SetupExperiment => fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0),
+            F::EnterInitializationMode => fmi2EnterInitializationMode(c),
+            F::ExitInitializationMode => fmi2ExitInitializationMode(c),
+            F::Terminate => fmi2Terminate(c),
+            F::Reset => fmi2Reset(c),
+            F::GetReal => fmi2GetReal(c, null(), 0, null_mut()),
+            F::GetInteger => fmi2GetInteger(c, null(), 0, null_mut()),
+            F::GetBoolean => fmi2GetBoolean(c, null(), 0, null_mut()),
+            F::GetString => fmi2GetString(c, null(), 0, null_mut()),
+            F::SetReal => fmi2SetReal(c, null(), 0, null()),
+            F::SetInteger => fmi2SetInteger(c, null(), 0, null()),
+            F::SetBoolean => fmi2SetBoolean(c, null(), 0, null()),
+            F::SetString => fmi2SetString(c, null(), 0, null()),
+            F::GetFMUstate => fmi2GetFMUstate(c, null_mut()),
+            F::SetFMUstate => fmi2SetFMUstate(c, null_mut()),
+            F::FreeFMUstate => fmi2FreeFMUstate(c, null_mut()),
+            F::SerializedFMUstateSize => fmi2SerializedFMUstateSize(c, null_mut(), null_mut()),
+            F::SerializeFMUstate => fmi2SerializeFMUstate(c, null_mut(), null_mut(), 0),
+            F::DeSerializeFMUstate => fmi2DeSerializeFMUstate(c, null(), 0, null_mut()),
+            F::GetDirectionalDerivative => {
+                fmi2GetDirectionalDerivative(c, null(), 0, null(), 0, null(), null_mut())
+            }
+            F::SetRealInputDerivatives => fmi2SetRealInputDerivatives(c, null(), 0, null(), null()),
+            F::GetRealOutputDerivatives => {
+                fmi2GetRealOutputDerivatives(c, null(), 0, null(), null_mut())
+            }
+            F::DoStep => fmi2DoStep(c, 0.0, 1e-5, 1),
+            F::CancelStep => fmi2CancelStep(c),
+            F::GetStatus => fmi2GetStatus(c, 0, &mut int),
+            F::GetRealStatus => fmi2GetRealStatus(c, 2, &mut real),
+            F::GetIntegerStatus => fmi2GetIntegerStatus(c, 0, &mut int),
+            F::GetBooleanStatus => fmi2GetBooleanStatus(c, 3, &mut int),
+            F::GetStringStatus => fmi2GetStringStatus(c, 1, &mut text),
+        }
+    }
+}
+
+/// Served where allowed; `fmi2Discard` and "not supported" are answers, too.
+fn expected(function: Function) -> fmi2Status {
+    use Function as F;
+    match function {
+        F::GetFMUstate
+        | F::SetFMUstate
+        | F::SerializedFMUstateSize
+        | F::SerializeFMUstate
+        | F::DeSerializeFMUstate
+        | F::GetDirectionalDerivative
+        | F::SetRealInputDerivatives
+        | F::GetRealOutputDerivatives => Status::Error.code(),
+        F::GetStatus | F::GetIntegerStatus | F::GetStringStatus => Status::Discard.code(),
+        _ => Status::Ok.code(),
+    }
+}
+
+#[test]
+fn every_function_in_every_state() {
+    for state in State::ALL {
+        for function in Function::ALL
+            .iter()
+            .filter(|f| **f != Function::FreeInstance)
+        {
+            let mut log = Log::new();
+            let c = planted(state, &mut log);
+            // SAFETY: the component lives until it is freed below.
+            let status = unsafe { call(*function, c) };
+            // SAFETY: not used again.
+            unsafe { fmi2FreeInstance(c) };
+            let refused = log
+                .iter()
+                .any(|entry| entry.2.contains("is not allowed: the instance"));
+            assert_eq!(
+                refused,
+                !function.allowed_in(state),
+                "{function:?} in {state:?}: {log:?}"
+            );
+            let wanted = if refused {
+                Status::Error.code()
+            } else {
+                expected(*function)
+            };
+            assert_eq!(status, wanted, "{function:?} in {state:?}: {log:?}");
+            if status != Status::Ok.code() {
+                let (told, category, text) = log.last().expect("a reason");
+                assert_eq!(*told, status);
+                assert!(category.starts_with("logStatus"), "{category}");
+                assert!(text.starts_with(function.name()), "{text}");
+            }
+        }
+    }
+}
+
+#[test]
+fn null_components_are_refused() {
+    for function in Function::ALL
+        .iter()
+        .filter(|f| **f != Function::FreeInstance)
+    {
+        // SAFETY: NULL is one of the allowed arguments.
+        assert_eq!(
+            unsafe { call(*function, null_mut()) },
+            Status::Error.code(),
+            "{function:?}"
+        );
+    }
+    // SAFETY: NULL is one of the allowed arguments.
+    unsafe { fmi2FreeInstance(null_mut()) };
+}
+
+#[test]
+fn instances_may_move_between_threads() {
+    fn movable<T: Send>() {}
+    movable::<Instance>();
+}
