@@ -1,0 +1,142 @@
+"""Winding runs through fmpy: the speeds of Fig. 8, and the same numbers as the native command."""
+
+import csv
+import math
+import subprocess
+
+import fmpy
+import numpy as np
+import pytest
+from drive import run, start, step
+from signals import duration, winding_signals, write_csv
+
+SCENE = "fig8"
+PITCH = 0.7e-3
+TURNS = 0.4
+"""Enough for a landing on the first corner; the time of a test grows with the turns."""
+STEPS = 40
+SPEEDS = (30, 100, 300, 500)
+
+
+def signals_of(speed, slave, turns=TURNS, n=STEPS):
+    """Signals that start where the scene's nozzle starts."""
+    slave.fmu.setupExperiment()
+    slave.set(scene__file=SCENE)
+    slave.fmu.enterInitializationMode()
+    y0 = slave.get("nozzle_position")
+    slave.fmu.reset()
+    return winding_signals(speed, turns, PITCH, y0, n), duration(speed, turns) / n
+
+
+@pytest.fixture(scope="session")
+def recorded(fmu_path):
+    """Results of fmpy's own master at one speed, each speed run once."""
+    done = {}
+
+    def record(speed):
+        if speed not in done:
+            signals = winding_signals(speed, TURNS, PITCH, 0.0, STEPS)
+            done[speed] = fmpy.simulate_fmu(
+                fmu_path,
+                stop_time=duration(speed, TURNS),
+                output_interval=duration(speed, TURNS) / STEPS,
+                start_values={"scene.file": SCENE},
+                input=signals,
+                output=["spindle_angle", "wire_tension", "turns_wound", "fed_length", "live_nodes"],
+            )
+        return done[speed]
+
+    return record
+
+
+@pytest.mark.parametrize("speed", SPEEDS)
+def test_fmpy_winds_at_every_speed_of_fig_8(recorded, speed):
+    result = recorded(speed)
+    for name in result.dtype.names:
+        assert np.all(np.isfinite(result[name])), name
+    # The samples are mean speeds of the steps, so held inputs end at the exact angle.
+    assert result["spindle_angle"][-1] == pytest.approx(2 * math.pi * TURNS, rel=1e-9)
+    assert np.all(np.diff(result["fed_length"]) > -1e-6)
+    assert result["fed_length"][-1] > 5e-3
+    assert np.all(result["wire_tension"] > 0)
+
+
+@pytest.mark.parametrize("speed", (100, 500))
+def test_native_run_gives_the_same_numbers_to_the_bit(command, make_slave, tmp_path, speed):
+    slave = make_slave()
+    signals, size = signals_of(speed, slave)
+    rows = run(slave, signals, size, scene__file=SCENE)
+
+    inputs, out = tmp_path / "inputs.csv", tmp_path / "out"
+    write_csv(signals, inputs)
+    subprocess.run(
+        [command, "run", SCENE, "--inputs", inputs, "--step", repr(size), "--out", out, "--quiet"],
+        check=True,
+    )
+    with open(out / "history.csv", newline="", encoding="utf-8") as file:
+        history = list(csv.DictReader(file))
+
+    common = [name for name in rows[0] if name in history[0]]
+    assert {"wire_tension", "spindle_angle", "fed_length"} <= set(common)
+    native = {round(float(row["time"]) / size): row for row in history}
+    for k, row in enumerate(rows[1:], start=1):
+        for name in common:
+            assert number(native[k][name]) == number(row[name]), f"{name} after step {k}"
+
+
+def number(value):
+    """A cell of a table or a value of the FMU as a float; every integer here fits exactly."""
+    if isinstance(value, bytes):
+        value = value.decode()
+    return float({"true": 1, "false": 0}.get(value, value))
+
+
+def test_two_interleaved_instances_do_not_touch_each_other(make_slave):
+    first, second = make_slave("first"), make_slave("second")
+    slow, slow_step = signals_of(30, first, turns=0.3, n=15)
+    fast, fast_step = signals_of(300, first, turns=0.3, n=15)
+    alone = run(first, slow, slow_step, scene__file=SCENE)
+    first.fmu.reset()
+    start(first, slow, scene__file=SCENE)
+    start(second, fast, scene__file=SCENE)
+    together = [first.outputs()]
+    for k in range(len(slow) - 1):
+        step(second, fast, k, fast_step)
+        step(first, slow, k, slow_step)
+        together.append(first.outputs())
+    assert together == alone
+
+
+def test_reset_equals_a_fresh_instance(make_slave):
+    used, fresh = make_slave(), make_slave()
+    signals, size = signals_of(100, fresh, turns=0.3, n=10)
+    run(used, signals, size, scene__file=SCENE, friction__static=0.4)
+    used.fmu.reset()
+    assert run(used, signals, size, scene__file=SCENE) == run(
+        fresh, signals, size, scene__file=SCENE
+    )
+
+
+def test_parameters_lie_over_the_scene_in_whatever_order(make_slave):
+    before, after = make_slave(), make_slave()
+    before.set(friction__static=0.4)
+    before.set(scene__file=SCENE)
+    after.set(scene__file=SCENE)
+    after.set(friction__static=0.4)
+    for slave in (before, after):
+        slave.fmu.setupExperiment()
+        slave.fmu.enterInitializationMode()
+    names = [v.name for v in before.description.modelVariables if v.causality == "parameter"]
+    assert [before.get(name) for name in names] == [after.get(name) for name in names]
+    assert before.get("friction.static") == 0.4
+
+
+def test_inputs_of_initialization_mode_shape_the_start(slave):
+    slave.fmu.setupExperiment()
+    slave.fmu.enterInitializationMode()
+    for tension in (5.0, 12.0):
+        slave.set(tension_setpoint=tension)
+        assert slave.get("tension_setpoint") == tension
+        assert slave.get("wire_tension") == pytest.approx(tension, rel=1e-3)
+    slave.fmu.exitInitializationMode()
+    assert slave.get("wire_tension") == pytest.approx(12.0, rel=1e-3)
