@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""Wire tension over spindle angle, one panel per run.
+
+    plot_tension.py target/demo/* -o target/demo/tension.png
+
+Each argument is a run's directory or its history.csv.
+"""
+
+import argparse
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+import numpy as np
+from runs import COLOURS, STYLE, by_speed, find_file, open_run, read_columns
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("runs", nargs="+", help="directory of a run, or its history.csv")
+    parser.add_argument("-o", "--output", default="tension.png", help="picture to write")
+    arguments = parser.parse_args()
+
+    files = {}
+    for path in arguments.runs:
+        run = open_run(path)
+        files[run.directory] = (run, find_file(path, "history.csv"))
+    runs = by_speed(run for run, _ in files.values())
+
+    plt.rcParams.update(STYLE)
+    height = 0.6 + 1.75 * len(runs)
+    figure, axes = plt.subplots(
+        len(runs), 1, figsize=(8, height), sharex=True, sharey=True, squeeze=False,
+        layout="constrained",
+    )
+    low, high = 0.0, 0.0
+    for number, (axis, run) in enumerate(zip(axes[:, 0], runs)):
+        data = read_columns(files[run.directory][1], ["spindle_angle", "wire_tension"])
+        draw(axis, run, data, COLOURS[number % len(COLOURS)])
+        low, high = min(low, data["wire_tension"].min()), max(high, data["wire_tension"].max())
+    # One scale for all runs, from zero, so that swings compare by eye.
+    axes[0, 0].set_ylim(1.1 * low, 1.12 * max(high, 1e-9))
+    axes[-1, 0].set_xlabel("turns of the spindle from the start position")
+    figure.supylabel("wire tension at the nozzle (N)", fontsize=9, color="#30343b")
+    figure.savefig(arguments.output)
+    print(f"wrote {arguments.output}")
+
+
+def draw(axis, run, data, colour):
+    turns, tension = data["spindle_angle"] / (2 * np.pi), data["wire_tension"]
+    axis.plot(turns, tension, color=colour, linewidth=0.9)
+    # The run-up is not typical of the speed.
+    steady = tension[np.abs(turns) >= 0.5] if np.abs(turns[-1]) > 0.75 else tension
+    mean, low, high = np.mean(steady), np.min(steady), np.max(steady)
+    axis.axhline(mean, color="#5b616b", linewidth=0.7, linestyle=(0, (4, 3)))
+    axis.set_title(f"{run.label}", loc="left", fontweight="bold", color=colour)
+    note = f"after half a turn: mean {mean:.1f} N, {low:.1f} to {high:.1f} N"
+    axis.set_title(note, loc="right", color="#5b616b", fontsize=8)
+    axis.set_xlim(turns[0], turns[-1])
+
+
+if __name__ == "__main__":
+    main()
