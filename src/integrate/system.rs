@@ -143,6 +143,8 @@ pub struct System {
     pub set_tension: f64,
     /// carry twist
     pub twist: bool,
+    /// never move the plastic state on (monotonic loading only)
+    pub holonomic: bool,
     /// unstretched length from the clamp to the first live node, m
     pub arc0: f64,
     /// energy books
@@ -175,6 +177,7 @@ impl System {
             feed: None,
             set_tension: 0.0,
             twist: true,
+            holonomic: false,
             arc0: 0.0,
             books: Books::default(),
             deepest: 0.0,
@@ -242,10 +245,7 @@ impl System {
         self.load.fit(&self.rod);
         self.roll.resize(self.rod.edges(), 0.0);
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
-        let parts = ForceParts {
-            commit: commit.is_some(),
-            twist: self.twist,
-        };
+        let parts = ForceParts { commit: commit.is_some(), holonomic: self.holonomic, twist: self.twist };
         internal_forces(
             &mut self.rod,
             &self.laws,

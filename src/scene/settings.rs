@@ -158,7 +158,7 @@ impl Default for SceneSettings {
                 integrator: "auto".to_owned(),
                 spacing_near: 0.5e-3,
                 spacing_free: 1e-3,
-                refine_distance: 3e-3,
+                refine_distance: 6e-3,
                 step_share: 0.9,
                 step: 0.0,
             },

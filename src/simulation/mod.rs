@@ -6,6 +6,7 @@
 mod house;
 mod io;
 mod programme;
+mod quasi_static;
 mod start;
 mod summary;
 
@@ -42,8 +43,12 @@ pub struct Simulation {
     events: Vec<Event>,
     /// deepest penetration of wire when it came to rest, m
     rest_depth: f64,
+    /// nodes frozen while still moving, because lift-off came round
+    forced: u32,
     broken: bool,
     was_slack: bool,
+    /// farthest nozzle position of this pass, m, and its direction along y
+    pass: (f64, f64),
 }
 
 impl Simulation {
@@ -108,8 +113,10 @@ impl Simulation {
             outputs: Outputs::default(),
             events: Vec::new(),
             rest_depth: 0.0,
+            forced: 0,
             broken: false,
             was_slack: false,
+            pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
         };
         sim.sys.spindle.speed = inputs.spindle_speed;
         sim.sys.place_supports();
@@ -226,7 +233,21 @@ impl Simulation {
         self.outputs.wire_tension_max = t;
     }
 
+    /// A new pass begins once the nozzle has come back by half a diameter; less is jitter.
+    fn follow_traverse(&mut self) {
+        let y = self.sys.support[1].point.y;
+        let (extreme, sign) = self.pass;
+        let advance = (y - extreme) * sign;
+        if advance > 0.0 {
+            self.pass.0 = y;
+        } else if advance < -0.5 * self.scene.wire.diameter {
+            self.pass = (y, -sign);
+            self.coil.set_traverse(-sign);
+        }
+    }
+
     fn finish(&mut self, dt: f64) {
+        self.follow_traverse();
         self.time += dt;
         self.sys.time = self.time;
         self.update_outputs();

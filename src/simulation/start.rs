@@ -143,7 +143,7 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
         slip_speed: scene.friction.slip_speed,
     };
     sys.contacts = Some(Contacts::new(
-        surface,
+        surface.clone(),
         law,
         radius,
         section.diameter,
@@ -153,7 +153,7 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,
         limits: scene.defects,
-        profile: None,
+        profile: super::quasi_static::profile(scene, &surface),
         start_angle: polar_angle(clamp_core),
         direction,
         traverse: scene.traverse.per_turn * direction,
