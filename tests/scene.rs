@@ -446,7 +446,7 @@ fn later_wins_defaults_file_then_single_values() {
 #[test]
 fn parameters_come_in_any_order() {
     let row = |name: &str| by_name(name).unwrap();
-    let mut parameters = vec![
+    let mut parameters = [
         (row("tensioner.tension"), Value::Real(10.0)),
         (row("scene.file"), Value::String("fig8".to_owned())),
         (row("wire.elastic"), Value::Boolean(true)),

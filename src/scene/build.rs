@@ -70,13 +70,13 @@ impl SceneSettings {
     pub(super) fn impossible(
         &self,
         key: &str,
-        reason: impl Into<String>,
-        allowed: impl Into<String>,
+        reason: impl Into<Box<str>>,
+        allowed: impl Into<Box<str>>,
     ) -> SceneError {
         SceneError::Impossible {
             place: self.place(key),
-            key: key.to_owned(),
-            value: self.shown(key),
+            key: key.into(),
+            value: self.shown(key).into(),
             reason: reason.into(),
             allowed: allowed.into(),
         }

@@ -1,4 +1,6 @@
 //! What can be wrong with a scene: always where, which key, which value, and what is allowed.
+//!
+//! Texts are `Box<str>`: a `Result` with five of them stays small enough to hand around.
 
 use std::fmt;
 use thiserror::Error;
@@ -12,7 +14,7 @@ pub enum Place {
     /// a scene file or packed scene
     File {
         /// name as the user knows it
-        file: String,
+        file: Box<str>,
         /// line from 1, where known
         line: Option<usize>,
     },
@@ -44,19 +46,19 @@ pub enum SceneError {
     )]
     NotFound {
         /// as given
-        name: String,
+        name: Box<str>,
         /// names of the packed scenes
-        packed: String,
+        packed: Box<str>,
         /// packed scene of a similar name
-        suggestion: Option<String>,
+        suggestion: Option<Box<str>>,
     },
     /// The file is there but cannot be read as text.
     #[error("{file}: cannot be read: {reason}")]
     Unreadable {
         /// path as given
-        file: String,
+        file: Box<str>,
         /// of the operating system
-        reason: String,
+        reason: Box<str>,
     },
     /// The text is not TOML.
     #[error("{place}: not valid TOML: {message}")]
@@ -64,7 +66,7 @@ pub enum SceneError {
         /// file and line
         place: Place,
         /// of the parser
-        message: String,
+        message: Box<str>,
     },
     /// A section that scenes do not have.
     #[error(
@@ -75,11 +77,11 @@ pub enum SceneError {
         /// file and line
         place: Place,
         /// as given
-        section: String,
+        section: Box<str>,
         /// nearest known section
-        suggestion: Option<String>,
+        suggestion: Option<Box<str>>,
         /// all sections
-        allowed: String,
+        allowed: Box<str>,
     },
     /// A key that scenes do not have.
     #[error(
@@ -90,13 +92,13 @@ pub enum SceneError {
         /// file and line
         place: Place,
         /// as given, with its section
-        key: String,
+        key: Box<str>,
         /// as given
-        value: String,
+        value: Box<str>,
         /// nearest known key, with its unit where one was given
-        suggestion: Option<String>,
+        suggestion: Option<Box<str>>,
         /// the keys of the section
-        allowed: String,
+        allowed: Box<str>,
     },
     /// A known key with the unit of something else.
     #[error("{place}: {key} = {value}: {stem} cannot have this unit; allowed are {allowed}")]
@@ -104,13 +106,13 @@ pub enum SceneError {
         /// file and line
         place: Place,
         /// as given
-        key: String,
+        key: Box<str>,
         /// as given
-        value: String,
+        value: Box<str>,
         /// the key without unit
-        stem: String,
+        stem: Box<str>,
         /// the key with each of its units
-        allowed: String,
+        allowed: Box<str>,
     },
     /// The same leaf given twice in one file, perhaps in two units.
     #[error(
@@ -120,13 +122,13 @@ pub enum SceneError {
         /// file and line
         place: Place,
         /// as given
-        key: String,
+        key: Box<str>,
         /// as given
-        value: String,
+        value: Box<str>,
         /// name in the variable table
-        leaf: String,
+        leaf: Box<str>,
         /// key that came first
-        first: String,
+        first: Box<str>,
     },
     /// A text where a number belongs, and the like.
     #[error("{place}: {key} = {value} is {found}; allowed is {allowed}")]
@@ -134,13 +136,13 @@ pub enum SceneError {
         /// file and line
         place: Place,
         /// as given
-        key: String,
+        key: Box<str>,
         /// as given
-        value: String,
+        value: Box<str>,
         /// what it is
-        found: String,
+        found: Box<str>,
         /// what the row takes
-        allowed: String,
+        allowed: Box<str>,
     },
     /// A value outside the range of its row.
     #[error("{place}: {key} = {value} is out of range; allowed: {allowed}")]
@@ -148,11 +150,11 @@ pub enum SceneError {
         /// file and line
         place: Place,
         /// as given
-        key: String,
+        key: Box<str>,
         /// as given
-        value: String,
+        value: Box<str>,
         /// range or choices
-        allowed: String,
+        allowed: Box<str>,
     },
     /// A value that the rest of the scene makes impossible.
     #[error("{place}: {key} = {value} is impossible here: {reason}; allowed: {allowed}")]
@@ -160,13 +162,13 @@ pub enum SceneError {
         /// where the value came from
         place: Place,
         /// name in the variable table
-        key: String,
+        key: Box<str>,
         /// in SI, with unit
-        value: String,
+        value: Box<str>,
         /// what it contradicts
-        reason: String,
+        reason: Box<str>,
         /// what would do
-        allowed: String,
+        allowed: Box<str>,
     },
 }
 
@@ -193,7 +195,7 @@ impl fmt::Display for Warning {
     }
 }
 
-fn also(suggestion: &Option<String>) -> String {
+fn also(suggestion: &Option<Box<str>>) -> String {
     suggestion
         .as_ref()
         .map(|s| format!("; did you mean {s}?"))

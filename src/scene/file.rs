@@ -36,13 +36,13 @@ impl SceneSettings {
         let path = Path::new(name_or_path);
         let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => SceneError::NotFound {
-                name: name_or_path.to_owned(),
-                packed: packed_names().collect::<Vec<_>>().join(", "),
-                suggestion: nearest(name_or_path, packed_names()).map(str::to_owned),
+                name: name_or_path.into(),
+                packed: packed_names().collect::<Vec<_>>().join(", ").into(),
+                suggestion: nearest(name_or_path, packed_names()).map(Into::into),
             },
             _ => SceneError::Unreadable {
-                file: name_or_path.to_owned(),
-                reason: error.to_string(),
+                file: name_or_path.into(),
+                reason: error.to_string().into(),
             },
         })?;
         Self::from_toml_str(&text, name_or_path, path.parent().unwrap_or(Path::new("")))
@@ -53,12 +53,12 @@ impl SceneSettings {
     pub fn from_toml_str(text: &str, file_name: &str, base_dir: &Path) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let at = |offset: Option<usize>| Place::File {
-            file: file_name.to_owned(),
+            file: file_name.into(),
             line: offset.map(|o| 1 + text.bytes().take(o).filter(|&b| b == b'\n').count()),
         };
         let table = DeTable::parse(text).map_err(|error| SceneError::Syntax {
             place: at(error.span().map(|s| s.start)),
-            message: error.message().to_owned(),
+            message: error.message().into(),
         })?;
 
         let mut settings = Self {
@@ -76,10 +76,10 @@ impl SceneSettings {
             if let Some(first) = first_key.insert(name, key.to_owned()) {
                 return Err(SceneError::Repeated {
                     place,
-                    key: key.to_owned(),
-                    value: given.to_string(),
-                    leaf: name.to_owned(),
-                    first,
+                    key: key.into(),
+                    value: given.to_string().into(),
+                    leaf: name.into(),
+                    first: first.into(),
                 });
             }
             settings.set_from(key, given, place)
@@ -98,9 +98,10 @@ impl SceneSettings {
                 DeValue::Table(_) => {
                     return Err(SceneError::UnknownSection {
                         place: at(Some(offset)),
-                        section: name.to_owned(),
-                        suggestion: nearest(name, sections().into_iter()).map(|s| format!("[{s}]")),
-                        allowed: sections().join(", "),
+                        section: name.into(),
+                        suggestion: nearest(name, sections().into_iter())
+                            .map(|s| format!("[{s}]").into()),
+                        allowed: sections().join(", ").into(),
                     });
                 }
                 value => leaf(&mut settings, name, offset, value)?,

@@ -36,10 +36,10 @@ pub(super) fn resolve(name: &str, value: &str, place: &Place) -> Result<Key, Sce
             .collect();
         return Err(SceneError::WrongUnit {
             place: place.clone(),
-            key: name.to_owned(),
-            value: value.to_owned(),
-            stem: stem.to_owned(),
-            allowed: allowed.join(", "),
+            key: name.into(),
+            value: value.into(),
+            stem: stem.into(),
+            allowed: allowed.join(", ").into(),
         });
     }
     Err(unknown(name, value, place, split))
@@ -126,10 +126,10 @@ fn unknown(
     };
     SceneError::UnknownKey {
         place: place.clone(),
-        key: name.to_owned(),
-        value: value.to_owned(),
-        suggestion,
-        allowed,
+        key: name.into(),
+        value: value.into(),
+        suggestion: suggestion.map(Into::into),
+        allowed: allowed.into(),
     }
 }
 

@@ -239,18 +239,18 @@ impl SceneSettings {
         if variable.name == "scene.file" {
             return Err(SceneError::Impossible {
                 place,
-                key: name.to_owned(),
-                value: given.to_string(),
-                reason: "a scene is loaded before single values are set".to_owned(),
-                allowed: "name the scene instead of setting it".to_owned(),
+                key: name.into(),
+                value: given.to_string().into(),
+                reason: "a scene is loaded before single values are set".into(),
+                allowed: "name the scene instead of setting it".into(),
             });
         }
         let wrong_type = |found: &str| SceneError::WrongType {
             place: place.clone(),
-            key: name.to_owned(),
-            value: given.to_string(),
-            found: found.to_owned(),
-            allowed: variable.allowed(),
+            key: name.into(),
+            value: given.to_string().into(),
+            found: found.into(),
+            allowed: variable.allowed().into(),
         };
         let value = match (&given, variable.kind) {
             (Given::Value(Value::Real(x)), Kind::Real) => Value::Real(scaled(*x, scale)),
@@ -282,9 +282,9 @@ impl SceneSettings {
         if !variable.admits(&value) {
             return Err(SceneError::OutOfRange {
                 place,
-                key: name.to_owned(),
-                value: given.to_string(),
-                allowed: variable.allowed(),
+                key: name.into(),
+                value: given.to_string().into(),
+                allowed: variable.allowed().into(),
             });
         }
         if let Access::Parameter { set, .. } = variable.access {
@@ -315,9 +315,9 @@ impl SceneSettings {
             if !variable.admits(&value) {
                 return Err(SceneError::OutOfRange {
                     place: self.place(variable.name),
-                    key: variable.name.to_owned(),
-                    value: value.to_string(),
-                    allowed: variable.allowed(),
+                    key: variable.name.into(),
+                    value: value.to_string().into(),
+                    allowed: variable.allowed().into(),
                 });
             }
         }

@@ -254,7 +254,7 @@ table! {
     local(201, solver_rejects, "1", "", 0.0, 1e18, 1.0, "time steps rejected");
     count(Local, 202, live_nodes, "nodes still computed");
     local(203, penetration_max, "m", "um", -1.0, 1.0, 1e-6, "deepest penetration in contact since the last communication point");
-    local(204, energy_residual, "1", "", -1e9, 1e9, 1e-2, "energy balance error over the energy dissipated");
+    local(204, energy_residual, "J", "", -1e9, 1e9, 1e-3, "error of the energy balance since the start");
 
     text(1000, "wire.material", (wire.material), ["copper", "table1", "custom"], "copper: section-consistent; table1: the paper's wire of 0.7 mm; custom: every rigidity given");
     switch(1001, "wire.elastic", wire.elastic, "true: no yield, no moment cap, and no break unless wire.strength is given");

@@ -72,6 +72,11 @@ pub fn units() -> &'static [Unit] {
             display: &[("N.mm", 1e3, 0.0)],
         },
         Unit {
+            name: "J",
+            base: &[("kg", 1), ("m", 2), ("s", -2)],
+            display: &[],
+        },
+        Unit {
             name: "N.m2",
             base: &[("kg", 1), ("m", 3), ("s", -2)],
             display: &[],
