@@ -1,0 +1,134 @@
+//! How a command fails, and the exit code that says so.
+
+use coilwind::output::OutputError;
+use coilwind::scene::SceneError;
+use coilwind::simulation::SimError;
+use std::path::Path;
+use std::process::ExitCode;
+use thiserror::Error;
+
+/// Everything a command can fail with.
+#[derive(Debug, Error)]
+pub(super) enum Failure {
+    /// The scene is wrong.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// The scene is valid but a run of it cannot start.
+    #[error("{scene}: cannot start: {reason}")]
+    Start {
+        /// packed name or path
+        scene: String,
+        /// why
+        reason: SimError,
+    },
+    /// A cell of an input file is wrong.
+    #[error("{file}:{line}: {column} = {value}: {reason}; allowed: {allowed}")]
+    Cell {
+        /// as given
+        file: String,
+        /// from 1
+        line: u64,
+        /// name in the header
+        column: String,
+        /// as given
+        value: String,
+        /// what is wrong
+        reason: &'static str,
+        /// what would do
+        allowed: String,
+    },
+    /// An input file as a whole is wrong.
+    #[error("{file}: {reason}")]
+    Signals {
+        /// as given
+        file: String,
+        /// what is wrong, and what would do
+        reason: String,
+    },
+    /// A file or folder cannot be written.
+    #[error("cannot write {path}: {source}")]
+    Write {
+        /// file or folder
+        path: String,
+        /// of the operating system
+        source: std::io::Error,
+    },
+    /// A result file cannot be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// The solver gave up on the way.
+    #[error("the solver gave up {reason}; what was computed so far is in {directory}")]
+    Solver {
+        /// time, place and reason
+        reason: SimError,
+        /// where the results are
+        directory: String,
+    },
+    /// Ctrl-C.
+    #[error("interrupted at t = {time} s; what was computed so far is in {directory}")]
+    Interrupted {
+        /// simulated time, s
+        time: f64,
+        /// where the results are
+        directory: String,
+    },
+    /// `--fail-on-defect` and there was one.
+    #[error("defects: {what}")]
+    Defect {
+        /// which flags, how many
+        what: String,
+    },
+}
+
+impl Failure {
+    /// A write that failed.
+    pub(super) fn write(path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Self::Write {
+            path: path.as_ref().display().to_string(),
+            source,
+        }
+    }
+
+    /// 1 defect, 2 bad input, 3 solver, 130 interrupted (128 + SIGINT, as shells have it).
+    fn code(&self) -> u8 {
+        match self {
+            Self::Defect { .. } => 1,
+            Self::Scene(_)
+            | Self::Start { .. }
+            | Self::Cell { .. }
+            | Self::Signals { .. }
+            | Self::Write { .. }
+            | Self::Output(_) => 2,
+            Self::Solver { .. } => 3,
+            Self::Interrupted { .. } => 130,
+        }
+    }
+
+    /// The same for the operating system.
+    pub(super) fn exit_code(&self) -> ExitCode {
+        ExitCode::from(self.code())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_solver_that_gives_up_says_when_where_why_and_exits_with_three() {
+        let reason = SimError {
+            time: 0.25,
+            node: Some(17),
+            reason: "not finite".to_owned(),
+        };
+        let failure = Failure::Solver {
+            reason,
+            directory: "out".to_owned(),
+        };
+        assert_eq!(failure.code(), 3);
+        let text = failure.to_string();
+        for part in ["0.25", "node 17", "not finite", "so far is in out"] {
+            assert!(text.contains(part), "{text}");
+        }
+    }
+}

@@ -1,0 +1,327 @@
+//! `coilwind run`: one scene from start to end, natively or on an FMU's communication grid.
+
+use super::failure::Failure;
+use super::history::History;
+use super::progress::Progress;
+use super::results::{Ending, Frames, write_results};
+use super::signals::{Grid, Signals};
+use super::{SceneArgs, print};
+use clap::Args;
+use coilwind::scene::{Scene, SceneSettings};
+use coilwind::simulation::{Inputs, Outputs, SimError, Simulation};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+/// Folder of the results where neither `--out` nor the scene names one.
+const DEFAULT_OUT: &str = "coilwind-out";
+
+/// Arguments of `run`.
+#[derive(Args, Debug)]
+pub(super) struct RunArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder of the results; default: output.directory of the scene, else coilwind-out
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write this many snapshots of the wire on the way, in DIR/frames
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    frames: u32,
+    /// Sampled inputs (CSV with time, spindle_speed, nozzle_position, tension_setpoint) instead of
+    /// the scene's spindle and traverse, as the FMU would see them
+    #[arg(long, value_name = "FILE", requires = "step")]
+    inputs: Option<PathBuf>,
+    /// Communication step for --inputs, s
+    #[arg(long, value_name = "H", requires = "inputs", value_parser = positive)]
+    step: Option<f64>,
+    /// Simulated time at which to stop, s; default: end of the programme or of the inputs
+    #[arg(long, value_name = "T", value_parser = positive)]
+    stop_time: Option<f64>,
+    /// Exit with 1 if a defect was found
+    #[arg(long)]
+    fail_on_defect: bool,
+    /// No progress, no events, no verdict; errors only
+    #[arg(long)]
+    quiet: bool,
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x.is_finite() && x > 0.0 => Ok(x),
+        _ => Err("allowed: a number above 0, in seconds".to_owned()),
+    }
+}
+
+/// Runs a scene.
+pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
+    let settings = args.scene.settings()?;
+    let (scene, warnings) = settings.build_with_warnings()?;
+    if !args.quiet {
+        warnings
+            .iter()
+            .for_each(|warning| eprintln!("warning: {warning}"));
+    }
+    let start_failure = |reason| Failure::Start {
+        scene: args.scene.scene.clone(),
+        reason,
+    };
+    let mut simulation = Simulation::new(&scene).map_err(start_failure)?;
+    let mut drive = Drive::new(args, &scene, &simulation)?;
+    if let Drive::Signals { held, .. } = &drive {
+        simulation.set_start(*held).map_err(start_failure)?;
+    }
+
+    let directory = prepare(args, &settings)?;
+    let end = drive.end();
+    let clock = Instant::now();
+    let mut record = Record {
+        history: History::create(&directory.join("history.csv"))?,
+        frames: Frames::new(&directory, args.frames, end)?,
+        progress: Progress::new(end, args.quiet),
+    };
+    let ended = record.wind(&mut simulation, &mut drive, &stop_flag());
+    record.progress.finish();
+
+    // Results first: whatever ended the run, what it computed stays usable.
+    record.history.flush()?;
+    let ending = match &ended {
+        Ok(ending) => ending.clone(),
+        Err(Stop::Solver(reason)) => Ending::Failed {
+            reason: reason.to_string(),
+        },
+        Err(Stop::Files(_)) => Ending::Failed {
+            reason: "a file could not be written".to_owned(),
+        },
+    };
+    let written = write_results(
+        &directory,
+        &simulation,
+        &ending,
+        clock.elapsed().as_secs_f64(),
+    );
+    let place = directory.display().to_string();
+    match ended {
+        Err(Stop::Files(failure)) => return Err(failure),
+        Err(Stop::Solver(reason)) => {
+            return Err(Failure::Solver {
+                reason,
+                directory: place,
+            });
+        }
+        Ok(Ending::Interrupted) => {
+            written?;
+            return Err(Failure::Interrupted {
+                time: simulation.time(),
+                directory: place,
+            });
+        }
+        Ok(_) => written?,
+    }
+    report(args, &simulation, &place)
+}
+
+/// Makes the folder and leaves the scene in it as it is about to be run.
+fn prepare(args: &RunArgs, settings: &SceneSettings) -> Result<PathBuf, Failure> {
+    let directory = match (&args.out, settings.output.directory.as_str()) {
+        (Some(out), _) => out.clone(),
+        (None, "") => PathBuf::from(DEFAULT_OUT),
+        (None, directory) => PathBuf::from(directory),
+    };
+    std::fs::create_dir_all(&directory).map_err(|e| Failure::write(&directory, e))?;
+    let path = directory.join("scene.toml");
+    std::fs::write(&path, settings.to_toml()).map_err(|e| Failure::write(&path, e))?;
+    Ok(directory)
+}
+
+/// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
+fn stop_flag() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = Arc::clone(&flag);
+    let handler = ctrlc::set_handler(move || {
+        if raised.swap(true, Ordering::SeqCst) {
+            std::process::exit(130);
+        }
+    });
+    if handler.is_err() {
+        eprintln!("warning: Ctrl-C will end the run without results");
+    }
+    flag
+}
+
+/// The verdict, and exit code 1 where defects were asked to fail.
+fn report(args: &RunArgs, simulation: &Simulation, directory: &str) -> Result<(), Failure> {
+    let outputs = simulation.outputs();
+    if !args.quiet {
+        let verdict = simulation.summary().verdict;
+        print(&format!(
+            "{:.2} turns wound, {:.2} settled in {:.6} s: {verdict}; results in {directory}\n",
+            outputs.turns_wound,
+            outputs.turns_settled,
+            simulation.time(),
+        ))?;
+    }
+    let found = flags(outputs);
+    if args.fail_on_defect && (outputs.defect_count > 0 || !found.is_empty()) {
+        let what = format!(
+            "{} found, flags now: {}",
+            outputs.defect_count,
+            found.join(", ")
+        );
+        return Err(Failure::Defect { what });
+    }
+    Ok(())
+}
+
+/// Names of the flags that are up.
+fn flags(outputs: &Outputs) -> Vec<&'static str> {
+    [
+        (outputs.defect_bulge, "bulge"),
+        (outputs.defect_gap, "gap"),
+        (outputs.defect_overlap, "overlap"),
+        (outputs.defect_break, "break"),
+        (outputs.defect_slack, "slack"),
+    ]
+    .into_iter()
+    .filter_map(|(up, name)| up.then_some(name))
+    .collect()
+}
+
+/// What moves the machine.
+#[derive(Debug)]
+enum Drive {
+    /// the scene's own spindle and traverse, a row per core angle
+    Programme {
+        /// rad between rows
+        interval: f64,
+        /// rows so far
+        count: u64,
+        /// s
+        end: f64,
+    },
+    /// sampled inputs on a communication grid
+    Signals {
+        signals: Signals,
+        /// start values; inputs without samples stay there
+        held: Inputs,
+        grid: Grid,
+        /// s
+        end: f64,
+    },
+}
+
+impl Drive {
+    fn new(args: &RunArgs, scene: &Scene, simulation: &Simulation) -> Result<Self, Failure> {
+        let Some((path, step)) = args.inputs.as_deref().zip(args.step) else {
+            let end = simulation.programme().end();
+            let end = args.stop_time.map_or(end, |stop| stop.min(end));
+            return Ok(Self::Programme {
+                interval: scene.output.history_interval,
+                count: 0,
+                end,
+            });
+        };
+        let signals = Signals::read(path)?;
+        let end = args.stop_time.unwrap_or(signals.end());
+        if end <= 0.0 {
+            return Err(no_duration(path));
+        }
+        let held = signals.before(0.0, simulation.inputs());
+        Ok(Self::Signals {
+            held,
+            grid: Grid::new(step, end),
+            signals,
+            end,
+        })
+    }
+
+    /// Simulated time at the end, s.
+    fn end(&self) -> f64 {
+        match self {
+            Self::Programme { end, .. } | Self::Signals { end, .. } => *end,
+        }
+    }
+
+    /// Advances to the next point and gives its time, s; `None` at the end.
+    fn advance(&mut self, simulation: &mut Simulation) -> Option<Result<f64, SimError>> {
+        match self {
+            Self::Programme {
+                interval,
+                count,
+                end,
+            } => {
+                let time = simulation.time();
+                // Rounding must leave no sliver of a step before the end.
+                let sliver = 1e-12 * *end;
+                if time >= *end - sliver {
+                    return None;
+                }
+                *count += 1;
+                let row = simulation.programme().time_at(*count as f64 * *interval);
+                let next = if row >= *end - sliver { *end } else { row };
+                Some(simulation.advance_programme(next - time).map(|()| next))
+            }
+            Self::Signals {
+                signals,
+                held,
+                grid,
+                ..
+            } => {
+                let (start, length, end) = grid.next(signals)?;
+                let inputs = signals.after(start, *held);
+                Some(simulation.advance(inputs, length).map(|()| end))
+            }
+        }
+    }
+}
+
+fn no_duration(path: &Path) -> Failure {
+    Failure::Signals {
+        file: path.display().to_string(),
+        reason: "the last time is not after 0; allowed: a later time, or --stop-time".to_owned(),
+    }
+}
+
+/// Why winding stopped early.
+enum Stop {
+    Solver(SimError),
+    Files(Failure),
+}
+
+impl From<Failure> for Stop {
+    fn from(failure: Failure) -> Self {
+        Self::Files(failure)
+    }
+}
+
+/// Everything that watches a run.
+struct Record {
+    history: History,
+    frames: Frames,
+    progress: Progress,
+}
+
+impl Record {
+    /// Advances to the end, the first error, or until the flag is up.
+    fn wind(
+        &mut self,
+        simulation: &mut Simulation,
+        drive: &mut Drive,
+        stop: &AtomicBool,
+    ) -> Result<Ending, Stop> {
+        self.history.row(simulation.time(), simulation)?;
+        loop {
+            if stop.load(Ordering::SeqCst) {
+                return Ok(Ending::Interrupted);
+            }
+            let Some(advanced) = drive.advance(simulation) else {
+                return Ok(Ending::Done);
+            };
+            self.progress.tell(&simulation.drain_events());
+            let time = advanced.map_err(Stop::Solver)?;
+            self.history.row(time, simulation)?;
+            self.frames.update(simulation)?;
+            self.progress.update(simulation);
+        }
+    }
+}

@@ -1,0 +1,363 @@
+//! Sampled inputs on a communication grid, read and applied exactly as fmpy does it.
+//!
+//! Same samples, same grid and same arithmetic make a native run and one of the FMU agree to the
+//! bit. Points are `k H`; where two samples share a time (a jump) there is a point more, and the
+//! value after the jump holds from there.
+
+use super::failure::Failure;
+use coilwind::simulation::Inputs;
+use coilwind::variables::{Access, Causality, Value, Variable, table};
+use std::path::Path;
+
+/// A column of samples.
+#[derive(Debug)]
+struct Column {
+    set: fn(&mut Inputs, f64),
+    values: Vec<f64>,
+}
+
+/// Input signals over time.
+#[derive(Debug)]
+pub(super) struct Signals {
+    /// s, never falling
+    time: Vec<f64>,
+    columns: Vec<Column>,
+}
+
+/// Python's `math.isclose` with its default tolerance.
+fn is_close(a: f64, b: f64) -> bool {
+    a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
+}
+
+impl Signals {
+    /// Reads `time` and any of the inputs; a missing column leaves its input at the start value.
+    pub(super) fn read(path: &Path) -> Result<Self, Failure> {
+        let text = std::fs::read_to_string(path).map_err(|error| Failure::Signals {
+            file: path.display().to_string(),
+            reason: format!("cannot be read: {error}"),
+        })?;
+        Self::parse(&text, &path.display().to_string())
+    }
+
+    fn parse(text: &str, file: &str) -> Result<Self, Failure> {
+        let whole = |reason: String| Failure::Signals {
+            file: file.to_owned(),
+            reason,
+        };
+        let text = text.trim_start_matches('\u{feff}');
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let header = reader.headers().map_err(|e| whole(e.to_string()))?.clone();
+        let rows = columns(&header, file)?;
+
+        let mut samples = vec![Vec::new(); header.len()];
+        for record in reader.records() {
+            let record = record.map_err(|e| whole(e.to_string()))?;
+            let line = record.position().map_or(0, csv::Position::line);
+            for (column, cell) in record.iter().enumerate() {
+                let bad = |reason, allowed| Failure::Cell {
+                    file: file.to_owned(),
+                    line,
+                    column: header[column].to_owned(),
+                    value: cell.to_owned(),
+                    reason,
+                    allowed,
+                };
+                let allowed =
+                    || rows[column].map_or("a finite number".to_owned(), Variable::allowed);
+                let x: f64 = cell.parse().map_err(|_| bad("not a number", allowed()))?;
+                if !rows[column].map_or(x.is_finite(), |v| v.admits(&Value::Real(x))) {
+                    return Err(bad("out of range", allowed()));
+                }
+                if let (None, Some(&last)) = (rows[column], samples[column].last())
+                    && x < last
+                {
+                    return Err(bad("time runs backwards", format!("at least {last} s")));
+                }
+                samples[column].push(x);
+            }
+        }
+
+        let mut signals = Self {
+            time: Vec::new(),
+            columns: Vec::new(),
+        };
+        for (row, values) in rows.into_iter().zip(samples) {
+            match row.map(|v| v.access) {
+                Some(Access::Input { set, .. }) => signals.columns.push(Column { set, values }),
+                _ => signals.time = values,
+            }
+        }
+        if signals.time.is_empty() {
+            return Err(whole("no samples; one row or more is needed".to_owned()));
+        }
+        Ok(signals)
+    }
+
+    /// Time of the last sample, s.
+    pub(super) fn end(&self) -> f64 {
+        self.time.last().copied().unwrap_or(0.0)
+    }
+
+    /// Inputs at a time over what they were, before any jump at that time.
+    pub(super) fn before(&self, time: f64, inputs: Inputs) -> Inputs {
+        self.at(time, inputs, false)
+    }
+
+    /// The same after any jump at that time.
+    pub(super) fn after(&self, time: f64, inputs: Inputs) -> Inputs {
+        self.at(time, inputs, true)
+    }
+
+    fn at(&self, time: f64, mut inputs: Inputs, after_jump: bool) -> Inputs {
+        for column in &self.columns {
+            (column.set)(
+                &mut inputs,
+                self.interpolate(time, &column.values, after_jump),
+            );
+        }
+        inputs
+    }
+
+    /// fmpy's `Input.interpolate`, operation by operation.
+    fn interpolate(&self, time: f64, v: &[f64], after_jump: bool) -> f64 {
+        let t = &self.time;
+        let last = t.len() - 1;
+        let mut i = t.partition_point(|&sample| sample < time);
+        if i == 0 || last == 0 {
+            return v[0];
+        }
+        if i > last {
+            return v[last];
+        }
+        if is_close(time, t[i]) && i < last && is_close(t[i], t[i + 1]) {
+            while after_jump && i < last && is_close(t[i], t[i + 1]) {
+                i += 1;
+            }
+            return v[i];
+        }
+        let w0 = (t[i] - time) / (t[i] - t[i - 1]);
+        let w1 = 1.0 - w0;
+        w0 * v[i - 1] + w1 * v[i]
+    }
+
+    /// The next jump after a time; infinite if there is none.
+    fn next_jump(&self, time: f64) -> f64 {
+        self.time
+            .windows(2)
+            .filter(|pair| pair[0] == pair[1])
+            .map(|pair| pair[0])
+            .find(|&jump| jump > time && !is_close(jump, time))
+            .unwrap_or(f64::INFINITY)
+    }
+}
+
+/// The row of every column; `None` for time.
+fn columns(
+    header: &csv::StringRecord,
+    file: &str,
+) -> Result<Vec<Option<&'static Variable>>, Failure> {
+    let inputs = || table().iter().filter(|v| v.causality == Causality::Input);
+    let allowed = || inputs().map(|v| v.name).collect::<Vec<_>>().join(", ");
+    let bad = |reason: String| Failure::Signals {
+        file: file.to_owned(),
+        reason,
+    };
+    let mut rows = Vec::new();
+    for (index, name) in header.iter().enumerate() {
+        if header.iter().take(index).any(|earlier| earlier == name) {
+            return Err(bad(format!("column {name} is there twice")));
+        }
+        if name == "time" {
+            rows.push(None);
+            continue;
+        }
+        let Some(row) = inputs().find(|v| v.name == name) else {
+            let guess = inputs()
+                .map(|v| (strsim::jaro_winkler(v.name, name), v.name))
+                .filter(|g| g.0 > 0.8)
+                .max_by(|a, b| a.0.total_cmp(&b.0))
+                .map(|g| format!("; did you mean {}?", g.1))
+                .unwrap_or_default();
+            return Err(bad(format!(
+                "unknown column {name}{guess} (allowed: time, {})",
+                allowed()
+            )));
+        };
+        rows.push(Some(row));
+    }
+    if !rows.iter().any(Option::is_none) {
+        return Err(bad(format!(
+            "no column time (allowed: time, {})",
+            allowed()
+        )));
+    }
+    Ok(rows)
+}
+
+/// Communication points of a run: `k H`, jumps of the input, and the end.
+#[derive(Debug)]
+pub(super) struct Grid {
+    step: f64,
+    stop: f64,
+    time: f64,
+    count: u64,
+}
+
+impl Grid {
+    /// From 0 to `stop` in steps of `step`, both in s and positive.
+    pub(super) fn new(step: f64, stop: f64) -> Self {
+        Self {
+            step,
+            stop,
+            time: 0.0,
+            count: 0,
+        }
+    }
+
+    /// The next step as start, length and end, s; `None` at the end. Points come from an integer
+    /// count, so they do not drift.
+    pub(super) fn next(&mut self, signals: &Signals) -> Option<(f64, f64, f64)> {
+        let start = self.time;
+        if start > self.stop || is_close(start, self.stop) {
+            return None;
+        }
+        let regular = (self.count + 1) as f64 * self.step;
+        let mut end = regular;
+        for limit in [signals.next_jump(start), self.stop] {
+            if end > limit && !is_close(end, limit) {
+                end = limit;
+            }
+        }
+        self.time = end;
+        if is_close(end, regular) {
+            self.count += 1;
+        }
+        Some((start, end - start, end))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const START: Inputs = Inputs {
+        spindle_speed: 0.0,
+        nozzle_position: 0.25,
+        tension_setpoint: 15.0,
+    };
+
+    fn parse(text: &str) -> Signals {
+        Signals::parse(text, "in.csv").unwrap()
+    }
+
+    fn error(text: &str) -> String {
+        Signals::parse(text, "in.csv").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn linear_between_samples_held_outside() {
+        let signals = parse("time, spindle_speed\n 0.1, 10\n 0.3, 30\n");
+        let speed = |t| signals.after(t, START).spindle_speed;
+        assert_eq!(speed(0.0), 10.0);
+        assert_eq!(speed(0.1), 10.0);
+        assert!((speed(0.15) - 15.0).abs() < 1e-12);
+        assert_eq!(speed(0.3), 30.0);
+        assert_eq!(speed(9.0), 30.0);
+        assert_eq!(signals.after(0.2, START).nozzle_position, 0.25);
+        assert_eq!(
+            parse("time,tension_setpoint\n5,7\n")
+                .before(0.0, START)
+                .tension_setpoint,
+            7.0
+        );
+    }
+
+    #[test]
+    fn a_jump_is_a_point_of_its_own() {
+        let signals = parse("spindle_speed,time\n0,0\n10,0.25\n100,0.25\n100,1\n");
+        assert_eq!(signals.before(0.25, START).spindle_speed, 10.0);
+        assert_eq!(signals.after(0.25, START).spindle_speed, 100.0);
+        let mut grid = Grid::new(0.1, 0.45);
+        let mut points = Vec::new();
+        while let Some((start, length, end)) = grid.next(&signals) {
+            assert_eq!(length, end - start);
+            points.push(end);
+        }
+        assert_eq!(points, [0.1, 0.2, 0.25, 3.0 * 0.1, 0.4, 0.45]);
+    }
+
+    #[test]
+    fn the_grid_does_not_drift_and_ends_on_the_end() {
+        let signals = parse("time,spindle_speed\n0,1\n");
+        let mut grid = Grid::new(0.1, 100.0);
+        let ends: Vec<f64> =
+            std::iter::from_fn(|| grid.next(&signals).map(|step| step.2)).collect();
+        assert_eq!(ends.len(), 1000);
+        assert!(
+            ends.iter()
+                .enumerate()
+                .all(|(k, &t)| t == (k + 1) as f64 * 0.1)
+        );
+    }
+
+    /// Numbers from fmpy 0.3.32, `Input.interpolate`, with these samples.
+    #[test]
+    fn the_same_bits_as_fmpy() {
+        let signals = parse(
+            "time,spindle_speed\n0,0.1\n0.013,7.7\n0.07,-3.3\n0.07,5.9\n0.07,6.1\n0.31,2.2\n",
+        );
+        for (time, bits) in FMPY {
+            assert_eq!(
+                signals.after(time, START).spindle_speed.to_bits(),
+                bits,
+                "{time}"
+            );
+        }
+    }
+
+    const FMPY: [(f64, u64); 6] = [
+        (0.0, 0x3fb999999999999a),
+        (0.0031, 0x3ffe98cff3659cc2),
+        (0.013, 0x401ecccccccccccd),
+        (0.0419, 0x4000fb823ee08fb9),
+        (0.07, 0x4018666666666666),
+        (0.1337, 0x4014426e978d4fdf),
+    ];
+
+    #[test]
+    fn mistakes_name_file_line_and_column() {
+        for (text, parts) in [
+            (
+                "time,spindel_speed\n0,1\n",
+                &["in.csv", "spindel_speed", "mean spindle_speed?"][..],
+            ),
+            ("spindle_speed\n1\n", &["no column time"]),
+            ("time,time\n1,1\n", &["time is there twice"]),
+            ("time,spindle_speed\n", &["no samples"]),
+            (
+                "time,spindle_speed\n0,1\n1,fast\n",
+                &["in.csv:3", "spindle_speed = fast"],
+            ),
+            (
+                "time,tension_setpoint\n0,-1\n",
+                &["in.csv:2", "= -1", "0 to 10000 N"],
+            ),
+            (
+                "time,tension_setpoint\n0,nan\n",
+                &["in.csv:2", "= nan", "0 to 10000 N"],
+            ),
+            (
+                "time,spindle_speed\n1,1\n0.5,1\n",
+                &["in.csv:3", "backwards", "at least 1 s"],
+            ),
+            ("time,spindle_speed\n0,1\n1\n", &["in.csv", "line: 3"]),
+        ] {
+            let message = error(text);
+            for part in parts {
+                assert!(message.contains(part), "{part:?} is missing in: {message}");
+            }
+        }
+    }
+}

@@ -1,0 +1,296 @@
+//! The command through its front door: exit codes, messages and the files left behind.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn coilwind(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    command.args(arguments);
+    command
+}
+
+fn finished(command: &mut Command, code: i32) -> Output {
+    let output = command.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    output
+}
+
+/// What a command that exits with this code writes to standard error.
+fn complaint(arguments: &[&str], code: i32) -> String {
+    String::from_utf8(finished(&mut coilwind(arguments), code).stderr).unwrap()
+}
+
+/// A table by column; every cell must be a number.
+fn read_csv(path: &Path) -> BTreeMap<String, Vec<f64>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    let names: Vec<String> = reader
+        .headers()
+        .unwrap()
+        .iter()
+        .map(str::to_owned)
+        .collect();
+    let mut columns: BTreeMap<String, Vec<f64>> = names
+        .iter()
+        .map(|name| (name.clone(), Vec::new()))
+        .collect();
+    for record in reader.records() {
+        for (name, cell) in names.iter().zip(record.unwrap().iter()) {
+            columns.get_mut(name).unwrap().push(cell.parse().unwrap());
+        }
+    }
+    columns
+}
+
+fn json(path: &Path) -> serde_json::Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// A twentieth of a turn on coarse wire: enough to move, over in a moment.
+const SHORT: [&str; 8] = [
+    "--set",
+    "spindle.turns=0.05",
+    "--set",
+    "spindle.ramp_turns=0.02",
+    "--set",
+    "solver.spacing_near_mm=2",
+    "--set",
+    "solver.spacing_free_mm=4",
+];
+
+fn short_run(out: &Path, more: &[&str]) -> Command {
+    let mut command = coilwind(&["run", "fig8", "--out", out.to_str().unwrap()]);
+    command.args(SHORT).args(more);
+    command
+}
+
+#[test]
+fn check_says_valid_or_where_it_is_wrong() {
+    let output = finished(&mut coilwind(&["check", "fig8"]), 0);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.starts_with("fig8: valid; table1 wire of 0.7 mm at 15 N"),
+        "{said}"
+    );
+
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("bad.toml");
+    let scene = scene.to_str().unwrap();
+    std::fs::write(scene, "[core]\n\ncorner_radius_mm = 7\n").unwrap();
+    let said = complaint(&["check", scene], 2);
+    for part in ["bad.toml:3", "core.corner_radius = 0.007 m", "0 to 0.006 m"] {
+        assert!(said.contains(part), "{said}");
+    }
+    let said = complaint(&["check", scene, "--set", "core.corner_radius_mm=1"], 0);
+    assert_eq!(said, "");
+}
+
+#[test]
+fn bad_input_exits_with_two() {
+    for (arguments, part) in [
+        (&["run", "fig9"][..], "did you mean fig8?"),
+        (
+            &["run", "fig8", "--set", "wire.diametr=1"],
+            "did you mean wire.diameter?",
+        ),
+        (&["run", "fig8", "--set", "wire.diameter"], "NAME=VALUE"),
+        (&["run", "fig8", "--inputs", "x.csv"], "--step"),
+        (
+            &["run", "fig8", "--inputs", "no-such.csv", "--step", "1e-4"],
+            "no-such.csv",
+        ),
+        (
+            &["run", "fig8", "--inputs", "x.csv", "--step", "0"],
+            "a number above 0",
+        ),
+        (&["run", "fig8", "--set", "solver.step=1e-3"], "solver.step"),
+        (&["wind"], "unrecognized subcommand"),
+    ] {
+        let said = complaint(arguments, 2);
+        assert!(said.contains(part), "{arguments:?}: {said}");
+    }
+}
+
+#[test]
+fn variables_lists_the_table() {
+    let output = finished(&mut coilwind(&["variables", "--json"]), 0);
+    let rows: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let rows = rows.as_array().unwrap();
+    assert_eq!(rows.len(), coilwind::variables::table().len());
+    let diameter = rows
+        .iter()
+        .find(|row| row["name"] == "wire.diameter")
+        .unwrap();
+    assert_eq!(diameter["start"], 0.0007);
+    assert_eq!(diameter["displayUnit"], "mm");
+
+    let output = finished(&mut coilwind(&["variables"]), 0);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(text.lines().count(), rows.len());
+    let tension = text
+        .lines()
+        .find(|line| line.contains("tension_setpoint "))
+        .unwrap();
+    assert!(tension.contains(" = 15 N "), "{tension}");
+}
+
+#[test]
+fn run_leaves_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("made/on/demand");
+    let output = finished(&mut short_run(&out, &["--frames", "2"]), 0);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("turns wound"), "{said}");
+
+    let history = read_csv(&out.join("history.csv"));
+    let time = &history["time"];
+    // A twentieth of a turn is 18 degrees: a row each, and the start.
+    assert_eq!(time.len(), 19);
+    assert!(time.windows(2).all(|pair| pair[1] > pair[0]));
+    for (row, angle) in history["spindle_angle"].iter().enumerate() {
+        assert!(
+            (angle.to_degrees() - row as f64).abs() < 1e-6,
+            "row {row}: {angle}"
+        );
+    }
+    assert!((history["spindle_speed"][18] - 500.0).abs() < 1e-6);
+    for variable in coilwind::variables::table() {
+        let expected = !variable.name.contains('.') && variable.name != "preset";
+        assert_eq!(
+            history.contains_key(variable.name),
+            expected,
+            "{}",
+            variable.name
+        );
+    }
+
+    let summary = json(&out.join("summary.json"));
+    assert_eq!(summary["status"], "done");
+    assert_eq!(summary["scene"], "fig8");
+    assert_eq!(summary["simulated_s"].as_f64(), time.last().copied());
+    for file in [
+        "turns.csv",
+        "coil.vtp",
+        "frames/frame_0001.vtp",
+        "frames/frame_0002.vtp",
+    ] {
+        assert!(out.join(file).metadata().unwrap().len() > 0, "{file}");
+    }
+    assert!(!out.join("frames/frame_0003.vtp").exists());
+
+    // The scene it left runs to the same history.
+    let again = folder.path().join("again");
+    let scene = out.join("scene.toml");
+    let arguments = [
+        "run",
+        scene.to_str().unwrap(),
+        "--quiet",
+        "--out",
+        again.to_str().unwrap(),
+    ];
+    let output = finished(&mut coilwind(&arguments), 0);
+    assert!(output.stdout.is_empty() && output.stderr.is_empty());
+    assert_eq!(
+        std::fs::read(out.join("history.csv")).unwrap(),
+        std::fs::read(again.join("history.csv")).unwrap()
+    );
+}
+
+#[test]
+fn inputs_are_applied_on_the_grid() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("in.csv");
+    std::fs::write(
+        &csv,
+        "time,spindle_speed,tension_setpoint\n0,0,12\n0.0003,60,12\n0.0003,60,10\n0.00045,60,10\n",
+    )
+    .unwrap();
+    let out = folder.path().join("out");
+    let inputs = [
+        "--inputs",
+        csv.to_str().unwrap(),
+        "--step",
+        "0.0002",
+        "--quiet",
+    ];
+    finished(&mut short_run(&out, &inputs), 0);
+    let history = read_csv(&out.join("history.csv"));
+    // Grid, jump at 0.3 ms, and the end; a row shows what was held up to it.
+    assert_eq!(history["time"].len(), 5);
+    for (time, expected) in history["time"]
+        .iter()
+        .zip([0.0, 0.0002, 0.0003, 0.0004, 0.00045])
+    {
+        assert!((time - expected).abs() < 1e-15);
+    }
+    assert_eq!(history["tension_setpoint"], [12.0, 12.0, 12.0, 10.0, 10.0]);
+    let speed = &history["spindle_speed"];
+    assert_eq!((speed[0], speed[1], speed[3]), (0.0, 0.0, 60.0));
+    assert!((speed[2] - 40.0).abs() < 1e-9);
+    assert!(history["nozzle_position"].iter().all(|&y| y == 0.0));
+
+    std::fs::write(&csv, "time,spindle_speed\n0,0\n1,5000\n").unwrap();
+    let output = finished(&mut short_run(&out, &inputs), 2);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("in.csv:3: spindle_speed = 5000"), "{said}");
+}
+
+#[test]
+fn stop_time_cuts_a_run_short() {
+    let folder = tempfile::tempdir().unwrap();
+    finished(
+        &mut short_run(folder.path(), &["--stop-time", "4e-4", "--quiet"]),
+        0,
+    );
+    let history = read_csv(&folder.path().join("history.csv"));
+    assert_eq!(history["time"].last(), Some(&4e-4));
+}
+
+#[test]
+fn defects_fail_only_where_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("in.csv");
+    // The tensioner pulls harder than the wire holds.
+    std::fs::write(&csv, "time,tension_setpoint\n0,60\n0.001,300\n").unwrap();
+    let out = folder.path().join("out");
+    let inputs = [
+        "--inputs",
+        csv.to_str().unwrap(),
+        "--step",
+        "1e-4",
+        "--quiet",
+        "--set",
+        "tensioner.mass=0",
+    ];
+    finished(&mut short_run(&out, &inputs), 0);
+    let mut strict = short_run(&out, &inputs);
+    let output = finished(strict.arg("--fail-on-defect"), 1);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("break"), "{said}");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_usable_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = short_run(folder.path(), &["--set", "spindle.turns=500", "--quiet"])
+        .spawn()
+        .unwrap();
+    let history = folder.path().join("history.csv");
+    let rows = || std::fs::read_to_string(&history).map_or(0, |text| text.lines().count());
+    let patience = std::time::Instant::now();
+    while rows() < 3 && patience.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let kill = Command::new("kill")
+        .args(["-INT", &run.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(kill.success());
+    assert_eq!(run.wait().unwrap().code(), Some(130));
+    let time = read_csv(&history)["time"].clone();
+    let summary = json(&folder.path().join("summary.json"));
+    assert_eq!(summary["status"], "interrupted");
+    assert_eq!(summary["simulated_s"].as_f64(), time.last().copied());
+}
