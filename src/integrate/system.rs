@@ -245,7 +245,11 @@ impl System {
         self.load.fit(&self.rod);
         self.roll.resize(self.rod.edges(), 0.0);
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
-        let parts = ForceParts { commit: commit.is_some(), holonomic: self.holonomic, twist: self.twist };
+        let parts = ForceParts {
+            commit: commit.is_some(),
+            holonomic: self.holonomic,
+            twist: self.twist,
+        };
         internal_forces(
             &mut self.rod,
             &self.laws,

@@ -300,7 +300,11 @@ mod tests {
             &laws,
             &clamp,
             &roll,
-            ForceParts { commit: true, holonomic: false, twist: true },
+            ForceParts {
+                commit: true,
+                holonomic: false,
+                twist: true,
+            },
             &mut load,
         );
         let scale = load.force.iter().map(|f| f.norm()).fold(1.0, f64::max);

@@ -54,8 +54,13 @@ impl Simulation {
 
     /// Without freezing there is nothing for a second turn to touch.
     fn refuse_a_second_turn(&mut self) -> Result<(), SimError> {
-        self.watch.look(&self.policy, self.sys.spindle.angle, |_| V3::zeros());
-        if self.laid_angles().last().is_some_and(|a| a.abs() > 0.98 * std::f64::consts::TAU) {
+        self.watch
+            .look(&self.policy, self.sys.spindle.angle, |_| V3::zeros());
+        if self
+            .laid_angles()
+            .last()
+            .is_some_and(|a| a.abs() > 0.98 * std::f64::consts::TAU)
+        {
             return Err(SimError {
                 time: self.sys.time,
                 node: None,
@@ -133,14 +138,23 @@ impl Simulation {
     fn lapped(&self) -> usize {
         let laid = self.laid_angles();
         let Some(last) = laid.last() else { return 0 };
-        laid.iter().take_while(|a| (last - *a).abs() > LAP * std::f64::consts::TAU).count().saturating_sub(1)
+        laid.iter()
+            .take_while(|a| (last - *a).abs() > LAP * std::f64::consts::TAU)
+            .count()
+            .saturating_sub(1)
     }
 
     /// Polar angle along the wire of the live nodes from the clamp to lift-off, rad.
     fn laid_angles(&self) -> Vec<f64> {
         let spin = Spin::new(self.sys.spindle.angle);
-        let points: Vec<V3> = (0..=self.lift_off()).map(|i| spin.to_core(self.sys.rod.x[i])).collect();
-        crate::measure::unwrap_angles(&points, crate::measure::polar_angle(points[0]), self.coil.spec().direction)
+        let points: Vec<V3> = (0..=self.lift_off())
+            .map(|i| spin.to_core(self.sys.rod.x[i]))
+            .collect();
+        crate::measure::unwrap_angles(
+            &points,
+            crate::measure::polar_angle(points[0]),
+            self.coil.spec().direction,
+        )
     }
 
     /// The first `count` nodes become fixed geometry.
