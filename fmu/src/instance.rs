@@ -278,6 +278,9 @@ impl Instance {
                     Simulation::starting_with(&scene, inputs).map_err(Refusal::Start)?;
                 self.messages
                     .extend(warnings.iter().map(message_of_warning));
+                if !scene.output.directory.is_empty() {
+                    self.messages.push(not_recorded(&scene.output.directory));
+                }
                 Run { simulation, inputs }
             }
         };
@@ -446,5 +449,15 @@ fn message_of_warning(warning: &Warning) -> Message {
         status: Status::Warning,
         category: Category::Warning,
         text: warning.to_string(),
+    }
+}
+
+/// Only the native command records so far; nobody shall wait for files in vain.
+fn not_recorded(directory: &str) -> Message {
+    let text = format!("output.directory = {directory}: this FMU writes no files");
+    Message {
+        status: Status::Warning,
+        category: Category::Warning,
+        text,
     }
 }
