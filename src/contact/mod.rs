@@ -5,8 +5,10 @@
 //! node in the free span costs one comparison a step.
 
 mod law;
+mod live;
 
 pub use law::{ContactLaw, TouchForce, damping_for_restitution};
+pub use live::{LiveContact, Wire};
 
 use crate::core_shape::{Surface, Touch};
 use crate::freeze::Tube;

@@ -117,7 +117,7 @@ impl Tube {
             // the ring before now has a segment on either side
             self.make_ring(n - 2);
             let segment = n - 2;
-            if segment % CHUNK == 0 {
+            if segment.is_multiple_of(CHUNK) {
                 self.chunks.push(Bounds::empty());
             }
             // a mitre reaches past the radius; twice the radius covers turning angles to 120 degrees

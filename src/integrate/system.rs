@@ -2,7 +2,7 @@
 //!
 //! Lab frame; the core turns about +y. Nothing here knows scenes or files.
 
-use crate::contact::{Body, Contacts};
+use crate::contact::{Body, Contacts, LiveContact, Wire};
 use crate::feed::{Feed, FeedSpec};
 use crate::math::{Quat, Spin, V3, spin_velocity};
 use crate::rod::{
@@ -137,6 +137,9 @@ pub struct System {
     pub loads: Loads,
     /// contact, if there is anything to touch
     pub contacts: Option<Contacts>,
+    /// live wire against live wire, where it may meet
+    pub live: Option<LiveContact>,
+    wire: Wire,
     /// feed at the last node
     pub feed: Option<(FeedSpec, Feed)>,
     /// set pull of the tensioner, N
@@ -174,6 +177,8 @@ impl System {
             spindle: Spindle::default(),
             loads: Loads::default(),
             contacts: None,
+            live: None,
+            wire: Wire::default(),
             feed: None,
             set_tension: 0.0,
             twist: true,
@@ -261,6 +266,7 @@ impl System {
         self.external_forces();
         let spin = Spin::new(self.spindle.angle);
         let torque_from_contact = self.contact_forces(spin, commit);
+        self.live_forces(spin, commit);
         let at_clamp = if self.support[0].turning {
             // what the wire puts on the clamp: its force there and the opposite of the clamp's moment
             let (x, f) = (self.rod.x[0], self.load.force[0]);
@@ -274,6 +280,13 @@ impl System {
             for k in 0..3 {
                 self.books.plastic[k] += self.load.plastic[k];
             }
+            let touch = self
+                .contacts
+                .as_ref()
+                .map_or(Default::default(), |c| c.loss);
+            let between = self.live.as_ref().map_or(Default::default(), |l| l.loss);
+            self.books.friction = touch.friction + between.friction;
+            self.books.damping = touch.damping + between.damping;
             self.books.spindle -= self.torque_on_core * self.spindle.speed * dt;
             if self.feed.is_some() {
                 // a traversing nozzle does work across the wire
@@ -346,11 +359,45 @@ impl System {
                 arc += self.rod.rest[i];
             }
         }
-        if commit.is_some() {
-            self.books.friction = contacts.loss.friction;
-            self.books.damping = contacts.loss.damping;
-        }
         moment
+    }
+
+    /// Forces of live wire on live wire. The held nodes take part as partners.
+    fn live_forces(&mut self, spin: Spin, commit: Option<f64>) {
+        let (Some(live), Some(contacts)) = (&mut self.live, &self.contacts) else {
+            return;
+        };
+        let (rod, wire) = (&self.rod, &mut self.wire);
+        let mut arc = 0.0;
+        wire.position.clear();
+        wire.velocity.clear();
+        wire.length.clear();
+        wire.arc.clear();
+        for i in 0..rod.nodes() {
+            let x = rod.x[i];
+            wire.position.push(spin.to_core(x));
+            wire.velocity
+                .push(spin.to_core(rod.v[i] - spin_velocity(self.spindle.speed, x)));
+            wire.length.push(rod.voronoi(i));
+            wire.arc.push(arc);
+            arc += rod.rest.get(i).copied().unwrap_or(0.0);
+        }
+        let per_length = self.section.mass_per_length();
+        live.evaluate(
+            wire,
+            &contacts.law,
+            self.section.diameter,
+            per_length,
+            commit,
+        );
+        for (force, f) in self.load.force.iter_mut().zip(&live.force) {
+            if *f != V3::zeros() {
+                *force += spin.to_lab(*f);
+            }
+        }
+        if commit.is_some() {
+            self.deepest = self.deepest.max(live.deepest);
+        }
     }
 
     /// Lets the wire through the nozzle for `dt`; call after the nodes have moved.
@@ -402,7 +449,11 @@ impl System {
                 .sum(),
             None => 0.0,
         };
-        rod + touch
+        let between = match (&self.live, &self.contacts) {
+            (Some(l), Some(c)) => l.stored(&c.law, &self.wire.length),
+            _ => 0.0,
+        };
+        rod + touch + between
     }
 
     /// Motion energy of the free nodes and spinning edges, J.
@@ -472,6 +523,10 @@ impl System {
         if let Some(c) = &mut self.contacts {
             c.nodes.insert(j + 1, crate::contact::NodeContact::new());
         }
+        if let Some(l) = &mut self.live {
+            l.insert(j + 1);
+            self.wire.length.insert(j + 1, half);
+        }
         self.roll.insert(j + 1, self.roll[j]);
         if at_nozzle {
             // the half edge at the nozzle was not in the books before
@@ -519,6 +574,10 @@ impl System {
         self.roll.drain(..count);
         if let Some(c) = &mut self.contacts {
             c.nodes.drain(..count);
+        }
+        if let Some(l) = &mut self.live {
+            l.remove_front(count);
+            self.wire.length.drain(..count.min(self.wire.length.len()));
         }
         self.place_supports();
         self.books.frozen_kinetic += handed;

@@ -164,7 +164,7 @@ impl Default for SceneSettings {
             },
             freeze: super::Freeze {
                 enabled: true,
-                window: 0.5,
+                window: 1.5,
                 creep: 2e-6,
                 keep_length: 0.0,
                 margin: 5e-3,

@@ -5,17 +5,11 @@ use crate::freeze::FrozenNode;
 use crate::integrate::turn_about_y;
 use crate::math::{Spin, V3};
 
-/// Share of a turn after which live wire must have frozen.
-const LAP: f64 = 0.9;
-
 impl Simulation {
     pub(super) fn keep_house(&mut self, dt: f64) -> Result<(), SimError> {
         let look = self.steps.is_multiple_of(HOUSE_STEPS);
         if look {
             self.check_health()?;
-        }
-        if !self.scene.freeze.enabled && self.watch.due(&self.policy, self.sys.spindle.angle) {
-            self.refuse_a_second_turn()?;
         }
         let insert = self.nozzle_edge_is_long();
         let refine = if look {
@@ -49,24 +43,6 @@ impl Simulation {
         self.sys.evaluate(Some(0.0));
         self.sys.books.numerical += self.sys.energy_residual(None) - unexplained;
         self.shift_velocities(-0.5 * dt);
-        Ok(())
-    }
-
-    /// Without freezing there is nothing for a second turn to touch.
-    fn refuse_a_second_turn(&mut self) -> Result<(), SimError> {
-        self.watch
-            .look(&self.policy, self.sys.spindle.angle, |_| V3::zeros());
-        if self
-            .laid_angles()
-            .last()
-            .is_some_and(|a| a.abs() > 0.98 * std::f64::consts::TAU)
-        {
-            return Err(SimError {
-                time: self.sys.time,
-                node: None,
-                reason: "freeze.enabled = false serves for the first turn only: live wire does not touch live wire".into(),
-            });
-        }
         Ok(())
     }
 
@@ -119,29 +95,25 @@ impl Simulation {
         let spin = Spin::new(angle);
         let x = &self.sys.rod.x;
         let still = self.watch.look(&self.policy, angle, |i| spin.to_core(x[i]));
-        // the last one that is at rest becomes the clamp
-        let settled = still.saturating_sub(1).min(self.behind_lift_off());
-        let count = settled.max(self.lapped());
-        if count > settled {
-            self.forced += (count - settled) as u32;
+        self.watch_live_wire();
+        if !self.scene.freeze.enabled {
+            return 0;
         }
+        // the last one that is at rest becomes the clamp
+        let count = still.saturating_sub(1).min(self.behind_lift_off());
         let reach = 2.0 * self.scene.wire.radius() + self.policy.margin;
         (0..count)
             .find(|&i| self.distance_to_coil(spin.to_core(self.sys.rod.x[i + 1])) > reach)
             .unwrap_or(count)
     }
 
-    /// How many nodes from the clamp would soon get live wire beside them.
-    ///
-    /// Live wire touches the core and frozen wire, not live wire. Wire that is still moving when
-    /// lift-off comes round again is therefore frozen as it is, and counted.
-    fn lapped(&self) -> usize {
-        let laid = self.laid_angles();
-        let Some(last) = laid.last() else { return 0 };
-        laid.iter()
-            .take_while(|a| (last - *a).abs() > LAP * std::f64::consts::TAU)
-            .count()
-            .saturating_sub(1)
+    /// Live wire meets live wire where lift-off comes round before the wire there is at rest. A whole
+    /// flat can land at once, so the pairs are watched from half a turn on.
+    fn watch_live_wire(&mut self) {
+        let laid = self.laid_angles().last().map_or(0.0, |a| a.abs());
+        if laid > 0.5 * std::f64::consts::TAU {
+            self.sys.live.get_or_insert_default();
+        }
     }
 
     /// Polar angle along the wire of the live nodes from the clamp to lift-off, rad.

@@ -43,8 +43,6 @@ pub struct Simulation {
     events: Vec<Event>,
     /// deepest penetration of wire when it came to rest, m
     rest_depth: f64,
-    /// nodes frozen while still moving, because lift-off came round
-    forced: u32,
     broken: bool,
     was_slack: bool,
     /// farthest nozzle position of this pass, m, and its direction along y
@@ -113,7 +111,6 @@ impl Simulation {
             outputs: Outputs::default(),
             events: Vec::new(),
             rest_depth: 0.0,
-            forced: 0,
             broken: false,
             was_slack: false,
             pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),

@@ -30,8 +30,6 @@ pub struct Summary {
     pub turns_wound: f64,
     /// turns at rest
     pub turns_settled: f64,
-    /// nodes frozen while still moving because lift-off came round again
-    pub frozen_moving: u32,
     /// wire paid out, m
     pub fed_length_m: f64,
     /// verdict over all settled turns
@@ -144,7 +142,6 @@ impl Simulation {
             spindle_angle_rad: self.outputs.spindle_angle,
             turns_wound: self.outputs.turns_wound,
             turns_settled: self.outputs.turns_settled,
-            frozen_moving: self.forced,
             fed_length_m: self.outputs.fed_length,
             verdict: self.coil.verdict().as_str().to_owned(),
             energy: self.energy(),
