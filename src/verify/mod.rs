@@ -3,6 +3,16 @@
 //! A case file names a `kind`; each kind is one file here that sets up the same rod, section,
 //! contact and feed as a winding run, lets it compute, and reads the answer off it.
 
+mod bench;
+pub mod capstan;
+pub mod groove_seat;
+pub mod penalty_impact;
+pub mod shoulder_drop;
+pub mod shoulder_static;
+pub mod spinning_ring;
+pub mod twist_buckling;
+pub mod winding_feed;
+
 use crate::rod::Section;
 use std::path::Path;
 
