@@ -10,8 +10,8 @@ fi
 cd "$(dirname "$0")/.."
 target=${CARGO_TARGET_DIR:-target}
 
-cargo build --locked --release --package coilwind-fmu
-cargo build --locked --release --package coilwind-model-description --bin pack-fmu
+# One call, so that the packages build side by side.
+cargo build --locked --release --package coilwind-fmu --package coilwind-model-description
 
 case $(uname -s) in
     Darwin) library=$target/release/libCoilWinding.dylib ;;
@@ -19,4 +19,4 @@ case $(uname -s) in
     *) library=$target/release/libCoilWinding.so ;;
 esac
 
-"$target/release/pack-fmu" "$library" target/fmu/CoilWinding.fmu src/scene/packed
+"$target/release/pack-fmu" "$library" "$target/fmu/CoilWinding.fmu" src/scene/packed

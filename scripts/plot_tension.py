@@ -14,6 +14,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 from runs import COLOURS, STYLE, by_speed, find_file, open_run, read_columns
+from verdicts import STEADY_TURNS
+
+COLUMNS = ["spindle_angle", "wire_tension", "wire_tension_min", "wire_tension_max"]
 
 
 def main():
@@ -36,9 +39,10 @@ def main():
     )
     low, high = 0.0, 0.0
     for number, (axis, run) in enumerate(zip(axes[:, 0], runs)):
-        data = read_columns(files[run.directory][1], ["spindle_angle", "wire_tension"])
+        data = read_columns(files[run.directory][1], COLUMNS)
         draw(axis, run, data, COLOURS[number % len(COLOURS)])
-        low, high = min(low, data["wire_tension"].min()), max(high, data["wire_tension"].max())
+        low = min(low, data["wire_tension_min"].min())
+        high = max(high, data["wire_tension_max"].max())
     # One scale for all runs, from zero, so that swings compare by eye.
     axes[0, 0].set_ylim(1.1 * low, 1.12 * max(high, 1e-9))
     axes[-1, 0].set_xlabel("turns of the spindle from the start position")
@@ -49,13 +53,19 @@ def main():
 
 def draw(axis, run, data, colour):
     turns, tension = data["spindle_angle"] / (2 * np.pi), data["wire_tension"]
+    low, high = data["wire_tension_min"], data["wire_tension_max"]
+    # Between communication points the wire swings faster than the line can show.
+    axis.fill_between(turns, low, high, color=colour, alpha=0.25, linewidth=0)
     axis.plot(turns, tension, color=colour, linewidth=0.9)
     # The run-up is not typical of the speed.
-    steady = tension[np.abs(turns) >= 0.5] if np.abs(turns[-1]) > 0.75 else tension
-    mean, low, high = np.mean(steady), np.min(steady), np.max(steady)
+    steady = np.abs(turns) >= STEADY_TURNS
+    note = f"after {STEADY_TURNS:g} turns: "
+    if np.abs(turns[-1]) <= 1.5 * STEADY_TURNS:
+        steady, note = np.full(len(turns), True), ""
+    mean = np.mean(tension[steady])
     axis.axhline(mean, color="#5b616b", linewidth=0.7, linestyle=(0, (4, 3)))
     axis.set_title(f"{run.label}", loc="left", fontweight="bold", color=colour)
-    note = f"after half a turn: mean {mean:.1f} N, {low:.1f} to {high:.1f} N"
+    note += f"mean {mean:.1f} N, {low[steady].min():.1f} to {high[steady].max():.1f} N"
     axis.set_title(note, loc="right", color="#5b616b", fontsize=8)
     axis.set_xlim(turns[0], turns[-1])
 

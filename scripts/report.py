@@ -13,10 +13,7 @@ import html
 import os
 from pathlib import Path
 
-from runs import by_speed, open_run
-
-# What the source paper says of its Fig. 8, by spindle speed in rad/s.
-FIG8_CLAIMS = {30: "aligned", 100: "aligned", 300: "aligned", 500: "gap"}
+from verdicts import NOTE, STEADY_TURNS, Row, columns, runs_below
 
 FIGURES = [
     ("tension.png", "Wire tension at the nozzle"),
@@ -33,7 +30,7 @@ PAGE = """<!DOCTYPE html>
   :root {{ --ink: #22262c; --soft: #666d78; --line: #e2e5e9; --copper: #b5562b; }}
   body {{ margin: 0; background: #f5f6f7; color: var(--ink);
          font: 15px/1.55 system-ui, "Segoe UI", Helvetica, Arial, sans-serif; }}
-  main {{ max-width: 1080px; margin: 0 auto; padding: 40px 24px 64px; }}
+  main {{ max-width: 1180px; margin: 0 auto; padding: 40px 24px 64px; }}
   h1 {{ font-size: 27px; font-weight: 650; margin: 0 0 4px; letter-spacing: -.01em; }}
   h1::before {{ content: ""; display: inline-block; width: .62em; height: .62em; margin-right: .45em;
                border-radius: 50%; background: var(--copper); }}
@@ -43,10 +40,9 @@ PAGE = """<!DOCTYPE html>
   .note, figcaption {{ font-size: 13px; }}
   .card {{ background: #fff; border: 1px solid var(--line); border-radius: 10px; overflow-x: auto; }}
   table {{ border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }}
-  th, td {{ padding: 9px 14px; text-align: right; border-bottom: 1px solid var(--line);
+  th, td {{ padding: 9px 10px; text-align: right; border-bottom: 1px solid var(--line);
            white-space: nowrap; }}
   th {{ font-size: 12px; font-weight: 600; color: var(--soft); vertical-align: bottom; }}
-  th:first-child, td:first-child, .word {{ text-align: left; }}
   tr:last-child td {{ border-bottom: 0; }}
   .verdict {{ display: inline-block; padding: 1px 10px; border-radius: 999px; font-weight: 600;
              font-size: 13px; background: #e9ebee; color: #4b525c; }}
@@ -78,8 +74,7 @@ def main():
     parser.add_argument("--diameter-mm", type=float, default=0.7, help="wire diameter")
     arguments = parser.parse_args()
 
-    summaries = sorted(arguments.directory.rglob("summary.json"))
-    runs = by_speed(open_run(summary) for summary in summaries)
+    runs = runs_below(arguments.directory)
     if not runs:
         raise SystemExit(f"no summary.json below {arguments.directory}")
     body = [verdict_table(runs, arguments), figures(arguments.directory), pictures(runs)]
@@ -105,56 +100,25 @@ def lead(runs):
 
 
 def verdict_table(runs, arguments):
-    scale = 1e3 / arguments.diameter_mm
-    claims = any(claim(run) for run in runs)
-    head = ["spindle", "verdict", "paper" if claims else None, "mean gap<br>over d",
-            "largest gap<br>over d", "longest run<br>above limit", "axial distance<br>over d",
-            "largest bulge<br>mm", "overlap<br>over d", "energy residual<br>over dissipated"]
-    rows = []
-    for run in runs:
-        turn = run.turn(arguments.turn)
-        verdict = turn.get("verdict", "unsettled")
-        residual = run.summary.get("energy", {}).get("residual_over_dissipated")
-        cells = [html.escape(run.label), badge(verdict), badge(claim(run)) if claims else None,
-                 number(turn.get("gap_mean"), scale, 3), number(turn.get("gap_max"), scale, 3),
-                 number(turn.get("gap_run"), 100, 0, " %"),
-                 number(turn.get("axial_mean"), scale, 3), number(turn.get("bulge_max"), 1e3, 2),
-                 number(turn.get("overlap_max"), scale, 2), number(residual, 100, 2, " %")]
-        rows.append(row("td", cells))
-    note = (
-        f"Turn {arguments.turn}, measured on wire at rest in the frame of the core, without the "
-        f"neighbourhood of the clamp; d = {arguments.diameter_mm:g} mm. A gap counts from 0.15 d "
-        "over a tenth of the turn. A single run is one throw: landings scatter at high speed."
-    )
-    table = f'<div class="card"><table>{row("th", head)}{"".join(rows)}</table></div>'
-    return f'<h2>Verdict</h2>{table}<p class="note">{note}</p>'
+    table = columns(1e-3 * arguments.diameter_mm)
+    rows = [Row.of(run, arguments.turn) for run in runs]
+    head = row("th", [html.escape(column.heading) for column in table])
+    body = "".join(row("td", [cell(column, r) for column in table]) for r in rows)
+    note = NOTE.format(turn=arguments.turn, d=arguments.diameter_mm, steady=STEADY_TURNS)
+    note += " A single run is one throw: landings scatter at high speed."
+    shown = f'<div class="card"><table>{head}{body}</table></div>'
+    return f'<h2>Verdict</h2>{shown}<p class="note">{html.escape(note)}</p>'
 
 
 def row(kind, cells):
-    shown = [(k, cell) for k, cell in enumerate(cells) if cell is not None]
-    words = (f'<{kind}{" class=word" if k in (1, 2) else ""}>{cell}</{kind}>' for k, cell in shown)
-    return f"<tr>{''.join(words)}</tr>"
+    return f"<tr>{''.join(f'<{kind}>{text}</{kind}>' for text in cells)}</tr>"
 
 
-def claim(run):
-    """What the paper says of this run, if it is one of its own."""
-    if not str(run.summary.get("scene", "")).startswith("fig8") or run.speed is None:
-        return None
-    return FIG8_CLAIMS.get(round(run.speed, 6))
-
-
-def badge(word):
-    if not word:
-        return "–"
-    word = html.escape(word)
-    return f'<span class="verdict {word}">{word}</span>'
-
-
-def number(value, scale, digits, unit=""):
-    if value is None:
-        return "–"
-    # Rounding may leave a zero with a sign.
-    return f"{round(value * scale, digits) + 0.0:.{digits}f}{unit}"
+def cell(column, run):
+    text = html.escape(column.shown(run))
+    if column.heading in ("verdict", "paper") and text != "–":
+        return f'<span class="verdict {text}">{text}</span>'
+    return text
 
 
 def figures(directory):

@@ -38,13 +38,20 @@ class Run:
     @property
     def speed(self):
         """Spindle speed in rad/s, None if the summary does not tell."""
-        return self.summary.get("speed_rad_per_s")
+        speed = self.summary.get("speed_rad_per_s")
+        # Held inputs are means over a step, and their rounding should not show.
+        return None if speed is None else float(f"{speed:.9g}")
 
     @property
     def label(self):
         if self.speed is None:
             return self.directory.name or str(self.directory)
         return f"{self.speed:g} rad/s"
+
+    @property
+    def ending(self):
+        """`done`, `interrupted` or `failed`; `no results` without a summary."""
+        return self.summary.get("status", "no results")
 
     def turn(self, number):
         """Measures of a turn (from 1), empty if it has not settled."""

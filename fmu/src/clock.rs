@@ -85,6 +85,12 @@ impl Clock {
         self.now
     }
 
+    /// Whether the experiment has reached its stop time; without one, at any time.
+    pub(crate) fn is_over(&self) -> bool {
+        self.stop
+            .is_none_or(|stop| self.now >= stop - TOLERANCE * stop.abs().max(self.now.abs()))
+    }
+
     /// End of a step of `step` from `point`, or why it cannot be taken.
     pub(crate) fn end_of(&self, point: f64, step: f64) -> Result<f64, TimeError> {
         finite("currentCommunicationPoint", point)?;
@@ -195,6 +201,17 @@ mod tests {
             clock.end_of(1e4 + step, step),
             Err(TimeError::Elsewhere { .. })
         ));
+    }
+
+    #[test]
+    fn an_experiment_is_over_at_its_stop_time() {
+        let mut clock = Clock::new(1.0, Some(2.0)).expect("valid");
+        assert!(!clock.is_over());
+        clock.set(2.0 - 1e-6);
+        assert!(!clock.is_over());
+        clock.set(1.0 + 10.0 * 0.1);
+        assert!(clock.is_over());
+        assert!(Clock::default().is_over());
     }
 
     #[test]

@@ -57,10 +57,14 @@ pub(crate) unsafe fn free(c: fmi2Component) {
     let Some(component) = (unsafe { pointers::take(c) }) else {
         return;
     };
-    let Component { instance, host } = *component;
-    if let Err(panic) = catch_unwind(AssertUnwindSafe(|| drop(instance))) {
-        host.deliver(&[message_of_panic(Function::FreeInstance.name(), panic)]);
-    }
+    let Component { mut instance, host } = *component;
+    let closed = catch_unwind(AssertUnwindSafe(move || {
+        instance.close();
+        instance.end_call()
+    }));
+    let messages =
+        closed.unwrap_or_else(|panic| vec![message_of_panic(Function::FreeInstance.name(), panic)]);
+    host.deliver(&messages);
 }
 
 fn run(

@@ -5,9 +5,11 @@ use crate::ffi::{self, Status};
 use crate::lifecycle::State;
 use crate::logger::{Filter, Message, c_string};
 use crate::parameters::Parameters;
+use crate::recording::{RecordError, Recording};
 use crate::refusal::Refusal;
 use crate::resources;
 use crate::scalar::Scalar;
+use coilwind::output::Ending;
 use coilwind::scene::Warning;
 use coilwind::simulation::{Event, EventKind, Inputs, SimError, Simulation};
 use coilwind::variables::{Access, Causality, Value, Variability, Variable, by_reference};
@@ -15,6 +17,7 @@ use coilwind_model_description::{Category, guid};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// What stays the same when an instance is reset.
 #[derive(Clone, Debug)]
@@ -28,6 +31,8 @@ struct Identity {
 struct Run {
     simulation: Simulation,
     inputs: Inputs,
+    /// files, from the first communication point on, where `output.directory` names a folder
+    recording: Option<Recording>,
 }
 
 /// An FMU instance between two calls.
@@ -163,20 +168,39 @@ impl Instance {
     /// `fmi2ExitInitializationMode`
     pub(crate) fn exit_initialization_mode(&mut self) -> Result<(), Refusal> {
         self.start()?;
+        self.record();
         self.state = State::StepComplete;
         Ok(())
     }
 
     /// `fmi2Terminate`
     pub(crate) fn terminate(&mut self) -> Result<(), Refusal> {
+        let ending = if self.clock.is_over() {
+            Ending::Done
+        } else {
+            Ending::Interrupted
+        };
+        self.finish_recording(&ending);
         self.state = State::Terminated;
         Ok(())
     }
 
     /// `fmi2Reset`: a fresh instance with the same name, resources and logging.
     pub(crate) fn reset(&mut self) -> Result<(), Refusal> {
-        *self = Self::fresh(self.identity.clone());
+        self.finish_recording(&Ending::Interrupted);
+        let messages = std::mem::take(&mut self.messages);
+        *self = Self {
+            messages,
+            ..Self::fresh(self.identity.clone())
+        };
         Ok(())
+    }
+
+    /// `fmi2FreeInstance`: a run that nobody terminated leaves its results all the same.
+    pub(crate) fn close(&mut self) {
+        if self.state != State::Fatal {
+            self.finish_recording(&Ending::Interrupted);
+        }
     }
 
     /// `fmi2GetReal` and its kin.
@@ -230,7 +254,11 @@ impl Instance {
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<(), Refusal> {
         let end = self.clock.end_of(point, step)?;
         let run = self.start()?;
+        let began = Instant::now();
         let result = run.simulation.advance(run.inputs, step);
+        if let Some(recording) = &mut run.recording {
+            recording.computed(began.elapsed());
+        }
         let events = run.simulation.drain_events();
         let simulated = run.simulation.time();
         self.messages.extend(events.iter().map(message_of));
@@ -238,8 +266,13 @@ impl Instance {
             let reached = self.clock.experiment_time(simulated);
             return Err(self.fail(point, step, reached, reason));
         }
-        self.check_outputs(end)?;
+        if let Err(refusal) = self.check_outputs(end) {
+            let reason = refusal.to_string();
+            self.finish_recording(&Ending::Failed { reason });
+            return Err(refusal);
+        }
         self.clock.set(end);
+        self.record_row();
         Ok(())
     }
 
@@ -278,10 +311,11 @@ impl Instance {
                     Simulation::starting_with(&scene, inputs).map_err(Refusal::Start)?;
                 self.messages
                     .extend(warnings.iter().map(message_of_warning));
-                if !scene.output.directory.is_empty() {
-                    self.messages.push(not_recorded(&scene.output.directory));
+                Run {
+                    simulation,
+                    inputs,
+                    recording: None,
                 }
-                Run { simulation, inputs }
             }
         };
         Ok(self.run.insert(run))
@@ -359,10 +393,48 @@ impl Instance {
         }
     }
 
+    /// Opens the files of `output.directory`, if it names a folder.
+    fn record(&mut self) {
+        let Some(run) = &mut self.run else { return };
+        let settings = self.parameters.settings();
+        if settings.output.directory.is_empty() {
+            return;
+        }
+        match Recording::start(settings, &run.simulation) {
+            Ok(recording) => run.recording = Some(recording),
+            Err(reason) => self.messages.push(not_written(&reason)),
+        }
+        self.record_row();
+    }
+
+    /// Adds this communication point to the files.
+    fn record_row(&mut self) {
+        if let Some(run) = &mut self.run
+            && let Some(recording) = &mut run.recording
+            && let Err(reason) = recording.row(self.clock.now(), &run.simulation)
+        {
+            self.messages.push(not_written(&reason));
+        }
+    }
+
+    /// Writes the results and closes the files; does nothing the second time.
+    fn finish_recording(&mut self, ending: &Ending) {
+        if let Some(run) = &mut self.run
+            && let Some(recording) = run.recording.take()
+            && let Err(reason) = recording.finish(&run.simulation, ending)
+        {
+            self.messages.push(not_written(&reason));
+        }
+    }
+
     /// The solver gave up; values of the last successful time can still be read.
     fn fail(&mut self, from: f64, step: f64, reached: f64, reason: SimError) -> Refusal {
         self.state = State::StepFailed;
         self.clock.set(reached);
+        // Importers often stop here without another call.
+        self.finish_recording(&Ending::Failed {
+            reason: reason.to_string(),
+        });
         Refusal::StepFailed {
             from,
             step,
@@ -452,12 +524,11 @@ fn message_of_warning(warning: &Warning) -> Message {
     }
 }
 
-/// Only the native command records so far; nobody shall wait for files in vain.
-fn not_recorded(directory: &str) -> Message {
-    let text = format!("output.directory = {directory}: this FMU writes no files");
+/// A file that could not be written: the run itself is as good as without it.
+fn not_written(reason: &RecordError) -> Message {
     Message {
         status: Status::Warning,
         category: Category::Warning,
-        text,
+        text: format!("output.directory: {reason}"),
     }
 }

@@ -27,6 +27,7 @@ mod lifecycle;
 mod logger;
 mod parameters;
 mod pointers;
+mod recording;
 mod refusal;
 mod resources;
 mod scalar;

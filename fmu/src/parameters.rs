@@ -76,6 +76,11 @@ impl Parameters {
         }
     }
 
+    /// Every leaf of the scene with the explicit ones laid over.
+    pub(crate) fn settings(&self) -> &SceneSettings {
+        &self.settings
+    }
+
     /// The scene they make together, and what is odd about it.
     pub(crate) fn scene(&self) -> Result<(Scene, Vec<Warning>), Refusal> {
         Ok(self.settings.build_with_warnings()?)

@@ -2,9 +2,8 @@
 
 mod check;
 mod failure;
-mod history;
+mod frames;
 mod progress;
-mod results;
 mod run;
 mod signals;
 mod variables;
@@ -28,7 +27,8 @@ struct Cli {
 // A new command is a file beside this one with its arguments and a function that runs it.
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Wind a scene and write summary.json, history.csv, turns.csv, coil.vtp and coil.png
+    /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp
+    /// and coil.png
     Run(run::RunArgs),
     /// Validate a scene and say what is wrong, and where
     Check(check::CheckArgs),

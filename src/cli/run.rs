@@ -1,12 +1,12 @@
 //! `coilwind run`: one scene from start to end, natively or on an FMU's communication grid.
 
 use super::failure::Failure;
-use super::history::History;
+use super::frames::Frames;
 use super::progress::Progress;
-use super::results::{Ending, Frames, write_results};
 use super::signals::{Grid, Signals};
 use super::{SceneArgs, print};
 use clap::Args;
+use coilwind::output::{Ending, History, OutputError, Snapshot, write_results};
 use coilwind::scene::{Scene, SceneSettings};
 use coilwind::simulation::{Inputs, Outputs, SimError, Simulation};
 use std::path::{Path, PathBuf};
@@ -25,7 +25,7 @@ pub(super) struct RunArgs {
     /// Folder of the results; default: output.directory of the scene, else coilwind-out
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Write this many snapshots of the wire on the way, in DIR/frames
+    /// Write this many snapshots on the way, in DIR/frames: a picture and the wire as VTP each
     #[arg(long, value_name = "N", default_value_t = 0)]
     frames: u32,
     /// Sampled inputs (CSV with time, spindle_speed, nozzle_position, tension_setpoint) instead of
@@ -78,13 +78,14 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let mut record = Record {
         history: History::create(&directory.join("history.csv"))?,
         frames: Frames::new(&directory, args.frames, end)?,
+        snapshot: Snapshot::new(&simulation).map_err(start_failure)?,
         progress: Progress::new(end, args.quiet),
     };
     let ended = record.wind(&mut simulation, &mut drive, &stop_flag());
     record.progress.finish();
 
     // Results first: whatever ended the run, what it computed stays usable.
-    record.history.flush()?;
+    let flushed = record.history.flush();
     let ending = match &ended {
         Ok(ending) => ending.clone(),
         Err(Stop::Solver(reason)) => Ending::Failed {
@@ -97,9 +98,11 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let written = write_results(
         &directory,
         &simulation,
+        &record.snapshot,
         &ending,
         clock.elapsed().as_secs_f64(),
     );
+    let written = flushed.and(written);
     let place = directory.display().to_string();
     match ended {
         Err(Stop::Files(failure)) => return Err(failure),
@@ -294,10 +297,17 @@ impl From<Failure> for Stop {
     }
 }
 
+impl From<OutputError> for Stop {
+    fn from(failure: OutputError) -> Self {
+        Self::Files(failure.into())
+    }
+}
+
 /// Everything that watches a run.
 struct Record {
     history: History,
     frames: Frames,
+    snapshot: Snapshot,
     progress: Progress,
 }
 
@@ -320,7 +330,7 @@ impl Record {
             self.progress.tell(&simulation.drain_events());
             let time = advanced.map_err(Stop::Solver)?;
             self.history.row(time, simulation)?;
-            self.frames.update(simulation)?;
+            self.frames.update(simulation, &self.snapshot)?;
             self.progress.update(simulation);
         }
     }

@@ -3,15 +3,19 @@
 //! Everything here is written from finished results; nothing is read back into a computation.
 
 mod camera;
+mod history;
 mod picture;
 mod raster;
+mod results;
 mod shade;
 mod summary;
 mod tables;
 mod tube;
 mod vtp;
 
+pub use history::History;
 pub use picture::{Colouring, CoreMesh, Picture, render, render_png};
+pub use results::{Ending, Snapshot, write_results};
 pub use summary::write_summary;
 pub use tables::{write_stations, write_turns};
 pub use tube::{TubeMesh, tube_mesh};

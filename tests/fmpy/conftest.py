@@ -3,6 +3,7 @@
 import ctypes
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import fmpy
@@ -15,6 +16,8 @@ from fmpy.fmi2 import (
 from fmpy.logging import addLoggerProxy
 
 ROOT = Path(__file__).resolve().parents[2]
+# The input signals are those of the demonstration.
+sys.path.insert(0, str(ROOT / "scripts"))
 FMU = Path(os.environ.get("COILWIND_FMU", ROOT / "target/fmu/CoilWinding.fmu"))
 COMMAND = Path(os.environ.get("COILWIND_COMMAND", ROOT / "target/release/coilwind"))
 

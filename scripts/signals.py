@@ -23,26 +23,30 @@ def duration(speed, turns, ramp_turns=RAMP_TURNS):
     return 2 * ramp_angle / speed + (2 * math.pi * turns - ramp_angle) / speed
 
 
-def winding_signals(speed, turns, pitch, y0, n):
+def winding_signals(speed, turns, pitch, y0, n, tension=None):
     """`n` equal steps of a winding run: speed ramp over a quarter turn, then `speed`, rad/s; the
-    nozzle advances by `pitch`, m, per turn of the core from `y0`, m.
+    nozzle advances by `pitch`, m, per turn of the core from `y0`, m. With a `tension`, N, there is a
+    constant setpoint too.
 
-    Returns a structured array of n + 1 samples with the fields time (s), spindle_speed (rad/s) and
-    nozzle_position (m). Time is k * step exactly, so that a sample lies on every communication
-    point of that step. A value is held over the step that starts at its sample; the speed is
-    therefore the mean over the step, which keeps the core angle at the end of each step exact, and
-    the nozzle position is the one to be reached at the step's end.
+    Returns a structured array of n + 1 samples with the fields time (s), spindle_speed (rad/s),
+    nozzle_position (m), and tension_setpoint (N) if there is one. Time is k * step exactly, so that
+    a sample lies on every communication point of that step. A value is held over the step that
+    starts at its sample; the speed is therefore the mean over the step, which keeps the core angle
+    at the end of each step exact, and the nozzle position is the one to be reached at the step's
+    end.
     """
     step = duration(speed, turns) / n
     time = np.arange(n + 1) * step
     angle = np.array([core_angle(t, speed) for t in np.append(time, time[-1] + step)])
-    signals = np.zeros(
-        n + 1,
-        dtype=[("time", float), ("spindle_speed", float), ("nozzle_position", float)],
-    )
+    names = ["time", "spindle_speed", "nozzle_position"]
+    if tension is not None:
+        names.append("tension_setpoint")
+    signals = np.zeros(n + 1, dtype=[(name, float) for name in names])
     signals["time"] = time
     signals["spindle_speed"] = np.diff(angle) / step
     signals["nozzle_position"] = y0 + pitch * angle[1:] / (2 * math.pi)
+    if tension is not None:
+        signals["tension_setpoint"] = tension
     return signals
 
 

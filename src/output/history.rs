@@ -1,8 +1,8 @@
 //! `history.csv`: every input, output and diagnostic over time, header from the variable table.
 
-use super::failure::Failure;
-use coilwind::simulation::Simulation;
-use coilwind::variables::{Access, Value, table};
+use super::OutputError;
+use crate::simulation::Simulation;
+use crate::variables::{Access, Value, table};
 use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 const FLUSH: Duration = Duration::from_millis(500);
 
 /// The open file.
-pub(super) struct History {
+#[derive(Debug)]
+pub struct History {
     path: PathBuf,
     writer: csv::Writer<File>,
     flushed: Instant,
@@ -19,8 +20,8 @@ pub(super) struct History {
 
 impl History {
     /// Creates the file and writes the header.
-    pub(super) fn create(path: &Path) -> Result<Self, Failure> {
-        let file = File::create(path).map_err(|e| Failure::write(path, e))?;
+    pub fn create(path: &Path) -> Result<Self, OutputError> {
+        let file = File::create(path).map_err(OutputError::io(path))?;
         let mut history = Self {
             path: path.to_owned(),
             writer: csv::Writer::from_writer(file),
@@ -35,9 +36,10 @@ impl History {
         Ok(history)
     }
 
-    /// Writes the state at a point of the grid, `time` in s. Booleans are 0 and 1, so that every column
-    /// reads as numbers.
-    pub(super) fn row(&mut self, time: f64, simulation: &Simulation) -> Result<(), Failure> {
+    /// Writes the state at a communication point, `time` in s. Numbers are in the shortest form
+    /// that reads back to the same bits; Booleans are 0 and 1, so that every column reads as
+    /// numbers.
+    pub fn row(&mut self, time: f64, simulation: &Simulation) -> Result<(), OutputError> {
         let (inputs, outputs) = (simulation.inputs(), simulation.outputs());
         let cells = columns().map(|(_, access)| match access {
             Access::Input { get, .. } => Value::Real(get(&inputs)).to_string(),
@@ -57,16 +59,17 @@ impl History {
     }
 
     /// Puts what was written on disk.
-    pub(super) fn flush(&mut self) -> Result<(), Failure> {
-        self.writer
-            .flush()
-            .map_err(|e| Failure::write(&self.path, e))?;
+    pub fn flush(&mut self) -> Result<(), OutputError> {
+        self.writer.flush().map_err(OutputError::io(&self.path))?;
         self.flushed = Instant::now();
         Ok(())
     }
 
-    fn checked(&self, written: Result<(), csv::Error>) -> Result<(), Failure> {
-        written.map_err(|e| Failure::write(&self.path, e.into()))
+    fn checked(&self, written: Result<(), csv::Error>) -> Result<(), OutputError> {
+        written.map_err(|source| OutputError::Csv {
+            path: self.path.clone(),
+            source,
+        })
     }
 }
 

@@ -1,0 +1,39 @@
+#!/usr/bin/env bash
+# Makes target/venv with requirements.txt, unless it is there, and prints its Python.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+venv=${CARGO_TARGET_DIR:-target}/venv
+stamp=$venv/requirements.txt
+# Windows has Scripts, everybody else bin.
+python_of() { if [ -x "$venv/Scripts/python.exe" ]; then echo "$venv/Scripts/python.exe"; else echo "$venv/bin/python"; fi; }
+
+if cmp -s requirements.txt "$stamp" && "$(python_of)" -c '' 2>/dev/null; then
+    python_of
+    exit
+fi
+
+system=
+for candidate in python3 python python3.14 python3.13 python3.12 python3.11 python3.10; do
+    if "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 10))' 2>/dev/null; then
+        system=$candidate
+        break
+    fi
+done
+if [ -z "$system" ]; then
+    echo "venv.sh: no Python 3.10 or later found (looked for python3, python, python3.10 to 3.14)" >&2
+    exit 1
+fi
+if ! "$system" -c 'import ensurepip, venv' 2>/dev/null; then
+    echo "venv.sh: $system cannot make virtual environments: its venv or ensurepip is missing." >&2
+    echo "On Debian and Ubuntu: apt install python3-venv" >&2
+    exit 1
+fi
+
+echo "making $venv with $("$system" --version)" >&2
+rm -rf "$venv"
+"$system" -m venv "$venv"
+"$(python_of)" -m pip install --quiet --disable-pip-version-check --requirement requirements.txt >&2
+# Last, so that an install that was cut short is made anew.
+cp requirements.txt "$stamp"
+python_of

@@ -1,0 +1,122 @@
+//! The files that describe a run where it stands: at its end, or on the way.
+
+use super::{
+    CoreMesh, OutputError, Picture, render_png, write_core_vtp, write_stations, write_summary,
+    write_turns, write_vtp,
+};
+use crate::core_shape::Surface;
+use crate::simulation::{Centreline, SimError, Simulation, Summary, core_surface};
+use serde::Serialize;
+use std::path::Path;
+
+/// How a run ended.
+#[derive(Clone, Debug, Serialize)]
+#[serde(tag = "status", rename_all = "snake_case")]
+pub enum Ending {
+    /// as planned
+    Done,
+    /// before its planned end
+    Interrupted,
+    /// the solver gave up
+    Failed {
+        /// time, place and reason
+        reason: String,
+    },
+}
+
+/// What `summary.json` holds: how the run ended, how long it took, and the run itself.
+#[derive(Serialize)]
+struct Report<'a> {
+    #[serde(flatten)]
+    ending: &'a Ending,
+    /// wall time of the computation, s
+    wall_s: f64,
+    /// simulated over wall time
+    real_time_factor: f64,
+    #[serde(flatten)]
+    summary: Summary,
+}
+
+/// The core for pictures and heights, built once per run.
+#[derive(Clone, Debug)]
+pub struct Snapshot {
+    core: Surface,
+}
+
+impl Snapshot {
+    /// For runs of this simulation's scene.
+    pub fn new(simulation: &Simulation) -> Result<Self, SimError> {
+        Ok(Self {
+            core: core_surface(&simulation.scene().core)?,
+        })
+    }
+
+    /// Writes the wire as it is now: `STEM.vtp` (with its height over the core) and `STEM.png`.
+    pub fn write(&self, stem: &Path, simulation: &Simulation) -> Result<(), OutputError> {
+        let wire = simulation.centreline();
+        let radius = simulation.scene().wire.radius();
+        let geometry = self.write_geometry(&stem.with_extension("vtp"), &wire, radius);
+        let picture = Picture::new(Some(self.mesh()), &wire, radius);
+        let picture = render_png(&stem.with_extension("png"), &picture);
+        geometry.and(picture)
+    }
+
+    fn write_geometry(
+        &self,
+        path: &Path,
+        wire: &Centreline,
+        radius: f64,
+    ) -> Result<(), OutputError> {
+        let height = |p| self.core.nearest(p).distance - radius;
+        let heights: Vec<f64> = wire.points.iter().map(|&p| height(p)).collect();
+        write_vtp(path, wire, radius, Some(&heights))
+    }
+
+    fn mesh(&self) -> CoreMesh<'_> {
+        let mesh = self.core.mesh();
+        CoreMesh {
+            vertices: &mesh.vertices,
+            triangles: &mesh.triangles,
+        }
+    }
+}
+
+/// Writes `summary.json`, `turns.csv` and `stations.csv` (wire at rest), `coil.vtp`, `core.vtp`
+/// and `coil.png` (all wire) into an existing folder. `wall_s` is the time computed so far, s.
+///
+/// A file that cannot be written keeps none of the others from being written; the first failure is
+/// returned.
+pub fn write_results(
+    directory: &Path,
+    simulation: &Simulation,
+    snapshot: &Snapshot,
+    ending: &Ending,
+    wall_s: f64,
+) -> Result<(), OutputError> {
+    let summary = simulation.summary();
+    let turns = write_turns(&directory.join("turns.csv"), &summary.turns);
+    let real_time_factor = if wall_s > 0.0 {
+        simulation.time() / wall_s
+    } else {
+        0.0
+    };
+    let report = Report {
+        ending,
+        wall_s,
+        real_time_factor,
+        summary,
+    };
+    let core = snapshot.mesh();
+    [
+        turns,
+        write_summary(&directory.join("summary.json"), &report),
+        write_stations(
+            &directory.join("stations.csv"),
+            simulation.coil().stations(),
+        ),
+        write_core_vtp(&directory.join("core.vtp"), core.vertices, core.triangles),
+        snapshot.write(&directory.join("coil"), simulation),
+    ]
+    .into_iter()
+    .collect()
+}
