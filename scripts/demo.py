@@ -142,6 +142,7 @@ class Run:
     share: float = 0.0
     """simulated so far, as a share of the whole"""
     turns: float = 0.0
+    """of the spindle"""
     elapsed: float = 0.0
     """wall time at the last sign of life, s"""
     reader: threading.Thread = field(default=None, repr=False)

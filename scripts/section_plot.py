@@ -134,11 +134,14 @@ def draw_section(axis, stations, polar, diameter, colour, window):
 
 
 def draw_gaps(axis, runs, data, places, arguments):
+    low, high = -0.5 * arguments.gap_limit, 2 * arguments.gap_limit
     for number, (run, stations) in enumerate(zip(runs, data)):
         of_turn = stations["turn"] == arguments.turn
         angle = np.degrees(stations["angle"][of_turn] - 2 * np.pi * (arguments.turn - 1))
         gap = stations["gap"][of_turn] * 1e3 / arguments.diameter_mm
         judged = stations["measured"][of_turn] > 0
+        seen = gap[~np.isnan(gap)]
+        low, high = min([low, *seen]), max([high, *seen])
         colour = COLOURS[number % len(COLOURS)]
         axis.plot(angle, np.where(judged, gap, np.nan), color=colour, label=run.label, linewidth=1.4)
         axis.plot(angle, np.where(judged, np.nan, gap), color=colour, linewidth=0.8, alpha=0.35)
@@ -152,6 +155,7 @@ def draw_gaps(axis, runs, data, places, arguments):
             axis.axvline(np.degrees(polar_phase(data[0], polar)), color="#c9ced6", linewidth=1.2, zorder=0)
     axis.set(
         xlim=(0, 360),
+        ylim=(low - 0.05 * (high - low), high + 0.05 * (high - low)),
         xticks=range(0, 361, 45),
         xlabel=f"polar angle from the clamp in turn {arguments.turn} (degrees); corners marked, "
         "pale: near the clamp, not judged",

@@ -80,6 +80,7 @@ def columns(diameter):
     return [
         Column("speed_rad_per_s", "rad/s", lambda r: r.run.speed, digits=0),
         Column("ending", "run", lambda r: r.run.ending),
+        Column("turn_settled", "at rest", lambda r: r.turn.get("settled", 0.0), 100, 0, " %"),
         Column("verdict", "verdict", lambda r: r.verdict),
         Column("claim_of_the_paper", "paper", lambda r: r.claim),
         Column("gap_mean_m", "gap mean/d", lambda r: r.turn.get("gap_mean"), over_d),
@@ -100,11 +101,11 @@ def columns(diameter):
 
 
 NOTE = """\
-Turn {turn} of the wire at rest, without the neighbourhood of the clamp; d = {d:g} mm. gap: centre
-distance to the turn before, less d; run: longest stretch above 0.15 d, a gap from 10 % on. bulge:
+Turn {turn}, as far as it is at rest, without the neighbourhood of the clamp; d = {d:g} mm. gap:
+centre distance to the turn before, less d; run: longest stretch above 0.15 d, a gap from 10 % on. bulge:
 height over the core; excess: over the quasi-static height of this wire. T: tension at the nozzle
-after the first {steady:g} turns. depth: deepest contact. energy: what the books leave unexplained over
-what was dissipated. RTF: simulated over wall time."""
+after the first {steady:g} turns (a short run: all of it). depth: deepest contact. energy: what the
+books leave unexplained over what was dissipated. RTF: simulated over wall time."""
 
 
 def main():

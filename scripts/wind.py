@@ -4,7 +4,7 @@
     wind.py --speed 500 --out target/demo/500
 
 The FMU leaves history.csv, summary.json, tables, geometry and picture in the directory. Lines on
-standard output tell how far it is: simulated time over its end, turns wound, wall time in s.
+standard output tell how far it is: simulated time over its end, turns of the spindle, wall time in s.
 Exit codes: 0 done, 1 the run failed, 130 interrupted; the files are usable in each case.
 """
 
@@ -54,7 +54,7 @@ def main():
             output_interval=duration(arguments.speed, arguments.turns) / steps,
             start_values={"scene.file": arguments.scene, "output.directory": str(arguments.out)},
             input=signals,
-            output=["turns_wound"],
+            output=["spindle_angle"],
             step_finished=progress.step_finished,
             debug_logging=True,
             logger=log,
@@ -81,7 +81,7 @@ class Progress:
         now = time.monotonic()
         if now - self.told >= PROGRESS_S or reached >= self.end:
             self.told = now
-            turns = recorder.rows[-1][1]
+            turns = recorder.rows[-1][1] / (2 * math.pi)
             print(f"{reached / self.end:.5f} {turns:.4f} {now - self.began:.1f}", flush=True)
         return not self.stopped
 

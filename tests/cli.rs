@@ -169,15 +169,26 @@ fn run_leaves_its_files() {
     assert_eq!(summary["status"], "done");
     assert_eq!(summary["scene"], "fig8");
     assert_eq!(summary["simulated_s"].as_f64(), time.last().copied());
-    for file in [
-        "turns.csv",
-        "coil.vtp",
-        "frames/frame_0001.vtp",
-        "frames/frame_0002.vtp",
-    ] {
-        assert!(out.join(file).metadata().unwrap().len() > 0, "{file}");
+    for stem in ["coil", "frames/frame_0001", "frames/frame_0002"] {
+        let picture = image::open(out.join(stem).with_extension("png")).unwrap();
+        assert_eq!((picture.width(), picture.height()), (1200, 900), "{stem}");
+        let wire = std::fs::read_to_string(out.join(stem).with_extension("vtp")).unwrap();
+        for array in ["turn", "frozen", "tension", "height"] {
+            assert!(
+                wire.contains(&format!("Name=\"{array}\"")),
+                "{stem}: {array}"
+            );
+        }
     }
     assert!(!out.join("frames/frame_0003.vtp").exists());
+    let core = std::fs::read_to_string(out.join("core.vtp")).unwrap();
+    assert!(core.contains("NumberOfPolys"), "{core}");
+    // The clamp is the first station; turns.csv tells how much of each turn is at rest.
+    let first = std::fs::read_to_string(out.join("stations.csv")).unwrap();
+    let first: Vec<_> = first.lines().nth(1).unwrap().split(',').collect();
+    assert_eq!(first[..3], ["1", "0", "0.0"]);
+    let turns = std::fs::read_to_string(out.join("turns.csv")).unwrap();
+    assert!(turns.starts_with("turn,verdict,settled,"), "{turns}");
 
     // The scene it left runs to the same history.
     let again = folder.path().join("again");

@@ -392,8 +392,8 @@ impl View<'_> {
     }
 }
 
-/// Samples of a disc.
-const DISC: usize = 12;
+/// Samples of a disc; each pixel shown has [`SUPERSAMPLING`] squared differently turned discs.
+const DISC: usize = 6;
 
 /// Points spread evenly over the unit disc on a spiral.
 struct Disc([(f64, f64); DISC]);

@@ -1,0 +1,88 @@
+"""Files that the FMU leaves in `output.directory`, however the run ends."""
+
+import csv
+import json
+
+import pytest
+from conftest import WARNING
+
+STEP = 2e-5
+RESULTS = {
+    "scene.toml", "history.csv", "summary.json", "turns.csv", "stations.csv",
+    "coil.vtp", "core.vtp", "coil.png",
+}
+
+
+def steps(slave, count, start_time=0.0):
+    for k in range(count):
+        slave.fmu.doStep(start_time + k * STEP, STEP)
+
+
+def status(directory):
+    return json.loads((directory / "summary.json").read_text())["status"]
+
+
+def times(directory):
+    with open(directory / "history.csv", newline="", encoding="utf-8") as file:
+        return [float(row["time"]) for row in csv.DictReader(file)]
+
+
+def test_nothing_is_written_unasked(slave, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    slave.start()
+    steps(slave, 2)
+    slave.fmu.terminate()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_terminated_run_leaves_its_files(slave, tmp_path):
+    directory = tmp_path / "made" / "on demand ü"
+    slave.start(start_time=1.0, output__directory=str(directory))
+    steps(slave, 3, start_time=1.0)
+    slave.fmu.terminate()
+    assert {path.name for path in directory.iterdir()} == RESULTS
+    assert times(directory) == pytest.approx([1.0 + k * STEP for k in range(4)], rel=1e-15)
+    assert (status(directory), slave.log) == ("done", [])
+
+
+def test_a_run_cut_short_says_so(make_slave, tmp_path):
+    before_stop, freed, reset = (make_slave(name) for name in ("before_stop", "freed", "reset"))
+    for slave in (before_stop, freed, reset):
+        slave.start(stop_time=10 * STEP, output__directory=str(tmp_path / slave.fmu.instanceName))
+        steps(slave, 2)
+    before_stop.fmu.terminate()
+    freed.free()
+    # The fixture frees what is left; NULL is fine.
+    freed.fmu.component = None
+    reset.fmu.reset()
+    for slave in (before_stop, freed, reset):
+        directory = tmp_path / slave.fmu.instanceName
+        assert {path.name for path in directory.iterdir()} == RESULTS
+        assert (status(directory), len(times(directory))) == ("interrupted", 3)
+
+
+def test_a_directory_that_cannot_be_made_is_a_warning(slave, tmp_path):
+    blocked = tmp_path / "file"
+    blocked.write_text("in the way")
+    slave.start(output__directory=str(blocked / "results"))
+    _, level, category, text = slave.log[-1]
+    assert (level, category) == (WARNING, "logStatusWarning")
+    assert "output.directory" in text and str(blocked) in text
+    steps(slave, 2)
+    slave.fmu.terminate()
+    assert blocked.read_text() == "in the way"
+
+
+def test_a_directory_that_vanishes_is_a_warning(slave, tmp_path):
+    directory = tmp_path / "results"
+    slave.start(output__directory=str(directory))
+    steps(slave, 1)
+    for path in directory.iterdir():
+        path.unlink()
+    directory.rmdir()
+    steps_after = slave.get("solver_steps")
+    slave.fmu.doStep(STEP, STEP)
+    slave.fmu.terminate()
+    assert slave.get("solver_steps") > steps_after
+    assert [entry[1] for entry in slave.log] == [WARNING]
+    assert "turns.csv" in slave.reason()
