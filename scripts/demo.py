@@ -51,7 +51,8 @@ def main():
             run.stop()
         for run in runs:
             run.wait()
-    print(f"\n{len(runs)} runs in {clock(time.monotonic() - began)}\n", flush=True)
+    started = sum(run.process is not None for run in runs)
+    print(f"\n{started} of {len(runs)} runs in {clock(time.monotonic() - began)}\n", flush=True)
 
     report(arguments.out, [run.directory for run in runs])
     failed = [run for run in runs if run.failed]

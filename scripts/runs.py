@@ -37,7 +37,15 @@ class Run:
 
     @property
     def speed(self):
-        """Spindle speed in rad/s, None if the summary does not tell."""
+        """Spindle speed in rad/s, None if nothing tells.
+
+        The demonstration names its directories by it; the summary knows the last speed, which is
+        another one where a run ended in the ramp.
+        """
+        try:
+            return float(self.directory.resolve().name)
+        except ValueError:
+            pass
         speed = self.summary.get("speed_rad_per_s")
         # Held inputs are means over a step, and their rounding should not show.
         return None if speed is None else float(f"{speed:.9g}")
