@@ -1,0 +1,425 @@
+//! Static equilibrium of a system: Newton's method on the forces that the time steps use.
+//!
+//! Unknowns are node positions and the roll of each edge since its frame was taken over. A node's
+//! force depends on two neighbours either way, so central differences of `System::evaluate` over
+//! every fifth node give the whole tangent in 40 evaluations, whatever the length; it is solved as
+//! a band. (Following the motion with artificial damping instead needs as many steps as the ratio
+//! of highest to lowest frequency, 1e6 for a hanging wire.) Plastic state moves on only where an
+//! increment has converged, so that iterates cannot leave false yielding behind.
+
+use super::band::Band;
+use super::system::System;
+use crate::math::V3;
+
+/// How closely and how long to seek equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// out-of-balance force over the largest load or reaction
+    pub tolerance: f64,
+    /// Newton steps for one increment
+    pub iterations: usize,
+    /// share of the load in the first increment of a ramp
+    pub first: f64,
+    /// largest share of the load in one increment
+    pub largest: f64,
+    /// share below which a ramp gives up
+    pub smallest: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-9,
+            iterations: 40,
+            first: 0.1,
+            largest: 0.25,
+            smallest: 1e-5,
+        }
+    }
+}
+
+/// How equilibrium was reached.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relaxed {
+    /// Newton steps in all
+    pub iterations: usize,
+    /// load increments
+    pub increments: usize,
+    /// out-of-balance force left over the largest load or reaction
+    pub residual: f64,
+}
+
+/// Why no equilibrium was found.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+pub enum RelaxError {
+    /// The iterations ran out.
+    #[error(
+        "no equilibrium at {share} of the load: out of balance by {residual} of it after {iterations} iterations"
+    )]
+    NotConverged {
+        /// share of the load, 1 unless ramped
+        share: f64,
+        /// relative out-of-balance force
+        residual: f64,
+        /// Newton steps taken
+        iterations: usize,
+    },
+    /// Nothing holds this part of the wire.
+    #[error("nothing holds node {node} at {share} of the load")]
+    Loose {
+        /// first node without stiffness
+        node: usize,
+        /// share of the load, 1 unless ramped
+        share: f64,
+    },
+    /// A force is not a number.
+    #[error("the forces broke down at node {node} at {share} of the load")]
+    Broken {
+        /// first bad node
+        node: usize,
+        /// share of the load, 1 unless ramped
+        share: f64,
+    },
+}
+
+/// Unknowns per node: three coordinates and the roll of the edge after it.
+const PER_NODE: usize = 4;
+/// Farthest unknown that a force depends on: the last coordinate of the node two further on.
+const HALF_BAND: usize = 2 * PER_NODE + 2;
+/// Nodes this far apart share no force.
+const COLOURS: usize = 5;
+/// Displacement in the central differences, in edge lengths; rad for the roll.
+const NUDGE: f64 = 1e-5;
+/// Largest turn or stretch of an edge in one Newton step.
+const LARGEST_TURN: f64 = 0.4;
+
+/// Moves `sys` to equilibrium under its present loads and supports, and commits it.
+///
+/// Velocities and spins become zero. Held coordinates may start away from their supports: they go
+/// there with the rest of the wire.
+pub fn relax(sys: &mut System, limits: &Limits) -> Result<Relaxed, RelaxError> {
+    sys.rod.v.fill(V3::zeros());
+    sys.rod.spin.fill(0.0);
+    sys.roll.clear();
+    sys.roll.resize(sys.rod.edges(), 0.0);
+    let target = support_places(sys);
+    sys.evaluate(None);
+    let mut iterations = 0;
+    loop {
+        let balance = Balance::of(sys)?;
+        let residual = balance.worst(sys);
+        if balance.holds(sys, limits.tolerance) && at_supports(sys, &target) {
+            sys.evaluate(Some(0.0));
+            return Ok(Relaxed {
+                iterations,
+                increments: 1,
+                residual,
+            });
+        }
+        if iterations == limits.iterations {
+            return Err(RelaxError::NotConverged {
+                share: 1.0,
+                residual,
+                iterations,
+            });
+        }
+        iterations += 1;
+        newton_step(sys, &target)?;
+        sys.evaluate(None);
+    }
+}
+
+/// Follows equilibrium while `apply` brings loads and supports from share 0 to share 1 of what
+/// they shall be, in increments that shrink where Newton's method fails and grow where it is quick.
+pub fn ramp(
+    sys: &mut System,
+    limits: &Limits,
+    mut apply: impl FnMut(&mut System, f64),
+) -> Result<Relaxed, RelaxError> {
+    let (mut at, mut step) = (0.0, limits.first);
+    let mut total = Relaxed {
+        iterations: 0,
+        increments: 0,
+        residual: 0.0,
+    };
+    while at < 1.0 {
+        let to = if at + step > 1.0 - 1e-9 {
+            1.0
+        } else {
+            at + step
+        };
+        let before = sys.clone();
+        apply(sys, to);
+        match relax(sys, limits) {
+            Ok(done) => {
+                at = to;
+                total.iterations += done.iterations;
+                total.increments += 1;
+                total.residual = done.residual;
+                if done.iterations <= 10 {
+                    step = (1.5 * step).min(limits.largest);
+                }
+            }
+            Err(error) => {
+                *sys = before;
+                step *= 0.4;
+                if step < limits.smallest {
+                    return Err(error.at_share(to));
+                }
+            }
+        }
+    }
+    Ok(total)
+}
+
+impl RelaxError {
+    fn at_share(self, share: f64) -> Self {
+        match self {
+            Self::NotConverged {
+                residual,
+                iterations,
+                ..
+            } => Self::NotConverged {
+                share,
+                residual,
+                iterations,
+            },
+            Self::Loose { node, .. } => Self::Loose { node, share },
+            Self::Broken { node, .. } => Self::Broken { node, share },
+        }
+    }
+}
+
+/// Whether coordinate `a` of node `i` is held.
+fn held(sys: &System, i: usize, a: usize) -> bool {
+    (i == 0 && sys.support[0].hold[a]) || (i + 1 == sys.rod.nodes() && sys.support[1].hold[a])
+}
+
+/// Where the supports want the two end nodes; coordinates that are free stay as they are.
+fn support_places(sys: &mut System) -> [V3; 2] {
+    let last = sys.rod.nodes() - 1;
+    let before = [sys.rod.x[0], sys.rod.x[last]];
+    sys.place_supports();
+    let target = [sys.rod.x[0], sys.rod.x[last]];
+    for (i, x) in [(0, before[0]), (last, before[1])] {
+        sys.rod.x[i] = x;
+        sys.rod.v[i] = V3::zeros();
+    }
+    target
+}
+
+fn at_supports(sys: &System, target: &[V3; 2]) -> bool {
+    let last = sys.rod.nodes() - 1;
+    (0..3).all(|a| {
+        (!held(sys, 0, a) || sys.rod.x[0][a] == target[0][a])
+            && (!held(sys, last, a) || sys.rod.x[last][a] == target[1][a])
+    })
+}
+
+/// The size of the loads, against which forces out of balance are judged.
+struct Balance {
+    force: f64,
+    moment: f64,
+}
+
+impl Balance {
+    fn of(sys: &System) -> Result<Self, RelaxError> {
+        let length: f64 = sys.rod.rest.iter().sum();
+        for i in 0..sys.rod.nodes() {
+            let torque = sys.load.torque.get(i).copied().unwrap_or(0.0);
+            if !(sys.load.force[i].norm() + torque.abs()).is_finite() {
+                return Err(RelaxError::Broken {
+                    node: i,
+                    share: 1.0,
+                });
+            }
+        }
+        let last = sys.rod.nodes() - 1;
+        let mut force = sys.loads.gravity.norm() * sys.section.mass_per_length() * length;
+        for i in [0, last] {
+            for a in 0..3 {
+                if held(sys, i, a) {
+                    force = force.max(sys.load.force[i][a].abs());
+                }
+            }
+        }
+        for (_, f) in &sys.loads.nodal {
+            force = force.max(f.norm());
+        }
+        let couples = sys.loads.moments.iter().map(|(_, m)| m.norm());
+        let clamps = sys.load.clamp_moment.iter().map(|m| m.norm());
+        let moment = couples.chain(clamps).fold(force * length, f64::max);
+        Ok(Self {
+            force: moment / length,
+            moment,
+        })
+    }
+
+    /// Rounding of positions felt as force at node `i`, N.
+    fn noise(sys: &System, i: usize) -> f64 {
+        let after = sys.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
+        let before = if i > 0 {
+            sys.rod.rest[i - 1]
+        } else {
+            f64::INFINITY
+        };
+        let h = after.min(before);
+        let stiffness = sys.section.ea / h + 4.0 * sys.section.ei / (h * h * h);
+        16.0 * f64::EPSILON * sys.rod.x[i].norm().max(h) * stiffness
+    }
+
+    fn holds(&self, sys: &System, tolerance: f64) -> bool {
+        let forces = (0..sys.rod.nodes()).all(|i| {
+            let limit = tolerance * self.force + Self::noise(sys, i);
+            (0..3).all(|a| held(sys, i, a) || sys.load.force[i][a].abs() <= limit)
+        });
+        let torques = (0..sys.rod.edges()).all(|j| {
+            let noise = 64.0 * f64::EPSILON * sys.section.gj / sys.rod.rest[j];
+            !sys.twist || sys.load.torque[j].abs() <= tolerance * self.moment + noise
+        });
+        forces && torques
+    }
+
+    /// Largest force out of balance over the load.
+    fn worst(&self, sys: &System) -> f64 {
+        let mut worst = 0.0_f64;
+        for i in 0..sys.rod.nodes() {
+            for a in 0..3 {
+                if !held(sys, i, a) {
+                    worst = worst.max(sys.load.force[i][a].abs());
+                }
+            }
+        }
+        if self.force > 0.0 {
+            worst / self.force
+        } else {
+            worst
+        }
+    }
+}
+
+/// One Newton step, shortened where an edge would turn or stretch too far.
+fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
+    let nodes = sys.rod.nodes();
+    let mut step = residual(sys);
+    let mut tangent = tangent(sys);
+    for i in 0..nodes {
+        for a in 0..PER_NODE {
+            let k = PER_NODE * i + a;
+            if a == 3 {
+                if i + 1 == nodes || !sys.twist {
+                    tangent.fix(k);
+                    step[k] = 0.0;
+                }
+            } else if held(sys, i, a) {
+                tangent.fix(k);
+                step[k] = target[usize::from(i > 0)][a] - sys.rod.x[i][a];
+            }
+        }
+    }
+    tangent.solve(&mut step).map_err(|row| RelaxError::Loose {
+        node: row / PER_NODE,
+        share: 1.0,
+    })?;
+    let mut largest = 0.0_f64;
+    for j in 0..nodes - 1 {
+        let k = PER_NODE * j;
+        let d = V3::new(
+            step[k + 4] - step[k],
+            step[k + 5] - step[k + 1],
+            step[k + 6] - step[k + 2],
+        );
+        largest = largest
+            .max(d.norm() / sys.rod.rest[j])
+            .max(step[k + 3].abs() / sys.rod.rest[j]);
+    }
+    let share = (LARGEST_TURN / largest).min(1.0);
+    if !share.is_finite() {
+        return Err(RelaxError::Broken {
+            node: 0,
+            share: 1.0,
+        });
+    }
+    for i in 0..nodes {
+        let k = PER_NODE * i;
+        sys.rod.x[i] += V3::new(step[k], step[k + 1], step[k + 2]) * share;
+        if share == 1.0 {
+            // exactly, so that the wire is seen to have arrived
+            for a in 0..3 {
+                if held(sys, i, a) {
+                    sys.rod.x[i][a] = target[usize::from(i > 0)][a];
+                }
+            }
+        }
+        if i + 1 < nodes {
+            sys.roll[i] += share * step[k + 3] / sys.rod.rest[i];
+        }
+    }
+    Ok(())
+}
+
+/// Forces on nodes and torques on edges, these over the edge length so that all are in N.
+fn residual(sys: &System) -> Vec<f64> {
+    let mut r = vec![0.0; PER_NODE * sys.rod.nodes()];
+    for i in 0..sys.rod.nodes() {
+        r[PER_NODE * i..PER_NODE * i + 3].copy_from_slice(sys.load.force[i].as_slice());
+        if i < sys.rod.edges() {
+            r[PER_NODE * i + 3] = sys.load.torque[i] / sys.rod.rest[i];
+        }
+    }
+    r
+}
+
+/// Minus the derivative of [`residual`] with respect to positions and rolls (times edge length).
+fn tangent(sys: &mut System) -> Band {
+    let nodes = sys.rod.nodes();
+    let size = PER_NODE * nodes;
+    let mut band = Band::new(size, HALF_BAND);
+    let (x, roll) = (sys.rod.x.clone(), sys.roll.clone());
+    let nudge: Vec<f64> = (0..nodes)
+        .map(|i| {
+            let after = sys.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
+            let before = if i > 0 {
+                sys.rod.rest[i - 1]
+            } else {
+                f64::INFINITY
+            };
+            NUDGE * after.min(before)
+        })
+        .collect();
+    for colour in 0..COLOURS {
+        for a in 0..PER_NODE {
+            let mut sides = [Vec::new(), Vec::new()];
+            for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                for i in (colour..nodes).step_by(COLOURS) {
+                    if a < 3 {
+                        sys.rod.x[i][a] = x[i][a] + sign * nudge[i];
+                    } else if i + 1 < nodes {
+                        sys.roll[i] = roll[i] + sign * NUDGE;
+                    }
+                }
+                sys.evaluate(None);
+                sides[side] = residual(sys);
+                sys.rod.x.copy_from_slice(&x);
+                sys.roll.copy_from_slice(&roll);
+            }
+            for i in (colour..nodes).step_by(COLOURS) {
+                let width = match (a < 3, i + 1 < nodes) {
+                    (true, _) => 2.0 * nudge[i],
+                    (false, true) => 2.0 * NUDGE * sys.rod.rest[i],
+                    (false, false) => continue,
+                };
+                let column = PER_NODE * i + a;
+                let from = column.saturating_sub(HALF_BAND);
+                for row in from..(column + HALF_BAND + 1).min(size) {
+                    // the band is a little wider than the reach of a node: leave the others alone
+                    let node = row / PER_NODE;
+                    if node + 2 >= i && node <= i + 2 {
+                        *band.at(row, column) = (sides[1][row] - sides[0][row]) / width;
+                    }
+                }
+            }
+        }
+    }
+    band
+}
