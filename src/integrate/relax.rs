@@ -8,6 +8,7 @@
 //! increment has converged, so that iterates cannot leave false yielding behind.
 
 use super::band::Band;
+use super::flow;
 use super::system::System;
 use crate::math::V3;
 
@@ -83,7 +84,7 @@ pub enum RelaxError {
 }
 
 /// Unknowns per node: three coordinates and the roll of the edge after it.
-const PER_NODE: usize = 4;
+pub(super) const PER_NODE: usize = 4;
 /// Farthest unknown that a force depends on: the last coordinate of the node two further on.
 const HALF_BAND: usize = 2 * PER_NODE + 2;
 /// Nodes this far apart share no force.
@@ -92,6 +93,10 @@ const COLOURS: usize = 5;
 const NUDGE: f64 = 1e-5;
 /// Largest turn or stretch of an edge in one Newton step.
 const LARGEST_TURN: f64 = 0.4;
+/// Where the wire yields, a step is cut back until the forces out of balance do no more than this
+/// share of the work they began with, in at most so many tries.
+const CUT: f64 = 0.5;
+const MOST_CUTS: usize = 8;
 
 /// Moves `sys` to equilibrium under its present loads and supports, and commits it.
 ///
@@ -125,7 +130,6 @@ pub fn relax(sys: &mut System, limits: &Limits) -> Result<Relaxed, RelaxError> {
         }
         iterations += 1;
         newton_step(sys, &target)?;
-        sys.evaluate(None);
     }
 }
 
@@ -298,11 +302,15 @@ impl Balance {
     }
 }
 
-/// One Newton step, shortened where an edge would turn or stretch too far.
+/// One Newton step, shortened where an edge would turn or stretch too far or where the wire
+/// yields and a shorter step does better.
 fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
     let nodes = sys.rod.nodes();
-    let mut step = residual(sys);
+    let before = residual(sys);
+    let mut step = before.clone();
+    let yielding = flow::yields(sys);
     let mut tangent = tangent(sys);
+    let mut carried = false;
     for i in 0..nodes {
         for a in 0..PER_NODE {
             let k = PER_NODE * i + a;
@@ -314,6 +322,7 @@ fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
             } else if held(sys, i, a) {
                 tangent.fix(k);
                 step[k] = target[usize::from(i > 0)][a] - sys.rod.x[i][a];
+                carried |= step[k] != 0.0;
             }
         }
     }
@@ -323,39 +332,111 @@ fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
     })?;
     let mut largest = 0.0_f64;
     for j in 0..nodes - 1 {
-        let k = PER_NODE * j;
-        let d = V3::new(
-            step[k + 4] - step[k],
-            step[k + 5] - step[k + 1],
-            step[k + 6] - step[k + 2],
-        );
         largest = largest
-            .max(d.norm() / sys.rod.rest[j])
-            .max(step[k + 3].abs() / sys.rod.rest[j]);
+            .max((part(&step, j + 1) - part(&step, j)).norm() / sys.rod.rest[j])
+            .max(step[PER_NODE * j + 3].abs() / sys.rod.rest[j]);
     }
-    let share = (LARGEST_TURN / largest).min(1.0);
-    if !share.is_finite() {
+    let whole = (LARGEST_TURN / largest).min(1.0);
+    if !whole.is_finite() {
         return Err(RelaxError::Broken {
             node: 0,
             share: 1.0,
         });
     }
-    for i in 0..nodes {
-        let k = PER_NODE * i;
-        sys.rod.x[i] += V3::new(step[k], step[k + 1], step[k + 2]) * share;
-        if share == 1.0 {
-            // exactly, so that the wire is seen to have arrived
-            for a in 0..3 {
-                if held(sys, i, a) {
-                    sys.rod.x[i][a] = target[usize::from(i > 0)][a];
-                }
-            }
+    let start = (sys.rod.x.clone(), sys.roll.clone());
+    advance(sys, &start, &step, whole, target);
+    sys.evaluate(None);
+    // work of the forces out of balance along the step: 0 at the best share
+    let work = |sys: &System| out_of_balance(sys, &residual(sys), &step);
+    let gained = out_of_balance(sys, &before, &step);
+    if carried || !(yielding || flow::yields(sys)) || gained <= 0.0 {
+        return Ok(());
+    }
+    // beyond the best share the tangent of a yielding joint has led too far: go back towards it
+    let (mut low, mut high) = ((0.0, gained), (whole, work(sys)));
+    for _ in 0..MOST_CUTS {
+        let (share, at) = high;
+        if at >= -CUT * gained {
+            break;
         }
-        if i + 1 < nodes {
-            sys.roll[i] += share * step[k + 3] / sys.rod.rest[i];
+        let straight = low.0 + (share - low.0) * low.1 / (low.1 - at);
+        let next = straight.clamp(low.0 + 0.1 * (share - low.0), low.0 + 0.7 * (share - low.0));
+        advance(sys, &start, &step, next, target);
+        sys.evaluate(None);
+        let found = work(sys);
+        if found > CUT * gained {
+            low = (next, found);
+            // stay inside what is known to be too far
+            let middle = 0.5 * (next + share);
+            advance(sys, &start, &step, middle, target);
+            sys.evaluate(None);
+            high = (middle, work(sys));
+        } else {
+            high = (next, found);
         }
     }
     Ok(())
+}
+
+/// Work of the forces `r` on the free coordinates along `step`.
+fn out_of_balance(sys: &System, r: &[f64], step: &[f64]) -> f64 {
+    (0..r.len())
+        .filter(|k| k % PER_NODE == 3 || !held(sys, k / PER_NODE, k % PER_NODE))
+        .map(|k| r[k] * step[k])
+        .sum()
+}
+
+/// The part of a step that belongs to node `i`.
+fn part(step: &[f64], i: usize) -> V3 {
+    let k = PER_NODE * i;
+    V3::new(step[k], step[k + 1], step[k + 2])
+}
+
+/// Moves from `start` by a share of `step`.
+///
+/// Edges turn and stretch by their part of it rather than their nodes moving straight on: a turn
+/// would else stretch the edge by half its square, and the wire is far stiffer that way.
+fn advance(
+    sys: &mut System,
+    start: &(Vec<V3>, Vec<f64>),
+    step: &[f64],
+    share: f64,
+    target: &[V3; 2],
+) {
+    let (x, roll) = start;
+    let last = x.len() - 1;
+    sys.rod.x[0] = x[0] + part(step, 0) * share;
+    for j in 0..last {
+        let d = x[j + 1] - x[j];
+        let length = d.norm();
+        let move_on = (part(step, j + 1) - part(step, j)) * share;
+        let stretched = length + move_on.dot(&d) / length;
+        let direction = (d + move_on).normalize();
+        sys.rod.x[j + 1] = sys.rod.x[j] + direction * stretched;
+        sys.roll[j] = roll[j] + share * step[PER_NODE * j + 3] / sys.rod.rest[j];
+    }
+    // a held far end stays where the straight step puts it; the wire shares the difference
+    let mut miss = x[last] + part(step, last) * share - sys.rod.x[last];
+    for a in 0..3 {
+        if !held(sys, last, a) {
+            miss[a] = 0.0;
+        }
+    }
+    for i in 1..=last {
+        sys.rod.x[i] += miss * (i as f64 / last as f64);
+    }
+    for (i, end) in [(0, 0), (last, 1)] {
+        for a in 0..3 {
+            if held(sys, i, a) {
+                // exactly, so that the wire is seen to have arrived
+                sys.rod.x[i][a] = if share == 1.0 {
+                    target[end][a]
+                } else {
+                    x[i][a] + share * step[PER_NODE * i + a]
+                };
+            }
+        }
+    }
 }
 
 /// Forces on nodes and torques on edges, these over the edge length so that all are in N.
@@ -375,6 +456,10 @@ fn tangent(sys: &mut System) -> Band {
     let nodes = sys.rod.nodes();
     let size = PER_NODE * nodes;
     let mut band = Band::new(size, HALF_BAND);
+    // a law with a kink has no difference quotient: go round it with the elastic law at the same
+    // forces, and take off afterwards what the yielding joints lack of it
+    let flows = flow::Flows::of(sys);
+    let plastic = flows.hide(sys);
     let (x, roll) = (sys.rod.x.clone(), sys.roll.clone());
     let nudge: Vec<f64> = (0..nodes)
         .map(|i| {
@@ -421,5 +506,7 @@ fn tangent(sys: &mut System) -> Band {
             }
         }
     }
+    plastic.restore(sys);
+    flows.soften(sys, &mut band);
     band
 }
