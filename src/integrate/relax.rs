@@ -31,7 +31,7 @@ impl Default for Limits {
     fn default() -> Self {
         Self {
             tolerance: 1e-9,
-            iterations: 40,
+            iterations: 20,
             first: 0.1,
             largest: 0.25,
             smallest: 1e-5,
@@ -93,6 +93,10 @@ const COLOURS: usize = 5;
 const NUDGE: f64 = 1e-5;
 /// Largest turn or stretch of an edge in one Newton step.
 const LARGEST_TURN: f64 = 0.4;
+/// Newton steps up to which an increment was quick, and what happens to the next one.
+const QUICK: usize = 7;
+const GROWTH: f64 = 1.4;
+const SHRINK: f64 = 0.5;
 /// Where the wire yields, a step is cut back until the forces out of balance do no more than this
 /// share of the work they began with, in at most so many tries.
 const CUT: f64 = 0.5;
@@ -146,6 +150,8 @@ pub fn ramp(
         increments: 0,
         residual: 0.0,
     };
+    // how the wire moved in the last increment, and the share of the load that did it
+    let mut trend: Option<(Vec<f64>, f64)> = None;
     while at < 1.0 {
         let to = if at + step > 1.0 - 1e-9 {
             1.0
@@ -154,19 +160,27 @@ pub fn ramp(
         };
         let before = sys.clone();
         apply(sys, to);
+        if let Some((moved, share)) = &trend {
+            carry_on(sys, moved, (to - at) / share);
+        }
         match relax(sys, limits) {
             Ok(done) => {
+                let mut moved = vec![0.0; PER_NODE * sys.rod.nodes()];
+                for (i, (x, x0)) in sys.rod.x.iter().zip(&before.rod.x).enumerate() {
+                    moved[PER_NODE * i..PER_NODE * i + 3].copy_from_slice((x - x0).as_slice());
+                }
+                trend = Some((moved, to - at));
                 at = to;
                 total.iterations += done.iterations;
                 total.increments += 1;
                 total.residual = done.residual;
-                if done.iterations <= 10 {
-                    step = (1.5 * step).min(limits.largest);
+                if done.iterations <= QUICK {
+                    step = (GROWTH * step).min(limits.largest);
                 }
             }
             Err(error) => {
                 *sys = before;
-                step *= 0.4;
+                step *= SHRINK;
                 if step < limits.smallest {
                     return Err(error.at_share(to));
                 }
@@ -174,6 +188,14 @@ pub fn ramp(
         }
     }
     Ok(total)
+}
+
+/// A first guess: the wire goes on as it went before.
+fn carry_on(sys: &mut System, moved: &[f64], share: f64) {
+    sys.roll.clear();
+    sys.roll.resize(sys.rod.edges(), 0.0);
+    let start = (sys.rod.x.clone(), sys.roll.clone());
+    advance(sys, &start, moved, share, None);
 }
 
 impl RelaxError {
@@ -344,7 +366,7 @@ fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
         });
     }
     let start = (sys.rod.x.clone(), sys.roll.clone());
-    advance(sys, &start, &step, whole, target);
+    advance(sys, &start, &step, whole, Some(target));
     sys.evaluate(None);
     // work of the forces out of balance along the step: 0 at the best share
     let work = |sys: &System| out_of_balance(sys, &residual(sys), &step);
@@ -361,14 +383,14 @@ fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
         }
         let straight = low.0 + (share - low.0) * low.1 / (low.1 - at);
         let next = straight.clamp(low.0 + 0.1 * (share - low.0), low.0 + 0.7 * (share - low.0));
-        advance(sys, &start, &step, next, target);
+        advance(sys, &start, &step, next, Some(target));
         sys.evaluate(None);
         let found = work(sys);
         if found > CUT * gained {
             low = (next, found);
             // stay inside what is known to be too far
             let middle = 0.5 * (next + share);
-            advance(sys, &start, &step, middle, target);
+            advance(sys, &start, &step, middle, Some(target));
             sys.evaluate(None);
             high = (middle, work(sys));
         } else {
@@ -401,7 +423,7 @@ fn advance(
     start: &(Vec<V3>, Vec<f64>),
     step: &[f64],
     share: f64,
-    target: &[V3; 2],
+    target: Option<&[V3; 2]>,
 ) {
     let (x, roll) = start;
     let last = x.len() - 1;
@@ -429,10 +451,9 @@ fn advance(
         for a in 0..3 {
             if held(sys, i, a) {
                 // exactly, so that the wire is seen to have arrived
-                sys.rod.x[i][a] = if share == 1.0 {
-                    target[end][a]
-                } else {
-                    x[i][a] + share * step[PER_NODE * i + a]
+                sys.rod.x[i][a] = match target {
+                    Some(target) if share == 1.0 => target[end][a],
+                    _ => x[i][a] + share * step[PER_NODE * i + a],
                 };
             }
         }
@@ -509,4 +530,141 @@ fn tangent(sys: &mut System) -> Band {
     plastic.restore(sys);
     flows.soften(sys, &mut band);
     band
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::Support;
+    use crate::rod::{Rod, Section, align, frame_along};
+
+    fn section() -> Section {
+        Section {
+            diameter: 0.7e-3,
+            density: 8960.0,
+            ea: 48900.0,
+            ea_p: 1100.0,
+            ei: 3.06e-3,
+            ei_p: 1.13e-4,
+            gj: 4.32e-3,
+            gj_p: 9e-5,
+            n_y: 38.5,
+            m_y: 5.72e-3,
+            t_y: 5.18e-3,
+            moment_cap: f64::INFINITY,
+            strength: f64::INFINITY,
+        }
+    }
+
+    /// A clamped piece that runs askew to all axes.
+    fn cantilever(section: Section) -> System {
+        let along = V3::new(0.6, 0.48, 0.64);
+        let points: Vec<V3> = (0..=20).map(|i| along * (1e-3 * i as f64)).collect();
+        let mut sys = System::new(section, Rod::through(&points, None));
+        sys.support[0] = Support::clamped(V3::zeros(), frame_along(&along, None));
+        sys
+    }
+
+    /// Bends, twists and pulls it past all limits.
+    fn push(sys: &mut System, share: f64) {
+        let force = V3::new(20.0, 25.0, 30.0) + V3::new(0.8, -0.6, 0.0);
+        sys.loads.nodal = vec![(20, force * share)];
+        sys.loads.moments = vec![(19, V3::new(4e-3, 3.2e-3, 4.2e-3) * share)];
+    }
+
+    #[test]
+    fn the_tangent_is_the_derivative_of_the_forces_where_all_laws_yield() {
+        let mut sys = cantilever(section());
+        ramp(&mut sys, &Limits::default(), push).expect("the load is carried");
+        assert!(
+            sys.rod.stretch[5].strain > 0.0
+                && sys.rod.twist[5].strain != 0.0
+                && sys.rod.bend[1].rise > 0.0
+        );
+        push(&mut sys, 1.05);
+        sys.evaluate(None);
+        // move on into yield, away from the kink that the committed state sits on
+        newton_step(&mut sys, &[V3::zeros(); 2]).expect("forces are finite");
+        // forces are derivatives with the frames carried along from where the wire is now
+        for j in 0..20 {
+            let t = sys.rod.tangent(j);
+            sys.rod.frame[j] = align(&sys.rod.frame[j], &t, sys.roll[j]);
+            sys.roll[j] = 0.0;
+        }
+        let mut band = tangent(&mut sys);
+        let (x, roll) = (sys.rod.x.clone(), sys.roll.clone());
+        let mut worst = 0.0_f64;
+        for k in [9usize, 10, 11] {
+            for a in 0..PER_NODE {
+                let mut sides = [Vec::new(), Vec::new()];
+                for (side, sign) in [(0, 1.0), (1, -1.0)] {
+                    if a < 3 {
+                        sys.rod.x[k][a] += sign * 1e-10;
+                    } else {
+                        sys.roll[k] += sign * 1e-7;
+                    }
+                    sys.evaluate(None);
+                    sides[side] = residual(&sys);
+                    sys.rod.x.clone_from(&x);
+                    sys.roll.clone_from(&roll);
+                }
+                let column = PER_NODE * k + a;
+                let diagonal = band.at(column, column).abs();
+                for row in PER_NODE * (k - 2)..PER_NODE * (k + 2) {
+                    let by_force = (sides[1][row] - sides[0][row]) / 2e-10;
+                    worst = worst.max((*band.at(row, column) - by_force).abs() / diagonal);
+                }
+            }
+        }
+        assert!(worst < 1e-3, "relative difference {worst}");
+    }
+
+    #[test]
+    fn a_ramp_leaves_the_same_yielding_however_it_is_cut() {
+        let strains = |largest: f64| {
+            let mut sys = cantilever(section());
+            let limits = Limits {
+                largest,
+                first: largest,
+                ..Limits::default()
+            };
+            ramp(&mut sys, &limits, |sys, share| {
+                // in one plane, where the law does not depend on the path
+                sys.loads.nodal = vec![(20, V3::new(0.8, -0.6, 0.0).cross(&V3::z()) * share)];
+            })
+            .expect("the load is carried");
+            (sys.rod.x[20], sys.rod.bend[0].rise)
+        };
+        let (coarse, fine) = (strains(0.5), strains(0.02));
+        assert!(fine.1 > 1e-4, "{fine:?}");
+        assert!((coarse.0 - fine.0).norm() < 1e-5, "{coarse:?} {fine:?}");
+        assert!(
+            (coarse.1 - fine.1).abs() < 1e-2 * fine.1,
+            "{coarse:?} {fine:?}"
+        );
+    }
+
+    #[test]
+    fn what_has_no_equilibrium_is_an_error() {
+        let mut sys = cantilever(section());
+        sys.support[0] = Support::free();
+        sys.loads.nodal = vec![(20, V3::x())];
+        assert!(relax(&mut sys, &Limits::default()).is_err());
+        let mut sys = cantilever(section());
+        sys.loads.nodal = vec![(20, V3::x() * f64::NAN)];
+        assert!(matches!(
+            relax(&mut sys, &Limits::default()),
+            Err(RelaxError::Broken { .. })
+        ));
+        let mut sys = cantilever(section());
+        let hurried = Limits {
+            iterations: 1,
+            ..Limits::default()
+        };
+        push(&mut sys, 1.0);
+        assert!(matches!(
+            relax(&mut sys, &hurried),
+            Err(RelaxError::NotConverged { iterations: 1, .. })
+        ));
+    }
 }

@@ -1,7 +1,7 @@
 //! Bending frequencies of a straight wire under tension, for three ways to hold it.
 
 use super::modes::{Motion, lowest};
-use super::wire::{along, straight};
+use super::wire::{heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::integrate::{Limits, Support, System, ramp};
 use crate::math::V3;
@@ -45,7 +45,7 @@ fn stretched(ctx: &Context) -> Result<System, VerifyError> {
     let rest = length / (1.0 + tension / section.ea);
     let mut sys = straight(section, &vec![rest / n as f64; n]);
     sys.twist = false;
-    let frame = |clamps: bool| clamps.then(|| along(&V3::x()));
+    let frame = |clamps: bool| clamps.then(|| heading(0.0));
     sys.support = [
         Support {
             frame: frame(clamped),
@@ -60,6 +60,5 @@ fn stretched(ctx: &Context) -> Result<System, VerifyError> {
     ramp(&mut sys, &Limits::default(), |sys, share| {
         sys.loads.nodal = vec![(n, V3::x() * (tension * share))];
     })?;
-    // modes are those across the wire; along it the far end no longer moves
     Ok(sys)
 }

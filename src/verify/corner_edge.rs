@@ -34,14 +34,21 @@ pub(super) fn sharpest(section: &Section, tension: f64, psi: f64) -> f64 {
     elastic.max(yielded.min((work / section.ei_p.max(1e-3 * section.ei)).sqrt()))
 }
 
+/// Length over which tension straightens yielding wire, m.
+pub(super) fn yielded_layer(section: &Section, tension: f64) -> f64 {
+    (section.ei_p.max(1e-3 * section.ei) / tension).sqrt()
+}
+
 /// Curvature and moment at the edge, how far it stands off the leg, its force.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let (pull, turn) = (ctx.positive("T_N")?, ctx.number("turn_rad")?);
     let section = bending_only(ctx);
     let layer = (section.ei / pull).sqrt();
     let finest = SHARPEST_TURN / sharpest(&section, pull, 0.5 * turn);
-    let finest = ctx.spacing.unwrap_or(finest.min(layer / 20.0));
-    let rest = graded(12.0 * layer, finest, GROWTH, layer / 10.0);
+    let finest = ctx
+        .spacing
+        .unwrap_or(finest.min(yielded_layer(&section, pull) / 20.0));
+    let rest = graded(12.0 * layer, finest, GROWTH, finest.max(layer / 10.0));
     let mut sys = straight(section, &rest);
     sys.support[0] = clamp_along_x(V3::zeros());
     let n = rest.len();

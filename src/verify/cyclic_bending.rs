@@ -2,7 +2,7 @@
 //!
 //! One edge held at both ends; its clamp turns to give the joint there each curvature in turn.
 
-use super::wire::{along, straight};
+use super::wire::{heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::integrate::Support;
 use crate::math::V3;
@@ -24,8 +24,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     for curvature in path {
         // the wire leaves its clamp downwards and turns up into the edge
         let angle = -curvature * sys.rod.voronoi(0);
-        let direction = V3::new(libm::cos(angle), libm::sin(angle), 0.0);
-        sys.support[0].frame = Some(along(&direction));
+        sys.support[0].frame = Some(heading(angle));
         sys.evaluate(Some(0.0));
         moments.push(-sys.load.clamp_moment[0].z);
     }

@@ -3,7 +3,7 @@
 //! A short wire, clamped at one end; the other end's direction is turned until the wire has the
 //! mandrel's curvature all along, then let go.
 
-use super::wire::{along, clamp_along_x, curvature, moment, straight};
+use super::wire::{clamp_along_x, curvature, heading, moment, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::integrate::{Limits, Support, ramp, relax};
 use crate::math::V3;
@@ -21,10 +21,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     sys.support[0] = clamp_along_x(V3::zeros());
     let limits = Limits::default();
     ramp(&mut sys, &limits, |sys, share| {
-        let psi = turn * share;
-        let direction = V3::new(libm::cos(psi), libm::sin(psi), 0.0);
         sys.support[1] = Support {
-            frame: Some(along(&direction)),
+            frame: Some(heading(turn * share)),
             ..Support::free()
         };
     })?;

@@ -5,8 +5,8 @@
 //! starts straight and the direction at the edge turns; its length is then sought for which the
 //! half side comes out right (the wire slides over its edges, so the length is not given).
 
-use super::corner_edge::{GROWTH, SHARPEST_TURN, bending_only, sharpest};
-use super::wire::{along, clamp_along_x, curvature, graded, straight};
+use super::corner_edge::{GROWTH, SHARPEST_TURN, bending_only, sharpest, yielded_layer};
+use super::wire::{clamp_along_x, curvature, graded, heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::integrate::{Limits, Support, System, ramp};
 use crate::math::V3;
@@ -61,7 +61,11 @@ fn drawn(ctx: &Context, pull: f64, length: f64) -> Result<(System, f64), VerifyE
     // bent evenly all along or sharply at the edge
     let most = sharpest(&section, pull, FRAC_PI_4) + FRAC_PI_4 / length;
     let coarsest = (length / 60.0).min(layer / 10.0);
-    let finest = ctx.spacing.unwrap_or((SHARPEST_TURN / most).min(coarsest));
+    let finest = ctx.spacing.unwrap_or(
+        (SHARPEST_TURN / most)
+            .min(coarsest)
+            .min(yielded_layer(&section, pull) / 20.0),
+    );
     let rest = graded(length, finest, GROWTH, coarsest.max(finest));
     let n = rest.len();
     let mut sys = straight(section, &rest);
@@ -77,8 +81,7 @@ fn drawn(ctx: &Context, pull: f64, length: f64) -> Result<(System, f64), VerifyE
         sys.loads.nodal = vec![(n, V3::x() * (pull * share))];
     })?;
     ramp(&mut sys, &limits, |sys, share| {
-        let psi = FRAC_PI_4 * share;
-        sys.support[0].frame = Some(along(&V3::new(libm::cos(psi), libm::sin(psi), 0.0)));
+        sys.support[0].frame = Some(heading(FRAC_PI_4 * share));
     })?;
     let reach = sys.rod.x[n].x;
     Ok((sys, reach))

@@ -17,12 +17,13 @@ pub(super) fn straight(section: Section, rest: &[f64]) -> System {
 
 /// Clamp at `point` from where the wire leaves along +x.
 pub(super) fn clamp_along_x(point: V3) -> Support {
-    Support::clamped(point, along(&V3::x()))
+    Support::clamped(point, heading(0.0))
 }
 
-/// Frame along the unit vector `t`, carried over from one along +x.
-pub(super) fn along(t: &V3) -> Quat {
-    frame_along(t, Some(&frame_along(&V3::x(), None)))
+/// Frame along +x turned about +z by `angle`.
+pub(super) fn heading(angle: f64) -> Quat {
+    let turn = Quat::new(libm::cos(0.5 * angle), 0.0, 0.0, libm::sin(0.5 * angle));
+    turn * frame_along(&V3::x(), None)
 }
 
 /// Edge lengths from `finest` at the start of a wire of `length`, growing by the factor `growth`
