@@ -63,7 +63,7 @@ pub(super) fn lowest(
         .collect();
     squares.sort_by(f64::total_cmp);
     squares.truncate(count);
-    if squares.len() < count || squares.iter().any(|s| !(*s > 0.0)) {
+    if squares.len() < count || !squares.iter().all(|s| *s > 0.0) {
         return Err(VerifyError::NoAnswer(
             "the wire is not stable in this state, so it has no frequency".to_owned(),
         ));

@@ -28,12 +28,13 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         let slope = (off - at_low) / (high - low);
         (low, at_low) = (high, off);
         high -= off / slope;
-        if !(high > 0.0) {
+        if high.is_nan() || high <= 0.0 {
             break;
         }
         (sys, reach) = drawn(ctx, pull, high)?;
     }
-    if !((reach - half).abs() < 1e-6 * half) {
+    let miss = (reach - half).abs();
+    if miss.is_nan() || miss > 1e-6 * half {
         return Err(VerifyError::NoAnswer(format!(
             "no length of wire spans the side: {reach} m instead of {half} m"
         )));
