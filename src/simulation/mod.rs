@@ -448,6 +448,11 @@ impl Simulation {
     pub fn system(&self) -> &System {
         &self.sys
     }
+
+    /// The same, to put loads on it that no scene has (verification only).
+    pub fn system_mut(&mut self) -> &mut System {
+        &mut self.sys
+    }
 }
 
 fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {

@@ -1,0 +1,97 @@
+//! Where energy comes from and where it goes.
+
+use super::system::System;
+use crate::rod::stored_energy;
+
+/// Where energy came from and went, J, since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Books {
+    /// work of the spindle on the wire
+    pub spindle: f64,
+    /// work of the feed on the wire (negative: the wire pulls against the tensioner)
+    pub nozzle: f64,
+    /// motion energy of wire that came in
+    pub inflow: f64,
+    /// plastic work: bending, twist, stretch
+    pub plastic: [f64; 3],
+    /// slip against friction
+    pub friction: f64,
+    /// contact dashpots
+    pub damping: f64,
+    /// losses of the method itself: splitting and freezing
+    pub numerical: f64,
+    /// elastic energy locked into frozen wire
+    pub frozen_stored: f64,
+    /// motion energy handed to the core with frozen wire
+    pub frozen_kinetic: f64,
+    /// stored and motion energy at the start
+    pub initial: f64,
+}
+
+impl System {
+    /// Elastic energy of the live wire and its touches, J.
+    pub fn stored(&self) -> f64 {
+        let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
+        let rod: f64 = stored_energy(&self.rod, &self.laws, &clamp, self.twist)
+            .iter()
+            .sum();
+        let touch: f64 = match &self.contacts {
+            Some(c) => self
+                .free_nodes()
+                .map(|i| c.stored(i, self.rod.voronoi(i)))
+                .sum(),
+            None => 0.0,
+        };
+        let between = match (&self.live, &self.contacts) {
+            (Some(l), Some(c)) => l.stored(&c.law, &self.wire.length),
+            _ => 0.0,
+        };
+        rod + touch + between
+    }
+
+    /// Motion energy of the free nodes and spinning edges, J.
+    pub fn kinetic(&self) -> f64 {
+        let free = self.free_nodes();
+        let spin: f64 = (0..self.rod.edges())
+            .map(|j| {
+                0.5 * self.section.spin_inertia_per_length()
+                    * self.rod.rest[j]
+                    * self.rod.spin[j].powi(2)
+            })
+            .sum();
+        free.map(|i| 0.5 * self.rod.mass(&self.section, i) * self.rod.v[i].norm_squared())
+            .sum::<f64>()
+            + spin
+    }
+
+    /// Energy that the books cannot explain, J: what should be there minus what is.
+    ///
+    /// With a staggered step of `dt` the motion energy is the product of the velocities before and
+    /// after this instant, which is the quantity the scheme conserves; `None` where velocities
+    /// belong to the present time.
+    pub fn energy_residual(&self, staggered: Option<f64>) -> f64 {
+        let b = self.books;
+        let supply = b.initial + b.spindle + b.nozzle + b.inflow;
+        let lost = b.plastic.iter().sum::<f64>() + b.friction + b.damping + b.numerical;
+        let kinetic = match staggered {
+            Some(dt) => self.staggered_kinetic(dt),
+            None => self.kinetic(),
+        };
+        supply - lost - b.frozen_stored - b.frozen_kinetic - self.stored() - kinetic
+    }
+
+    fn staggered_kinetic(&self, dt: f64) -> f64 {
+        let mut e = 0.0;
+        for i in self.free_nodes() {
+            let m = self.rod.mass(&self.section, i);
+            let v = self.rod.v[i];
+            e += 0.5 * m * v.dot(&(v + self.load.force[i] * (dt / m)));
+        }
+        let inertia = self.section.spin_inertia_per_length();
+        for j in 0..self.rod.edges() {
+            let i = inertia * self.rod.rest[j];
+            e += 0.5 * i * self.rod.spin[j] * (self.rod.spin[j] + self.load.torque[j] * (dt / i));
+        }
+        e
+    }
+}

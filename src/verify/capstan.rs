@@ -1,0 +1,177 @@
+//! Elastic wire drawn round a cylinder: the ratio of its end forces while it slips.
+//!
+//! The wire lies in the x-z plane. A dead force holds one end; the other is drawn along +x and is
+//! free across it, so both far-field directions are exact whatever the legs do, and the wrap is
+//! the angle between them. Ends carry no moment; legs are several bending lengths long.
+
+use super::bench::{SmoothMean, mesh, stable_step};
+use super::{Answer, Answers, Context, VerifyError};
+use crate::contact::{ContactLaw, Contacts};
+use crate::core_shape::generate::cylinder;
+use crate::integrate::{Support, System, verlet};
+use crate::math::V3;
+use crate::rod::{Rod, Section};
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// Edge length as a share of the bending length `sqrt(EI/F0)` and of the bend radius.
+const SPACING: [f64; 2] = [0.25, 0.1];
+
+/// Leg length in bending lengths of the slack side: end effects fall to e^-5.
+const LEG: f64 = 5.0;
+
+/// Depth under the slack side's load as a share of the radius; many sagittas of the facets.
+const DEPTH: f64 = 1e-5;
+
+/// Facets of the cylinder.
+const FACETS: usize = 4096;
+
+/// Drawing speed as a share of the speed of transverse waves on the slack side.
+const SPEED: f64 = 1e-2;
+
+/// Way drawn before the mean is taken: shares of the bend radius and of the wire's stretch; and the
+/// edge lengths it is taken over (touches come and go once per edge).
+const RUN_IN: f64 = 0.08;
+const MEAN_EDGES: f64 = 3.0;
+
+/// Runs a case.
+pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
+    let (mu, wrap) = (ctx.number("mu")?, ctx.number("wrap_rad")?);
+    let (radius, hold) = (ctx.number("R_m")?, ctx.number("F0_N")?);
+    let section = ctx.elastic();
+    let mut capstan = Capstan::new(&section, mu, wrap, radius, hold)?;
+    capstan.settle();
+    let mut ratios = capstan.draw();
+    let (first, second) = (ratios.remove(0), ratios.remove(0));
+    if !((first / second - 1.0).abs() < 0.01) {
+        return Err(VerifyError::NoAnswer(format!(
+            "no steady slip: force ratios {first:.4} and {second:.4} one after the other"
+        )));
+    }
+    Ok(vec![(
+        "stiff_ratio",
+        Answer::Number(0.5 * (first + second)),
+    )])
+}
+
+struct Capstan {
+    sys: System,
+    dt: f64,
+    hold: f64,
+    bend: f64,
+    leg: f64,
+    edge: f64,
+    wave: f64,
+}
+
+impl Capstan {
+    /// Wire on the path of a string, stretched by the holding force.
+    fn new(
+        section: &Section,
+        mu: f64,
+        wrap: f64,
+        radius: f64,
+        hold: f64,
+    ) -> Result<Self, VerifyError> {
+        let bend = radius + section.radius();
+        let bending = (section.ei / hold).sqrt();
+        let leg = LEG * bending;
+        let edge = (SPACING[0] * bending).min(SPACING[1] * bend);
+        let total = 2.0 * leg + wrap * bend;
+        let edges = (total / edge).ceil() as usize;
+        let h = total / edges as f64;
+        // node 0 at the held end; the arc runs from pi/2 + wrap down to pi/2
+        let point = |s: f64| {
+            let on = |a: f64| V3::new(libm::cos(a), 0.0, libm::sin(a)) * bend;
+            let start = FRAC_PI_2 + wrap;
+            let out = V3::new(-libm::sin(start), 0.0, libm::cos(start));
+            if s < leg {
+                on(start) + out * (leg - s)
+            } else if s < total - leg {
+                on(start - (s - leg) / bend)
+            } else {
+                on(FRAC_PI_2) + V3::x() * (s - total + leg)
+            }
+        };
+        let points: Vec<V3> = (0..=edges).map(|i| point(h * i as f64)).collect();
+        let stretch = 1.0 + hold / section.ea;
+        let rest = points
+            .windows(2)
+            .map(|p| (p[1] - p[0]).norm() / stretch)
+            .collect();
+        let mut sys = System::new(section.clone(), Rod::through(&points, Some(rest)));
+        // plane, so untwisted
+        sys.twist = false;
+        let stiffness = hold / (bend * bend * DEPTH);
+        let law = ContactLaw {
+            stiffness,
+            damping_ratio: 1.0,
+            mu_static: mu,
+            mu_kinetic: mu,
+            slip_speed: 1.0,
+        };
+        let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
+        let count = points.len();
+        sys.contacts = Some(Contacts::new(
+            core,
+            law,
+            section.radius(),
+            section.diameter,
+            count,
+        ));
+        let start = FRAC_PI_2 + wrap;
+        let out = V3::new(-libm::sin(start), 0.0, libm::cos(start));
+        sys.loads.nodal = vec![(0, out * hold)];
+        sys.support[1] = Support {
+            hold: [true, false, false],
+            point: points[edges],
+            ..Support::free()
+        };
+        sys.evaluate(Some(0.0));
+        Ok(Self {
+            dt: stable_step(section, h, stiffness, false),
+            wave: (hold / section.mass_per_length()).sqrt(),
+            sys,
+            hold,
+            bend,
+            leg,
+            edge: h,
+        })
+    }
+
+    /// Lets the legs find their shape under drag.
+    fn settle(&mut self) {
+        let transit = self.leg / self.wave;
+        self.sys.loads.drag = 4.0 / transit;
+        for _ in 0..(4.0 * transit / self.dt) as usize {
+            verlet::step(&mut self.sys, self.dt);
+        }
+    }
+
+    /// Draws the wire at constant speed; mean force ratios over two stretches one after the other.
+    fn draw(&mut self) -> Vec<f64> {
+        let speed = SPEED * self.wave;
+        let last = self.sys.rod.nodes() - 1;
+        let run_in = RUN_IN * self.bend / speed;
+        let steps = (run_in / self.dt) as usize;
+        for i in 0..steps {
+            // a sudden start would be a blow; drag fades out to where it takes nothing off
+            let s = (i as f64 + 1.0) / steps as f64;
+            self.sys.support[1].velocity.x = speed * (10.0 * s).min(1.0);
+            self.sys.loads.drag = (1.0 - s) * self.wave / self.leg;
+            verlet::step(&mut self.sys, self.dt);
+        }
+        self.sys.loads.drag = 0.0;
+        let steps = (MEAN_EDGES * self.edge / speed / self.dt) as usize;
+        (0..2)
+            .map(|_| {
+                let mut mean = SmoothMean::over(steps);
+                for _ in 0..steps {
+                    verlet::step(&mut self.sys, self.dt);
+                    mean.add(-self.sys.load.force[last].x / self.hold);
+                }
+                mean.value()
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,199 @@
+//! The rod against exact answers: the packed reference cases, and the modes stepped in time.
+
+use coilwind::integrate::{Loads, Support, System, highest_frequency, rk4, verlet};
+use coilwind::math::V3;
+use coilwind::rod::{Rod, Section};
+use coilwind::verify::{CaseFile, Manner, Record, VerifyArgs, run, run_file};
+use std::f64::consts::PI;
+
+fn all_right(kind: &str, preset: &str) {
+    let args = VerifyArgs {
+        kinds: vec![kind.to_owned()],
+        preset: preset.to_owned(),
+        ..VerifyArgs::default()
+    };
+    let mut table = String::new();
+    let right = run(&args, |line| {
+        table.push_str(line);
+        table.push('\n');
+    });
+    assert_eq!(right, Ok(true), "\n{table}");
+}
+
+macro_rules! kinds {
+    ($($kind:ident),* $(,)?) => {
+        $(#[test]
+        fn $kind() {
+            all_right(stringify!($kind), "default");
+        })*
+    };
+}
+
+kinds!(
+    elastica_cantilever,
+    end_couple,
+    bending_modes,
+    axial_wave,
+    torsion,
+    hanging_wire,
+    helix,
+    mandrel_springback,
+    cyclic_bending,
+    bulge_linear,
+    corner_edge,
+    square_loop,
+);
+
+#[test]
+fn the_papers_integrator_carries_waves_as_fast() {
+    all_right("axial_wave", "paper");
+}
+
+fn packed(kind: &str) -> CaseFile {
+    let files = CaseFile::packed().expect("packed files are well formed");
+    let found = files.into_iter().find(|f| f.kind == kind);
+    found.expect("the kind is packed")
+}
+
+/// Error of a quantity of the first case at a node spacing, m.
+fn error_at(kind: &str, quantity: &str, spacing: f64) -> f64 {
+    let args = VerifyArgs {
+        set: vec![format!("solver.spacing_near={spacing}")],
+        ..VerifyArgs::default()
+    };
+    let manner: Manner = args.manner().expect("a known setting");
+    let mut file = packed(kind);
+    file.cases.truncate(1);
+    let mut error = f64::NAN;
+    run_file(&file, &manner, |records: &[Record], _| {
+        let record = records
+            .iter()
+            .find(|r| r.quantity.as_deref() == Some(quantity));
+        error = record.and_then(|r| r.rel_error).unwrap_or(f64::NAN);
+    })
+    .expect("the case can be run");
+    error
+}
+
+#[test]
+fn the_rod_is_second_order_in_its_spacing() {
+    for (kind, quantity, spacing) in [
+        ("elastica_cantilever", "extensible_tip_y_m", 2e-3),
+        ("bending_modes", "f2_Hz", 1e-3),
+        ("helix", "axial_moment_Nm", 4e-3),
+        ("torsion", "fixed_free_f2_Hz", 5e-3),
+    ] {
+        let (coarse, fine) = (
+            error_at(kind, quantity, spacing),
+            error_at(kind, quantity, 0.5 * spacing),
+        );
+        let ratio = coarse / fine;
+        assert!((3.0..5.5).contains(&ratio), "{kind}: {coarse} to {fine}");
+    }
+}
+
+/// Frequency of a motion that starts as `start` (velocity or spin over the relative position
+/// along the wire) and is seen through the same shape, Hz.
+fn stepped(
+    mut sys: System,
+    rolls: bool,
+    axis: usize,
+    start: impl Fn(f64) -> f64,
+    step: fn(&mut System, f64),
+) -> f64 {
+    let n = sys.rod.edges();
+    if rolls {
+        for j in 0..n {
+            sys.rod.spin[j] = start((j as f64 + 0.5) / n as f64);
+        }
+    } else {
+        for i in 0..=n {
+            sys.rod.v[i][axis] = 1e-3 * start(i as f64 / n as f64);
+        }
+    }
+    let dt = 1.6 / highest_frequency(&sys.section, sys.rod.rest[0], 0.0, rolls);
+    sys.evaluate(Some(dt));
+    let seen = |sys: &System| -> f64 {
+        if rolls {
+            (0..n)
+                .map(|j| sys.rod.spin[j] * start((j as f64 + 0.5) / n as f64))
+                .sum()
+        } else {
+            (0..=n)
+                .map(|i| sys.rod.v[i][axis] * start(i as f64 / n as f64))
+                .sum()
+        }
+    };
+    let (mut last, mut zeros) = (seen(&sys), Vec::new());
+    for _ in 0..400_000 {
+        step(&mut sys, dt);
+        let now = seen(&sys);
+        if last * now < 0.0 {
+            zeros.push(sys.time - dt * now / (now - last));
+            if zeros.len() == 3 {
+                return 1.0 / (zeros[2] - zeros[0]);
+            }
+        }
+        last = now;
+    }
+    f64::NAN
+}
+
+fn elastic(section: &Section) -> Section {
+    let open = f64::INFINITY;
+    Section {
+        n_y: open,
+        m_y: open,
+        t_y: open,
+        ..section.clone()
+    }
+}
+
+/// A straight wire of `length` along +x, of which both ends are held in place.
+fn held(section: &Section, length: f64, n: usize, rest: f64) -> System {
+    let points: Vec<V3> = (0..=n)
+        .map(|i| V3::x() * (length * i as f64 / n as f64))
+        .collect();
+    let rod = Rod::through(&points, Some(vec![rest / n as f64; n]));
+    let mut sys = System::new(elastic(section), rod);
+    sys.support = [Support::pinned(V3::zeros()), Support::pinned(points[n])];
+    sys
+}
+
+fn expected(file: &CaseFile, case: usize, quantity: &str) -> f64 {
+    file.cases[case].expected[quantity]
+        .as_f64()
+        .expect("a number")
+}
+
+#[test]
+fn modes_stepped_in_time_have_the_frequency_of_theory() {
+    for step in [verlet::step, rk4::step] {
+        let file = packed("axial_wave");
+        let sys = held(&file.section, 0.5, 60, 0.5);
+        let f = stepped(sys, false, 0, |s| libm::sin(PI * s), step);
+        let theory = expected(&file, 0, "fixed_fixed_f1_Hz");
+        assert!((f / theory - 1.0).abs() < 5e-3, "axial {f} {theory}");
+
+        let file = packed("torsion");
+        let mut sys = held(&file.section, 0.1, 60, 0.1);
+        sys.support[0].frame = Some(sys.rod.frame[0]);
+        let f = stepped(sys, true, 0, |s| libm::sin(0.5 * PI * s), step);
+        let theory = expected(&file, 0, "fixed_free_f1_Hz");
+        assert!((f / theory - 1.0).abs() < 5e-3, "torsion {f} {theory}");
+
+        // the fifth case: pinned at both ends, 5 N, 50 mm under tension
+        let file = packed("bending_modes");
+        assert_eq!(file.cases[4].id, "pinned-pinned_T5_L50mm");
+        let mut sys = held(&file.section, 0.05, 40, 0.05 / (1.0 + 5.0 / 48900.0));
+        sys.support[1].hold = [false, true, true];
+        sys.loads = Loads {
+            nodal: vec![(40, V3::x() * 5.0)],
+            ..Loads::default()
+        };
+        sys.twist = false;
+        let f = stepped(sys, false, 1, |s| libm::sin(PI * s), step);
+        let theory = expected(&file, 4, "f1_Hz");
+        assert!((f / theory - 1.0).abs() < 5e-3, "bending {f} {theory}");
+    }
+}
