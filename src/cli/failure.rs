@@ -72,6 +72,12 @@ pub(super) enum Failure {
         /// where the results are
         directory: String,
     },
+    /// Case files or settings of `verify` are wrong.
+    #[error(transparent)]
+    Cases(#[from] coilwind::verify::VerifyError),
+    /// A number is out of tolerance.
+    #[error("not every number is right")]
+    Verify,
     /// `--fail-on-defect` and there was one.
     #[error("defects: {what}")]
     Defect {
@@ -89,16 +95,17 @@ impl Failure {
         }
     }
 
-    /// 1 defect, 2 bad input, 3 solver, 130 interrupted (128 + SIGINT, as shells have it).
+    /// 1 defect or wrong number, 2 bad input, 3 solver, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
-            Self::Defect { .. } => 1,
+            Self::Defect { .. } | Self::Verify => 1,
             Self::Scene(_)
             | Self::Start { .. }
             | Self::Cell { .. }
             | Self::Signals { .. }
             | Self::Write { .. }
-            | Self::Output(_) => 2,
+            | Self::Output(_)
+            | Self::Cases(_) => 2,
             Self::Solver { .. } => 3,
             Self::Interrupted { .. } => 130,
         }

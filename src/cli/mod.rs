@@ -7,6 +7,7 @@ mod progress;
 mod run;
 mod signals;
 mod variables;
+mod verify;
 
 use clap::{Args, Parser, Subcommand};
 use coilwind::scene::{SceneError, SceneSettings};
@@ -34,6 +35,8 @@ enum Command {
     Check(check::CheckArgs),
     /// List every variable: inputs, outputs, diagnostics, parameters
     Variables(variables::VariablesArgs),
+    /// Compare exact answers with what the code that winds computes
+    Verify(coilwind::verify::VerifyArgs),
 }
 
 /// A scene and what to change in it.
@@ -72,6 +75,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Check(args) => check::check(&args),
         Command::Variables(args) => variables::variables(&args),
+        Command::Verify(args) => verify::verify(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -7,7 +7,7 @@ use super::support::{Spindle, Support, turn_about_y};
 use crate::contact::{Body, Contacts, LiveContact, Wire};
 use crate::feed::{Feed, FeedSpec};
 use crate::math::{Quat, Spin, V3, spin_velocity};
-use crate::rod::{ForceParts, Laws, Load, Rod, Section, internal_forces};
+use crate::rod::{ForceParts, Laws, Load, Rod, Section, internal_forces, rotate};
 
 /// Loads besides contact.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -94,6 +94,11 @@ impl System {
             roll: vec![0.0; edges],
             stages: super::rk4::Stages::default(),
         }
+    }
+
+    /// Direction in which the wire leaves a clamped end, lab frame.
+    pub fn clamp_direction(&self, end: usize) -> Option<V3> {
+        self.clamp_frame(end).map(|f| rotate(&f, &V3::z()))
     }
 
     /// Frame of a clamp in the lab, if that end is clamped.

@@ -30,9 +30,6 @@ const ROLL: f64 = 7.0;
 /// Step as a share of the stability limit.
 const SHARE: f64 = 0.7;
 
-/// Line load per depth, N/m^2: the stiffness the design asks for.
-const STIFFNESS: f64 = 1e10;
-
 /// Mean depth under the load as a share of the wire radius: 5 nm, 30 nm under the touching nodes.
 const DEPTH: f64 = 1.5e-5;
 
@@ -63,7 +60,7 @@ impl Bench {
         offset: f64,
         above: f64,
         sideways: f64,
-        mu: f64,
+        law: ContactLaw,
     ) -> Result<Self, VerifyError> {
         let r = section.radius();
         let spacing = SPACING * section.diameter;
@@ -80,13 +77,6 @@ impl Bench {
         let mut sys = System::new(section.clone(), Rod::through(&points, None));
         // the section does not turn: nothing in these checks rolls
         sys.twist = false;
-        let law = ContactLaw {
-            stiffness: STIFFNESS,
-            damping_ratio: 1.0,
-            mu_static: mu,
-            mu_kinetic: mu,
-            slip_speed: 1.0,
-        };
         let mut contacts = Contacts::new(Arc::new(floor), law, r, section.diameter, points.len());
         contacts.tube = straight_wires(r, neighbours, height, length);
         // guided along itself: ridges of rolled wire are screws
@@ -98,9 +88,9 @@ impl Bench {
         // far along the wire, so that nothing counts as the piece's own neighbourhood
         sys.arc0 = 100.0 * length;
         sys.contacts = Some(contacts);
-        let load = STIFFNESS * DEPTH * r;
+        let load = law.stiffness * DEPTH * r;
         let m = section.mass_per_length();
-        let dt = stable_step(section, spacing, STIFFNESS, false);
+        let dt = stable_step(section, spacing, law.stiffness, false);
         let mut bench = Self {
             sys,
             load,
@@ -180,6 +170,17 @@ fn straight_wires(r: f64, y: &[f64], z: f64, length: f64) -> Tube {
         }
     }
     tube
+}
+
+/// A law with one friction coefficient.
+pub(super) fn law(stiffness: f64, damping_ratio: f64, mu: f64) -> ContactLaw {
+    ContactLaw {
+        stiffness,
+        damping_ratio,
+        mu_static: mu,
+        mu_kinetic: mu,
+        slip_speed: 1.0,
+    }
 }
 
 /// Box with sharp edges.

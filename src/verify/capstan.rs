@@ -4,9 +4,9 @@
 //! free across it, so both far-field directions are exact whatever the legs do, and the wrap is
 //! the angle between them. Ends carry no moment; legs are several bending lengths long.
 
-use super::bench::{SmoothMean, mesh, stable_step};
+use super::bench::{SmoothMean, law, mesh, stable_step};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::contact::{ContactLaw, Contacts};
+use crate::contact::Contacts;
 use crate::core_shape::generate::cylinder;
 use crate::integrate::{Support, System, verlet};
 use crate::math::V3;
@@ -103,13 +103,7 @@ impl Capstan {
         // plane, so untwisted
         sys.twist = false;
         let stiffness = hold / (bend * bend * DEPTH);
-        let law = ContactLaw {
-            stiffness,
-            damping_ratio: 1.0,
-            mu_static: mu,
-            mu_kinetic: mu,
-            slip_speed: 1.0,
-        };
+        let law = law(stiffness, 1.0, mu);
         let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
         let count = points.len();
         sys.contacts = Some(Contacts::new(

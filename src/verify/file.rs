@@ -95,6 +95,14 @@ const PACKED: &[(&str, &str)] = packed![
     "bulge_linear",
     "corner_edge",
     "square_loop",
+    "capstan",
+    "twist_buckling",
+    "shoulder_static",
+    "groove_seat",
+    "shoulder_drop",
+    "spinning_ring",
+    "penalty_impact",
+    "winding_feed",
 ];
 
 impl CaseFile {

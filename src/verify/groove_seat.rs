@@ -1,6 +1,6 @@
 //! A wire in the groove between two turns, without friction: normal forces and seat.
 
-use super::bench::{Bench, touch_forces};
+use super::bench::{Bench, law, touch_forces};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::math::V3;
 
@@ -14,7 +14,14 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let section = ctx.elastic();
     let places = [-0.5 * pitch, 0.5 * pitch];
     // from a diameter above the neighbours' axes, clear of both; positive lam pushes left, to -y
-    let mut bench = Bench::new(&section, &places, 0.0, section.diameter, -lam, 0.0)?;
+    let mut bench = Bench::new(
+        &section,
+        &places,
+        0.0,
+        section.diameter,
+        -lam,
+        law(1e10, 1.0, 0.0),
+    )?;
     bench.sys.loads.drag = DRAG / bench.unit;
     bench.apply_load();
     bench.run(SETTLE);

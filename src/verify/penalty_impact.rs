@@ -3,9 +3,9 @@
 //! Two nodes of the given mass, joined by an edge that stays unstressed, fly on a box's flat top.
 //! The law is per length of wire, so its stiffness is the given one over the length of a node.
 
-use super::bench::box_mesh;
+use super::bench::{box_mesh, law};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::contact::{ContactLaw, Contacts};
+use crate::contact::Contacts;
 use crate::integrate::{System, rk4};
 use crate::math::V3;
 use crate::rod::Rod;
@@ -31,13 +31,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let points = [at(-length), at(length)];
     let mut sys = System::new(section.clone(), Rod::through(&points, None));
     sys.rod.v = vec![V3::new(0.0, 0.0, -speed); 2];
-    let law = ContactLaw {
-        stiffness: stiffness / length,
-        damping_ratio,
-        mu_static: 0.0,
-        mu_kinetic: 0.0,
-        slip_speed: 1.0,
-    };
+    let law = law(stiffness / length, damping_ratio, 0.0);
     let floor = Arc::new(box_mesh(side, side, side)?);
     sys.contacts = Some(Contacts::new(floor, law, r, section.diameter, 2));
     sys.evaluate(Some(0.0));

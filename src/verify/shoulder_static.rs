@@ -3,7 +3,7 @@
 //! A straight piece is put on a straight frozen wire, loaded, and watched: sliding or not is what
 //! the friction law makes of it. Bisection over the start offset.
 
-use super::bench::Bench;
+use super::bench::{Bench, law};
 use super::{Answer, Answers, Context, VerifyError};
 
 /// Bisections of the range of offsets, 3.8 r.
@@ -39,7 +39,14 @@ fn slides_down(ctx: &Context, offset: f64, mu: f64, sideways: f64) -> Result<boo
     let section = ctx.elastic();
     let r = section.radius();
     let above = (4.0 * r * r - offset * offset).sqrt();
-    let mut bench = Bench::new(&section, &[0.0], offset, above, sideways, mu)?;
+    let mut bench = Bench::new(
+        &section,
+        &[0.0],
+        offset,
+        above,
+        sideways,
+        law(1e10, 1.0, mu),
+    )?;
     bench.apply_load();
     let mut left = PATIENCE;
     while left > 0.0 {

@@ -7,9 +7,9 @@
 //! Steps are Runge-Kutta's: the velocities of the staggered step are half a step old, and in a
 //! turning frame the contact dashpot takes that for an approach at `omega^2 R dt / 2`.
 
-use super::bench::{SmoothMean, mesh, stable_step};
+use super::bench::{SmoothMean, law, mesh, stable_step};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::contact::{ContactLaw, Contacts};
+use crate::contact::Contacts;
 use crate::core_shape::generate::cylinder;
 use crate::feed::{Feed, FeedSpec};
 use crate::integrate::{Spindle, Support, System, rk4};
@@ -148,15 +148,11 @@ impl Wound {
     /// Under hoop tension `pull`.
     fn settled(section: &Section, radius: f64, pull: f64) -> Result<Self, VerifyError> {
         let r = section.radius();
-        let core = mesh(cylinder(radius - r, 20.0 * r, EDGES * FACETS))?;
+        // the middles of the facets on the circle: the ring must not shrink onto its core
+        let flat = libm::cos(0.5 * TAU / (EDGES * FACETS) as f64);
+        let core = mesh(cylinder((radius - r) / flat, 20.0 * r, EDGES * FACETS))?;
         let mut sys = ring(section, radius, pull);
-        let law = ContactLaw {
-            stiffness: STIFFNESS,
-            damping_ratio: 1.0,
-            mu_static: 0.0,
-            mu_kinetic: 0.0,
-            slip_speed: 1.0,
-        };
+        let law = law(STIFFNESS, 1.0, 0.0);
         sys.contacts = Some(Contacts::new(
             Arc::new(core),
             law,
