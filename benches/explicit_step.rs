@@ -73,10 +73,13 @@ fn lying(points: usize) -> System {
     sys
 }
 
+/// A time step of the given length, s.
+type Step = fn(&mut System, f64);
+
 fn steps(c: &mut Criterion) {
     let wire = scene().wire;
     let frequency = highest_frequency(&wire, SPACING, scene().contact.stiffness, true);
-    let kinds: [(&str, fn(&mut System, f64), f64); 2] = [
+    let kinds: [(&str, Step, f64); 2] = [
         ("verlet", verlet::step, VERLET_LIMIT),
         ("rk4", rk4::step, RK4_LIMIT),
     ];
