@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every check: format, lints, documentation, packaging, Rust tests, fmpy tests.
+# Every check: format, lints, documentation, packaging, exact answers, Rust tests, fmpy tests.
 #
 #     scripts/test.sh
 #
@@ -33,6 +33,9 @@ scripts/build_fmu.sh
 step Python
 python=$(scripts/venv.sh)
 "$python" -m fmpy validate "$target/fmu/CoilWinding.fmu"
+
+step exact answers
+"$target/release/coilwind" verify --preset paper
 
 step Rust tests
 cargo test --locked --workspace
