@@ -37,15 +37,13 @@ pub fn step(sys: &mut System, dt: f64) {
     }
     let start = sys.spindle;
     let support = sys.support;
-    // the wire keeps coming during the stages, at the rate of the last step; with the last edge's
-    // length held the far node would pull on a stretch of wire that does not give
-    let inlet = sys.feed.map(|(_, f)| {
-        (
-            sys.rod.edges() - 1,
-            sys.rod.rest[sys.rod.edges() - 1],
-            f.rate,
-        )
-    });
+    // the wire keeps coming during the stages, such that the last edge holds its tension (the line
+    // behind it is soft); with its length held instead, the far node would pull on wire that does
+    // not give
+    let inlet_edge = sys.rod.edges() - 1;
+    let inlet = sys
+        .feed
+        .map(|_| (sys.rod.rest[inlet_edge], sys.load.tension[inlet_edge]));
     // the forces of the first stage are those of the last evaluation
     for (stage, (weight, reach)) in [(1.0, 0.5), (2.0, 0.5), (2.0, 1.0), (1.0, 0.0)]
         .into_iter()
@@ -66,13 +64,15 @@ pub fn step(sys: &mut System, dt: f64) {
         sys.support = support;
         sys.carry_supports(reach * dt);
         sys.place_supports();
-        if let Some((edge, rest, rate)) = inlet {
-            sys.rod.rest[edge] = rest + rate * reach * dt;
+        if let Some((_, tension)) = inlet {
+            let length = (sys.rod.x[inlet_edge + 1] - sys.rod.x[inlet_edge]).norm();
+            let stretch = tension / sys.laws.stretch.modulus + sys.rod.stretch[inlet_edge].strain;
+            sys.rod.rest[inlet_edge] = length / (1.0 + stretch);
         }
         sys.evaluate(None);
     }
-    if let Some((edge, rest, _)) = inlet {
-        sys.rod.rest[edge] = rest;
+    if let Some((rest, _)) = inlet {
+        sys.rod.rest[inlet_edge] = rest;
     }
     let free = sys.free_nodes();
     for i in free {

@@ -61,10 +61,12 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         near = (square, wound.load_at(square.sqrt(), SEARCH));
     }
     let liftoff = zero(near).sqrt();
-    // the wire itself must agree: still loaded just below, gone just above
-    if !(wound.load_at(0.995 * liftoff, SEARCH) > 0.0) || wound.touches_at(1.005 * liftoff) {
+    // the wire itself must agree: hardly loaded just below. (Above, it swings about the one point
+    // that is held, and strikes the core now and then.)
+    let left = wound.load_at(0.995 * liftoff, SEARCH) / rest.1;
+    if !(0.0..0.03).contains(&left) || left == 0.0 {
         return Err(VerifyError::NoAnswer(format!(
-            "the wire does not leave the core at {liftoff} rad/s"
+            "the wire does not leave the core at {liftoff} rad/s: {left} of its load is left"
         )));
     }
     Ok(vec![
@@ -190,16 +192,6 @@ impl Wound {
             mean.add(line_load(&sys));
         }
         mean.value()
-    }
-
-    /// Whether the wire still touches the core opposite the clamp after a while at `omega`.
-    fn touches_at(&self, omega: f64) -> bool {
-        let mut sys = self.sys.clone();
-        spin(&mut sys, omega);
-        for _ in 0..(20.0 * self.breath / self.dt) as usize {
-            rk4::step(&mut sys, self.dt);
-        }
-        line_load(&sys) > 0.0
     }
 }
 
