@@ -25,11 +25,12 @@ const EDGES: usize = 48;
 const FACETS: usize = 21;
 
 /// Breaths of the ring over which a load is averaged: the one asked for, those of the search.
-const ASKED: f64 = 120.0;
-const SEARCH: f64 = 30.0;
+const ASKED: f64 = 50.0;
+const SEARCH: f64 = 25.0;
 
-/// Line load per depth, N/m^2.
-const STIFFNESS: f64 = 1e10;
+/// Contact frequency over the highest axial one: a turning ring is no state of rest for the step,
+/// and a stiffer spring would make an error of 1 % out of it.
+const SOFTNESS: f64 = 0.3;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
@@ -51,7 +52,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     }
     let zero = |near: (f64, f64)| near.0 * rest.1 / (rest.1 - near.1);
     // closer, tension waves of the start would take the wire off for moments
-    for share in [0.8, 0.95] {
+    for share in [0.7, 0.9] {
         let square = share * zero(near);
         if !(square > 0.0) {
             return Err(VerifyError::NoAnswer(
@@ -154,7 +155,9 @@ impl Wound {
         let flat = libm::cos(0.5 * TAU / (EDGES * FACETS) as f64);
         let core = mesh(cylinder((radius - r) / flat, 20.0 * r, EDGES * FACETS))?;
         let mut sys = ring(section, radius, pull);
-        let law = law(STIFFNESS, 1.0, 0.0);
+        let edge = sys.rod.rest[0];
+        let stiffness = 4.0 * section.ea * (SOFTNESS / edge).powi(2);
+        let law = law(stiffness, 1.0, 0.0);
         sys.contacts = Some(Contacts::new(
             Arc::new(core),
             law,
@@ -171,7 +174,7 @@ impl Wound {
         sys.feed = Some((spec, Feed::at_rest(&spec, pull)));
         sys.set_tension = pull;
         let breath = breath(section, radius);
-        let dt = stable_step(section, sys.rod.rest[0], STIFFNESS, false);
+        let dt = stable_step(section, edge, stiffness, false);
         sys.loads.drag = 4.0 / breath;
         sys.evaluate(Some(0.0));
         for _ in 0..(20.0 * breath / dt) as usize {
@@ -182,16 +185,30 @@ impl Wound {
     }
 
     /// Mean load per length on the core at `omega`, away from the clamp, over so many breaths, N/m.
+    ///
+    /// The tensioner is set such that the tension there, not at the last edge, is the one wanted:
+    /// the clamp does not grow with the ring, and bending beside it takes up some tension.
     fn load_at(&self, omega: f64, breaths: f64) -> f64 {
-        let mut sys = self.sys.clone();
-        spin(&mut sys, omega);
         let steps = (breaths * self.breath / self.dt) as usize;
-        let mut mean = SmoothMean::over(steps);
-        for _ in 0..steps {
-            rk4::step(&mut sys, self.dt);
-            mean.add(line_load(&sys));
+        let wanted = self.sys.set_tension;
+        let mut set = wanted;
+        let mut answer = 0.0;
+        for _ in 0..2 {
+            let mut sys = self.sys.clone();
+            sys.set_tension = set;
+            spin(&mut sys, omega);
+            let mut load = SmoothMean::over(steps);
+            let mut tension = SmoothMean::over(steps);
+            for _ in 0..steps {
+                rk4::step(&mut sys, self.dt);
+                load.add(line_load(&sys));
+                let measured = &sys.load.tension[EDGES / 4..EDGES * 3 / 4];
+                tension.add(measured.iter().sum::<f64>() / measured.len() as f64);
+            }
+            answer = load.value();
+            set += wanted - tension.value();
         }
-        mean.value()
+        answer
     }
 }
 

@@ -25,6 +25,9 @@ const SPEED: f64 = 0.03;
 /// Edge length on the core as a share of the bend radius of a corner.
 const SPACING: f64 = 0.2;
 
+/// Edges of the free span against those on the core: a power of two, since edges are halved.
+const COARSER: f64 = 8.0;
+
 /// Axial pitch in diameters.
 const PITCH: f64 = 1.3;
 
@@ -102,7 +105,7 @@ fn scene(ctx: &Context) -> Result<Scene, VerifyError> {
     scene.contact.stiffness = 300.0 * tension / bend / wire.diameter;
     scene.friction.kinetic = scene.friction.static_;
     scene.solver.spacing_near = SPACING * bend;
-    scene.solver.spacing_free = SPACING * bend * 3.0;
+    scene.solver.spacing_free = SPACING * bend * COARSER;
     scene.solver.refine_distance = 2.0 * bend;
     scene.solver.step = 0.0;
     scene.solver.step_share = 0.7;
