@@ -1,21 +1,23 @@
 //! Frozen wire as a chain of cylinder meshes, in the core frame (the paper's eq. 12-15, mended).
 //!
-//! Each frozen node carries a ring of [`SIDES`] vertices; neighbouring rings make the cylinder of
-//! one segment. The end rings are circles in the frame of their edge (eq. 13). At a node between
-//! two segments the ring lies in the plane halfway between their directions (eq. 14, 15 with unit
-//! directions) and is an ellipse whose long axis, r over the cosine of half the turning angle,
-//! lies in the plane of the bend: projected along either segment it is the circle again. The
-//! published factor, the cosine itself, would make the wire thinner at every bend.
+//! A segment is a prism of [`SIDES`] facets round its axis, its vertices at angles in the frame of
+//! the segment (eq. 13). At a node between two segments it ends in the plane halfway between their
+//! directions (eq. 14, 15 with unit directions): an ellipse whose long axis, r over the cosine of
+//! half the turning angle, lies in the plane of the bend; projected along either segment it is the
+//! circle again. The published factor, the cosine itself, would make the wire thinner at every bend.
 //!
-//! Later wire touches the triangles with friction. A ring is found by its number and a facet by
-//! its angle, so the search needs boxes over segments only.
+//! Later wire touches the triangles with friction. A facet is found by its angle and its vertices
+//! follow from the axis, so nothing of the mesh is stored and it can be as fine as the contact
+//! asks for: between the edges of a coarse one a sliding node takes off and lands again, which
+//! costs it speed (with 32 sides an eighth of the gap that a wire dropped on a shoulder leaves).
 
 use crate::core_shape::Touch;
 use crate::math::{Quat, V3};
 use crate::rod::{rotate, rotate_back};
 
-/// Vertices of a ring. The flat of a facet lies `r (1 - cos(pi/32))` = 0.5 % of r under the circle.
-pub const SIDES: usize = 32;
+/// Facets round the wire. Their flats lie `r (1 - cos(pi/256))` = 0.026 um under the 0.7 mm circle,
+/// less than contact gives way under any load that matters.
+pub const SIDES: usize = 256;
 
 /// Segments that share one box.
 const CHUNK: usize = 32;
@@ -59,7 +61,10 @@ pub struct Tube {
     pub tension: Vec<f64>,
     /// plastic stretch of the edge leaving each node
     pub plastic_strain: Vec<f64>,
-    rings: Vec<[V3; SIDES]>,
+    /// unit normal of the plane at which segments meet, zero at the ends
+    mitre: Vec<V3>,
+    /// cosine and sine of the vertex angles
+    circle: Vec<[f64; 2]>,
     chunks: Vec<Bounds>,
 }
 
@@ -88,7 +93,13 @@ impl Tube {
             arc: Vec::new(),
             tension: Vec::new(),
             plastic_strain: Vec::new(),
-            rings: Vec::new(),
+            mitre: Vec::new(),
+            circle: (0..SIDES)
+                .map(|k| {
+                    let a = std::f64::consts::TAU * k as f64 / SIDES as f64;
+                    [libm::cos(a), libm::sin(a)]
+                })
+                .collect(),
             chunks: Vec::new(),
         }
     }
@@ -110,12 +121,14 @@ impl Tube {
         self.arc.push(node.arc);
         self.tension.push(node.tension);
         self.plastic_strain.push(node.plastic_strain);
-        self.rings.push([V3::zeros(); SIDES]);
+        self.mitre.push(V3::zeros());
         let n = self.points.len();
-        self.make_ring(n - 1);
+        if n > 2 {
+            let before = (self.points[n - 2] - self.points[n - 3]).normalize();
+            let after = (self.points[n - 1] - self.points[n - 2]).normalize();
+            self.mitre[n - 2] = (before + after).normalize();
+        }
         if n > 1 {
-            // the ring before now has a segment on either side
-            self.make_ring(n - 2);
             let segment = n - 2;
             if segment.is_multiple_of(CHUNK) {
                 self.chunks.push(Bounds::empty());
@@ -127,32 +140,33 @@ impl Tube {
         }
     }
 
-    fn make_ring(&mut self, node: usize) {
-        let n = self.points.len();
-        let frame = self.frames[node];
-        let (xi, eta) = (rotate(&frame, &V3::x()), rotate(&frame, &V3::y()));
-        let inner = node > 0 && node + 1 < n;
-        let (d, average) = if inner {
-            let before = (self.points[node] - self.points[node - 1]).normalize();
-            let after = (self.points[node + 1] - self.points[node]).normalize();
-            (after, (before + after).normalize())
-        } else {
-            (V3::zeros(), V3::zeros())
-        };
-        for k in 0..SIDES {
-            let a = 2.0 * std::f64::consts::PI * k as f64 / SIDES as f64;
-            let mut offset = (xi * libm::cos(a) + eta * libm::sin(a)) * self.radius;
-            if inner {
-                // slide along the segment until it meets the mitre plane: the ellipse of eq. 14
-                offset -= d * (offset.dot(&average) / d.dot(&average));
+    /// The mesh of segment `s`, ready to give vertices.
+    fn prism(&self, s: usize) -> Prism<'_> {
+        let frame = &self.frames[s];
+        let along = (self.points[s + 1] - self.points[s]).normalize();
+        // slide along the segment until the mitre plane is met: the ellipse of eq. 14
+        let slope = |node: usize| {
+            let m = self.mitre[node];
+            if m == V3::zeros() {
+                m
+            } else {
+                m / along.dot(&m)
             }
-            self.rings[node][k] = self.points[node] + offset;
+        };
+        Prism {
+            ends: [self.points[s], self.points[s + 1]],
+            slopes: [slope(s), slope(s + 1)],
+            along,
+            xi: rotate(frame, &V3::x()) * self.radius,
+            eta: rotate(frame, &V3::y()) * self.radius,
+            circle: &self.circle,
         }
     }
 
-    /// Vertices of the ring at a node, core frame.
-    pub fn ring(&self, node: usize) -> &[V3; SIDES] {
-        &self.rings[node]
+    /// Vertices of segment `s` at its start (`end` 0) or end (1), core frame.
+    pub fn ring(&self, s: usize, end: usize) -> Vec<V3> {
+        let prism = self.prism(s);
+        (0..SIDES).map(|k| prism.vertex(end, k)).collect()
     }
 
     /// A lower bound of the distance from `p` to the surface of segments that end before `arc`.
@@ -238,12 +252,13 @@ impl Tube {
         let local = rotate_back(&self.frames[s], &(p - self.points[s]));
         let turn = libm::atan2(local.y, local.x) / (2.0 * std::f64::consts::PI);
         let k0 = (turn * SIDES as f64).floor() as isize;
-        let (a, b) = (&self.rings[s], &self.rings[s + 1]);
-        // rings of neighbouring edges may have rolled against each other by a facet
+        let prism = self.prism(s);
         for k in k0 - 1..=k0 + 1 {
             let k = k.rem_euclid(SIDES as isize) as usize;
             let k1 = (k + 1) % SIDES;
-            for t in [[a[k], b[k], a[k1]], [b[k], b[k1], a[k1]]] {
+            let [a0, a1] = [prism.vertex(0, k), prism.vertex(0, k1)];
+            let [b0, b1] = [prism.vertex(1, k), prism.vertex(1, k1)];
+            for t in [[a0, b0, a1], [b0, b1, a1]] {
                 let q = closest_point_triangle(p, &t);
                 let d = (p - q).norm_squared();
                 if d < best.0 {
@@ -251,6 +266,26 @@ impl Tube {
                 }
             }
         }
+    }
+}
+
+/// One segment between its mitre planes.
+struct Prism<'a> {
+    ends: [V3; 2],
+    /// mitre normals over their share along the segment
+    slopes: [V3; 2],
+    along: V3,
+    xi: V3,
+    eta: V3,
+    circle: &'a [[f64; 2]],
+}
+
+impl Prism<'_> {
+    #[inline]
+    fn vertex(&self, end: usize, k: usize) -> V3 {
+        let [c, s] = self.circle[k];
+        let offset = self.xi * c + self.eta * s;
+        self.ends[end] + offset - self.along * offset.dot(&self.slopes[end])
     }
 }
 
@@ -323,7 +358,7 @@ mod tests {
         for node in 1..11 {
             let d = (tube.points[node + 1] - tube.points[node]).normalize();
             let before = (tube.points[node] - tube.points[node - 1]).normalize();
-            for v in tube.ring(node) {
+            for v in tube.ring(node, 0).iter().chain(&tube.ring(node - 1, 1)) {
                 let o = v - tube.points[node];
                 // distance from the axis of either segment is the radius
                 assert!(((o - d * o.dot(&d)).norm() - R).abs() < 1e-15);
@@ -338,7 +373,7 @@ mod tests {
     fn brute(tube: &Tube, p: V3) -> f64 {
         let mut best = f64::INFINITY;
         for s in 0..tube.len() - 1 {
-            let (a, b) = (tube.ring(s), tube.ring(s + 1));
+            let (a, b) = (tube.ring(s, 0), tube.ring(s, 1));
             for k in 0..SIDES {
                 let k1 = (k + 1) % SIDES;
                 for t in [[a[k], b[k], a[k1]], [b[k], b[k1], a[k1]]] {
