@@ -5,6 +5,7 @@
 
 use super::bench::{Bench, law};
 use super::{Answer, Answers, Context, VerifyError};
+use crate::integrate::rk4;
 
 /// Line load per depth, N/m^2. Only the depth matters; softer allows the strong dashpot.
 const STIFFNESS: f64 = 1e9;
@@ -17,7 +18,7 @@ const STIFFNESS: f64 = 1e9;
 const DAMPING: f64 = 4.0;
 
 /// Times in `sqrt(m' r / q)`: longest wait for a start, longest run, and how often to look.
-const WAIT: f64 = 20.0;
+const WAIT: f64 = 5.0;
 const LONGEST: f64 = 400.0;
 const LOOK: f64 = 1.0;
 
@@ -41,6 +42,9 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         sideways,
         law(STIFFNESS, DAMPING, mu),
     )?;
+    // a staggered velocity is half a step old: on a curved way the dashpot takes that for a
+    // departure, and pulls with damping_ratio * omega * dt / 2 of the load, here 8 %
+    bench.step = rk4::step;
     bench.apply_load();
     let mut time = 0.0;
     let mut last = offset;
