@@ -13,6 +13,6 @@ pub mod verlet;
 
 pub use books::Books;
 pub use relax::{Limits, RelaxError, Relaxed, ramp, relax};
-pub use stability::{RK4_LIMIT, VERLET_LIMIT, highest_frequency};
+pub use stability::{RK4_LIMIT, VERLET_LIMIT, highest_frequency, longest_step};
 pub use support::{Spindle, Support, turn_about_y};
 pub use system::{Loads, System};

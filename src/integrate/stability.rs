@@ -21,6 +21,20 @@ pub fn highest_frequency(section: &Section, h: f64, contact: f64, twist: bool) -
     axial.max(bending).max(torsion).sqrt()
 }
 
+/// Longest stable step, s: `omega^2 dt^2 + 2 (c/m) dt = limit^2` with the contact dashpot's `c/m = 2 zeta
+/// omega_contact`, which sees velocities of half a step before.
+pub fn longest_step(
+    limit: f64,
+    frequency: f64,
+    damping_ratio: f64,
+    contact: f64,
+    section: &Section,
+) -> f64 {
+    let b = 4.0 * damping_ratio * (contact / section.mass_per_length()).sqrt();
+    let w2 = frequency * frequency;
+    ((b * b + 4.0 * w2 * limit * limit).sqrt() - b) / (2.0 * w2)
+}
+
 /// Stability limits on an undamped oscillation: step times frequency.
 pub const VERLET_LIMIT: f64 = 2.0;
 /// The same for RK4: `2 sqrt(2)`.

@@ -58,6 +58,8 @@ pub struct System {
     pub deepest: f64,
     /// moment of the wire on the core about +y at the last evaluation, N m
     pub torque_on_core: f64,
+    /// how far velocities lie behind positions, s (half a step where they are staggered)
+    pub(super) velocity_lag: f64,
     /// elapsed time, s
     pub time: f64,
     /// forces of the last evaluation
@@ -89,6 +91,7 @@ impl System {
             books: Books::default(),
             deepest: 0.0,
             torque_on_core: 0.0,
+            velocity_lag: 0.0,
             time: 0.0,
             load: Load::default(),
             roll: vec![0.0; edges],
@@ -243,12 +246,17 @@ impl System {
         let mut moment = 0.0;
         let mut arc = self.arc0 + self.rod.rest[..free.start].iter().sum::<f64>();
         let per_length = self.section.mass_per_length();
+        // relative velocity in the pose that belongs to it: half a step back, the turning core would
+        // look like an approach at omega^2 R dt / 2
+        let lag = self.velocity_lag;
+        let before = Spin::new(self.spindle.angle - self.spindle.speed * lag);
         for i in free {
             let x = self.rod.x[i];
+            let v = self.rod.v[i];
             let length = self.rod.voronoi(i);
             let body = Body {
                 position: spin.to_core(x),
-                velocity: spin.to_core(self.rod.v[i] - spin_velocity(self.spindle.speed, x)),
+                velocity: before.to_core(v - spin_velocity(self.spindle.speed, x - v * lag)),
                 length,
                 mass: per_length * length,
                 arc,

@@ -16,7 +16,9 @@ pub fn step(sys: &mut System, dt: f64) {
     sys.carry_supports(dt);
     sys.place_supports();
     sys.feed_step(dt);
+    sys.velocity_lag = 0.5 * dt;
     sys.evaluate(Some(dt));
+    sys.velocity_lag = 0.0;
 }
 
 /// Moves the velocities by half a step of the present forces: `dt / 2` brings them to the time of

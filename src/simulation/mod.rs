@@ -15,8 +15,9 @@ pub use programme::Programme;
 pub use start::core_surface;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 
+use crate::contact::damping_for_restitution;
 use crate::freeze::{FreezePolicy, Watch};
-use crate::integrate::{self, RK4_LIMIT, System, VERLET_LIMIT, highest_frequency};
+use crate::integrate::{self, RK4_LIMIT, System, VERLET_LIMIT, highest_frequency, longest_step};
 use crate::math::{Spin, V3};
 use crate::measure::{Coil, SettledNode, polar_angle, wrap_to_pi};
 use crate::scene::{Integrator, Scene};
@@ -69,7 +70,10 @@ impl Simulation {
             Integrator::Verlet => VERLET_LIMIT,
         };
         let spacing = scene.solver.spacing_near.min(scene.solver.spacing_free);
-        let stable = limit / highest_frequency(&scene.wire, spacing, scene.contact.stiffness, true);
+        let contact = scene.contact.stiffness;
+        let frequency = highest_frequency(&scene.wire, spacing, contact, true);
+        let damping = damping_for_restitution(scene.contact.restitution);
+        let stable = longest_step(limit, frequency, damping, contact, &scene.wire);
         let longest_step = if scene.solver.step > 0.0 {
             scene.solver.step
         } else {
