@@ -37,12 +37,13 @@ PAGE = """<!DOCTYPE html>
   h2 {{ font-size: 18px; font-weight: 600; margin: 44px 0 12px; }}
   p {{ max-width: 46em; }}
   .lead, .note, figcaption {{ color: var(--soft); }}
-  .note, figcaption {{ font-size: 13px; }}
+  .note, figcaption {{ font-size: 13px; max-width: 70em; }}
   .card {{ background: #fff; border: 1px solid var(--line); border-radius: 10px; overflow-x: auto; }}
-  table {{ border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }}
-  th, td {{ padding: 9px 10px; text-align: right; border-bottom: 1px solid var(--line);
+  table {{ border-collapse: collapse; width: 100%; font-size: 14px; font-variant-numeric: tabular-nums; }}
+  th, td {{ padding: 9px 8px; text-align: right; border-bottom: 1px solid var(--line);
            white-space: nowrap; }}
-  th {{ font-size: 12px; font-weight: 600; color: var(--soft); vertical-align: bottom; }}
+  th {{ font-size: 12px; font-weight: 600; color: var(--soft); vertical-align: bottom;
+       white-space: normal; }}
   tr:last-child td {{ border-bottom: 0; }}
   .verdict {{ display: inline-block; padding: 1px 10px; border-radius: 999px; font-weight: 600;
              font-size: 13px; background: #e9ebee; color: #4b525c; }}

@@ -19,6 +19,8 @@ STYLE = {
     "axes.labelcolor": "#30343b",
     "axes.titlesize": 9.5,
     "axes.grid": True,
+    "figure.constrained_layout.h_pad": 0.08,
+    "figure.constrained_layout.w_pad": 0.08,
     "grid.color": "#e6e8eb",
     "grid.linewidth": 0.7,
     "axes.axisbelow": True,
