@@ -54,7 +54,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     // closer, tension waves of the start would take the wire off for moments
     for share in [0.7, 0.9] {
         let square = share * zero(near);
-        if !(square > 0.0) {
+        if square.is_nan() || square <= 0.0 {
             return Err(VerifyError::NoAnswer(
                 "the load does not fall with speed".to_owned(),
             ));
