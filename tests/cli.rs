@@ -183,10 +183,12 @@ fn run_leaves_its_files() {
     assert!(!out.join("frames/frame_0003.vtp").exists());
     let core = std::fs::read_to_string(out.join("core.vtp")).unwrap();
     assert!(core.contains("NumberOfPolys"), "{core}");
-    // The clamp is the first station; turns.csv tells how much of each turn is at rest.
-    let first = std::fs::read_to_string(out.join("stations.csv")).unwrap();
-    let first: Vec<_> = first.lines().nth(1).unwrap().split(',').collect();
-    assert_eq!(first[..3], ["1", "0", "0.0"]);
+    // Nothing is at rest after a twentieth of a turn: headers only.
+    let stations = std::fs::read_to_string(out.join("stations.csv")).unwrap();
+    assert!(
+        stations.starts_with("turn,") && stations.lines().count() == 1,
+        "{stations}"
+    );
     let turns = std::fs::read_to_string(out.join("turns.csv")).unwrap();
     assert!(turns.starts_with("turn,verdict,settled,"), "{turns}");
 
