@@ -24,7 +24,7 @@ step lints
 cargo clippy --locked --workspace --all-targets -- -D warnings
 
 step documentation
-RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --quiet
+RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --document-private-items --quiet
 
 step command and FMU
 cargo build --locked --release --bin coilwind

@@ -1,9 +1,9 @@
 //! FMI 2.0 for co-simulation: the C boundary of coilwind, and the only crate with `unsafe`.
 //!
-//! [`exports`] holds the C functions, a few lines each: pointers are read in [`pointers`], the call
-//! runs inside [`guard`], which asks [`lifecycle`] whether it is allowed, catches panics and
-//! delivers messages through [`logger`]. Everything behind that is safe: [`instance`] with its
-//! [`parameters`] and [`clock`].
+//! `exports` holds the C functions, a few lines each: pointers are read in `pointers`, the call
+//! runs inside `guard`, which asks `lifecycle` whether it is allowed, catches panics and
+//! delivers messages through `logger`. Everything behind that is safe: `instance` with its
+//! `parameters` and `clock`.
 //!
 //! # Invariants
 //!

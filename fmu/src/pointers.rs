@@ -108,7 +108,7 @@ pub(crate) unsafe fn string(argument: &'static str, text: fmi2String) -> Result<
 ///
 /// # Safety
 ///
-/// As for [`slice`], and each element as for [`string`].
+/// As for [`slice()`], and each element as for [`string`].
 pub(crate) unsafe fn strings(
     argument: &'static str,
     data: *const fmi2String,

@@ -2,7 +2,7 @@
 //!
 //! Everything is derived from the core's variable table, so the XML cannot disagree with the
 //! getters and setters of the C boundary. The boundary uses this crate for the two names both must
-//! know: the [`guid`] and the [`CATEGORIES`] of log messages.
+//! know: the [`guid()`] and the [`CATEGORIES`] of log messages.
 #![forbid(unsafe_code)]
 
 mod categories;
