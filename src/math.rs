@@ -2,6 +2,8 @@
 
 /// A vector or point; metres, newtons, ... as the name says.
 pub type V3 = nalgebra::Vector3<f64>;
+/// A 3 by 3 matrix.
+pub type M3 = nalgebra::Matrix3<f64>;
 /// A quaternion `w + xi + yj + zk`; unit where it stands for a frame.
 pub type Quat = nalgebra::Quaternion<f64>;
 

@@ -10,7 +10,7 @@ use crate::math::V3;
 
 /// Tangential over normal contact stiffness of equal bodies, `2(1 - nu)/(2 - nu)` (Mindlin 1949),
 /// for copper, nu = 0.34.
-const TANGENTIAL_SHARE: f64 = 2.0 * (1.0 - 0.34) / (2.0 - 0.34);
+pub(super) const TANGENTIAL_SHARE: f64 = 2.0 * (1.0 - 0.34) / (2.0 - 0.34);
 
 /// Contact parameters, per length of wire.
 #[derive(Clone, Copy, Debug, PartialEq)]

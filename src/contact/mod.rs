@@ -5,9 +5,11 @@
 //! node in the free span costs one comparison a step.
 
 mod law;
+mod line;
 mod live;
 
 pub use law::{ContactLaw, TouchForce, damping_for_restitution};
+pub use line::{LineContact, Push, own_wire};
 pub use live::{LiveContact, Wire};
 
 use crate::core_shape::{Surface, Touch};

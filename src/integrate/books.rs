@@ -46,7 +46,24 @@ impl System {
             (Some(l), Some(c)) => l.stored(&c.law, &self.wire.length),
             _ => 0.0,
         };
+        if let Some(line) = &self.line {
+            return rod + self.stored_in_points(line);
+        }
         rod + touch + between
+    }
+
+    fn stored_in_points(&self, line: &crate::contact::LineContact) -> f64 {
+        let rod = &self.rod;
+        (0..rod.edges())
+            .map(|j| {
+                let node = if j > 0 {
+                    line.stored(2 * j, 0.5 * rod.voronoi(j))
+                } else {
+                    0.0
+                };
+                node + line.stored(2 * j + 1, 0.5 * rod.rest[j])
+            })
+            .sum()
     }
 
     /// Motion energy of the free nodes and spinning edges, J.

@@ -20,9 +20,14 @@ impl System {
         let mid = if j == last || j == 0 {
             (a + b) * 0.5
         } else {
-            let ta = (self.rod.x[j + 1] - self.rod.x[j - 1]).normalize();
-            let tb = (self.rod.x[j + 2] - self.rod.x[j]).normalize();
-            (a + b) * 0.5 + (ta - tb) * (chord.norm() / 8.0)
+            // on an arc an edge has the direction at its middle: at a node between edges of different
+            // length the shorter one counts more
+            let before = a - self.rod.x[j - 1];
+            let after = self.rod.x[j + 2] - b;
+            let l = [before.norm(), chord.norm(), after.norm()];
+            let ta = (before * (l[1] / l[0]) + chord * (l[0] / l[1])).normalize();
+            let tb = (chord * (l[2] / l[1]) + after * (l[1] / l[2])).normalize();
+            (a + b) * 0.5 + (ta - tb) * (l[1] / 8.0)
         };
         let v = if at_nozzle {
             // at the nozzle the material moves in along the wire at the feed rate
@@ -62,10 +67,34 @@ impl System {
             l.insert(j + 1);
             self.wire.length.insert(j + 1, half);
         }
+        if let Some(l) = &mut self.line {
+            l.split(j);
+        }
+        self.split_past(j, mid, v);
         self.roll.insert(j + 1, self.roll[j]);
         if at_nozzle {
             // the half edge at the nozzle was not in the books before
             self.books.inflow += self.kinetic() - kinetic;
+        }
+    }
+
+    /// The same for the instants before, if the method keeps any.
+    fn split_past(&mut self, j: usize, mid: V3, v: V3) {
+        let rest = 2.0 * self.rod.rest[j];
+        let grown = match &self.feed {
+            Some((_, f)) if j + 2 == self.rod.nodes() - 1 => self
+                .past
+                .fed
+                .map(|fed| ((rest - (f.fed - fed)) / rest).max(0.05)),
+            _ => [1.0; 2],
+        };
+        let back = self.spindle.before(self.past.h[0]);
+        let now = Spin::new(self.spindle.angle).to_core(mid);
+        self.past.split(j, now, grown, Spin::new(back.angle));
+        if let (Some(a), Some(b)) = (self.past.v.get(j).copied(), self.past.v.get(j + 2)) {
+            // the same change of velocity over the last step as the wire on either side
+            let change = (self.rod.v[j] - a + self.rod.v[j + 2] - b) * 0.5;
+            self.past.v[j + 1] = v - change;
         }
     }
 
@@ -114,6 +143,10 @@ impl System {
             l.remove_front(count);
             self.wire.length.drain(..count.min(self.wire.length.len()));
         }
+        if let Some(l) = &mut self.line {
+            l.remove_front(count);
+        }
+        self.past.remove_front(count);
         self.place_supports();
         self.books.frozen_kinetic += handed;
         self.books.frozen_stored += stored - self.stored();

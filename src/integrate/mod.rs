@@ -1,9 +1,11 @@
-//! The system and the explicit steps that move it in time.
+//! The system and the methods that move it in time: implicit (`implicit`), explicit (`verlet`, `rk4`).
 
 mod band;
 mod books;
 mod change;
 mod flow;
+pub mod implicit;
+mod ldl;
 mod relax;
 pub mod rk4;
 mod stability;
@@ -12,6 +14,8 @@ mod system;
 pub mod verlet;
 
 pub use books::Books;
+pub use implicit::{Effort, Implicit, Past, Scheme, Stopped};
+pub use ldl::{Banded, Loose};
 pub use relax::{Limits, RelaxError, Relaxed, ramp, relax};
 pub use stability::{RK4_LIMIT, VERLET_LIMIT, highest_frequency, longest_step};
 pub use support::{Spindle, Support, turn_about_y};

@@ -65,6 +65,11 @@ pub struct Spindle {
 }
 
 impl Spindle {
+    /// The same motion `dt` earlier.
+    pub fn before(&self, dt: f64) -> Self {
+        self.after(-dt)
+    }
+
     /// The same motion `dt` later.
     pub fn after(&self, dt: f64) -> Self {
         Self {

@@ -3,8 +3,9 @@
 //! Lab frame; the core turns about +y. Nothing here knows scenes or files.
 
 use super::books::Books;
+use super::implicit::Past;
 use super::support::{Spindle, Support, turn_about_y};
-use crate::contact::{Body, Contacts, LiveContact, Wire};
+use crate::contact::{Body, Contacts, LineContact, LiveContact, Wire};
 use crate::feed::{Feed, FeedSpec};
 use crate::math::{Quat, Spin, V3, spin_velocity};
 use crate::rod::{ForceParts, Laws, Load, Rod, Section, internal_forces, rotate};
@@ -41,6 +42,10 @@ pub struct System {
     pub contacts: Option<Contacts>,
     /// live wire against live wire, where it may meet
     pub live: Option<LiveContact>,
+    /// contact of the implicit method; then `contacts` only keeps core mesh and frozen wire
+    pub line: Option<LineContact>,
+    /// accepted instants before this one, for the implicit method
+    pub past: Past,
     pub(super) wire: Wire,
     /// feed at the last node
     pub feed: Option<(FeedSpec, Feed)>,
@@ -82,6 +87,8 @@ impl System {
             loads: Loads::default(),
             contacts: None,
             live: None,
+            line: None,
+            past: Past::default(),
             wire: Wire::default(),
             feed: None,
             set_tension: 0.0,
@@ -157,39 +164,12 @@ impl System {
     /// All forces at the present state into `self.load`. With `commit = Some(dt)` plastic state,
     /// frames and friction anchors move on and the books grow by what happens in `dt`.
     pub fn evaluate(&mut self, commit: Option<f64>) {
-        self.load.fit(&self.rod);
-        self.roll.resize(self.rod.edges(), 0.0);
-        let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
-        let parts = ForceParts {
-            commit: commit.is_some(),
-            holonomic: self.holonomic,
-            twist: self.twist,
-        };
-        internal_forces(
-            &mut self.rod,
-            &self.laws,
-            &clamp,
-            &self.roll,
-            parts,
-            &mut self.load,
-        );
-        self.external_forces();
+        self.internal(commit.is_some());
         let spin = Spin::new(self.spindle.angle);
         let torque_from_contact = self.contact_forces(spin, commit);
         self.live_forces(spin, commit);
-        let at_clamp = if self.support[0].turning {
-            // what the wire puts on the clamp: its force there and the opposite of the clamp's moment
-            let (x, f) = (self.rod.x[0], self.load.force[0]);
-            x.z * f.x - x.x * f.z - self.load.clamp_moment[0].y
-        } else {
-            0.0
-        };
-        self.torque_on_core = torque_from_contact + at_clamp;
+        self.torque_on_core = torque_from_contact + self.clamp_torque();
         if let Some(dt) = commit {
-            self.roll.iter_mut().for_each(|r| *r = 0.0);
-            for k in 0..3 {
-                self.books.plastic[k] += self.load.plastic[k];
-            }
             let touch = self
                 .contacts
                 .as_ref()
@@ -203,6 +183,95 @@ impl System {
                 let n = self.rod.nodes() - 1;
                 self.books.nozzle -= self.load.force[n].dot(&self.support[1].velocity) * dt;
             }
+        }
+    }
+
+    /// Internal forces and loads into a fresh `load`; with `commit` frames and plastic state move on.
+    pub(super) fn internal(&mut self, commit: bool) {
+        self.load.fit(&self.rod);
+        self.roll.resize(self.rod.edges(), 0.0);
+        let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
+        let parts = ForceParts {
+            commit,
+            holonomic: self.holonomic,
+            twist: self.twist,
+        };
+        internal_forces(
+            &mut self.rod,
+            &self.laws,
+            &clamp,
+            &self.roll,
+            parts,
+            &mut self.load,
+        );
+        self.external_forces();
+        if commit {
+            self.roll.iter_mut().for_each(|r| *r = 0.0);
+            for k in 0..3 {
+                self.books.plastic[k] += self.load.plastic[k];
+            }
+        }
+    }
+
+    /// Moment that the clamp's force and moment put on the core about +y, N m.
+    pub(super) fn clamp_torque(&self) -> f64 {
+        if !self.support[0].turning {
+            return 0.0;
+        }
+        // what the wire puts on the clamp: its force there and the opposite of the clamp's moment
+        let (x, f) = (self.rod.x[0], self.load.force[0]);
+        x.z * f.x - x.x * f.z - self.load.clamp_moment[0].y
+    }
+
+    /// Tension after over tension before the nozzle's exit, by friction over the deflection there.
+    pub(super) fn exit_grip(&self) -> f64 {
+        let Some((spec, feed)) = &self.feed else {
+            return 1.0;
+        };
+        if spec.exit_friction == 0.0 {
+            return 1.0;
+        }
+        let n = self.rod.nodes() - 1;
+        let d = self.rod.x[n] - self.rod.x[n - 1];
+        let out = V3::new(self.rod.x[n].x, 0.0, self.rod.x[n].z).normalize();
+        let deflection = libm::acos((d.dot(&out) / d.norm()).clamp(-1.0, 1.0));
+        libm::exp(spec.exit_friction * deflection * if feed.rate >= 0.0 { 1.0 } else { -1.0 })
+    }
+
+    /// Whether node `i` touches core or frozen wire.
+    pub fn touches(&self, i: usize) -> bool {
+        match (&self.line, &self.contacts) {
+            (Some(line), _) => line.touches(i),
+            (None, Some(c)) => c.nodes[i].touches(),
+            _ => false,
+        }
+    }
+
+    /// Depth of node `i` in what it touches, m.
+    pub fn depth(&self, i: usize) -> f64 {
+        match (&self.line, &self.contacts) {
+            (Some(line), _) => line.depth(i),
+            (None, Some(c)) => c.nodes[i].depth(),
+            _ => 0.0,
+        }
+    }
+
+    /// Signed distance of a point from the core, core frame, m; far away without a core.
+    pub fn distance_to_core(&self, p: V3) -> f64 {
+        match (&self.line, &self.contacts) {
+            (Some(line), _) => line.shape.nearness(p).distance,
+            (None, Some(c)) => c.surface.nearest(p).distance,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Where the wire at node `i` lies: on its smooth centreline where contact is of the line kind.
+    pub fn centre(&self, i: usize) -> V3 {
+        let x = &self.rod.x;
+        if self.line.is_some() && i > 0 && i + 1 < x.len() {
+            super::implicit::spline_point(x, i)
+        } else {
+            x[i]
         }
     }
 

@@ -4,12 +4,14 @@
 //! Node 0 is the oldest wire (the clamp), the last node the youngest (the nozzle); edge `j` runs
 //! from node `j` to node `j + 1`; joint `i` is the bend and twist at node `i`.
 
+mod discrete;
 mod forces;
 mod joint;
 mod plasticity;
 mod section;
 mod state;
 
+pub use discrete::{Bent, Stretched, bent, outer, stretched, turning};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::{Joint, align, frame_along, relative, rotate, rotate_back};
 pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};

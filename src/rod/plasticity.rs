@@ -45,6 +45,16 @@ impl Law {
         }
     }
 
+    /// Tangent of the loading branch once the limit has risen by `rise`: none at the cap.
+    #[inline]
+    pub fn tangent(&self, rise: f64) -> f64 {
+        if self.limit + rise >= self.cap {
+            0.0
+        } else {
+            self.modulus * self.hardening / (self.modulus + self.hardening)
+        }
+    }
+
     /// Plastic multiplier and rise of the limit for a trial force of norm `trial` at rise `q`.
     #[inline]
     fn flow(&self, trial: f64, q: f64) -> (f64, f64) {

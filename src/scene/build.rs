@@ -27,17 +27,19 @@ impl SceneSettings {
         self.check_core(&wire, &extent)?;
         self.check_nozzle(&wire, &extent)?;
         self.check_wire_and_friction(&wire)?;
-        self.check_spacing(&wire, &extent)?;
-        let warnings = self.warnings(&wire, &core, &extent);
-
         let preset = match self.preset.as_str() {
             "paper" => Preset::Paper,
             _ => Preset::Default,
         };
         let integrator = match (self.solver.integrator.as_str(), preset) {
             ("rk4", _) | ("auto", Preset::Paper) => Integrator::Rk4,
-            _ => Integrator::Verlet,
+            ("verlet", _) => Integrator::Verlet,
+            _ => Integrator::Implicit,
         };
+        let solver = self.solver_for(integrator);
+        self.check_spacing(&solver, &wire, &extent)?;
+        let warnings = self.warnings(&solver, &wire, &core, &extent);
+
         let scene = Scene {
             name: self.name.clone(),
             preset,
@@ -51,14 +53,7 @@ impl SceneSettings {
             traverse: self.traverse,
             contact: self.contact,
             friction: self.friction,
-            solver: Solver {
-                integrator,
-                spacing_near: self.solver.spacing_near,
-                spacing_free: self.solver.spacing_free,
-                refine_distance: self.solver.refine_distance,
-                step_share: self.solver.step_share,
-                step: self.solver.step,
-            },
+            solver,
             freeze: self.freeze,
             defects: self.defects,
             output: self.output.clone(),
@@ -268,7 +263,34 @@ impl SceneSettings {
         Ok(())
     }
 
-    fn check_spacing(&self, wire: &Section, extent: &Extent) -> Result<(), SceneError> {
+    /// Solver settings with the spacing that suits the method where none is given.
+    fn solver_for(&self, integrator: Integrator) -> Solver {
+        // the explicit step falls with the square of the finest spacing wherever it is, so a coarse
+        // free span saves little there and costs a refinement front
+        let (near, free, refine): (f64, f64, f64) = match integrator {
+            Integrator::Implicit => (0.4e-3, 3.2e-3, 3e-3),
+            Integrator::Rk4 | Integrator::Verlet => (0.5e-3, 1e-3, 6e-3),
+        };
+        let given = |x: f64, otherwise: f64| if x > 0.0 { x } else { otherwise };
+        let s = &self.solver;
+        let spacing_near = given(s.spacing_near, near.min(given(s.spacing_free, near)));
+        Solver {
+            integrator,
+            spacing_near,
+            spacing_free: given(s.spacing_free, free.max(spacing_near)),
+            refine_distance: given(s.refine_distance, refine),
+            step_share: s.step_share,
+            step: s.step,
+            tolerance: s.tolerance,
+        }
+    }
+
+    fn check_spacing(
+        &self,
+        solver: &Solver,
+        wire: &Section,
+        extent: &Extent,
+    ) -> Result<(), SceneError> {
         // Below a tenth of the diameter a rod is no model of the wire any more and the explicit
         // step falls with the square; above ten diameters no turn is resolved.
         let d = wire.diameter;
@@ -278,7 +300,7 @@ impl SceneSettings {
             si(finest),
             si(coarsest)
         );
-        let near = self.solver.spacing_near;
+        let near = solver.spacing_near;
         if near < finest {
             return Err(self.impossible("solver.spacing_near", "too fine for a rod", range));
         }
@@ -286,7 +308,7 @@ impl SceneSettings {
             return Err(self.impossible("solver.spacing_near", "too coarse for this wire", range));
         }
         let span = self.nozzle.distance - extent.turning_radius;
-        let free = self.solver.spacing_free;
+        let free = solver.spacing_free;
         if free < near || 3.0 * free > span {
             let reason = match free < near {
                 true => "the free span cannot be finer than the wire near the core",
@@ -305,7 +327,13 @@ impl SceneSettings {
         Ok(())
     }
 
-    fn warnings(&self, wire: &Section, core: &Core, extent: &Extent) -> Vec<Warning> {
+    fn warnings(
+        &self,
+        solver: &Solver,
+        wire: &Section,
+        core: &Core,
+        extent: &Extent,
+    ) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let mut warn = |key: &'static str, message: String| {
             let (place, value) = (self.place(key), self.shown(key));
@@ -349,7 +377,7 @@ impl SceneSettings {
         };
         if let Some(corner) = corner {
             let bend = corner + wire.radius();
-            let near = self.solver.spacing_near;
+            let near = solver.spacing_near;
             if near > bend {
                 let message = format!(
                     "coarser than the tightest bend of the wire, radius {} m",

@@ -179,13 +179,15 @@ pub struct Friction {
     pub slip_speed: f64,
 }
 
-/// Explicit time integrator.
+/// Method that moves the wire in time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Integrator {
     /// classical Runge-Kutta, four evaluations a step
     Rk4,
     /// velocity Verlet (staggered), one evaluation a step
     Verlet,
+    /// implicit, second order, error-controlled
+    Implicit,
 }
 
 /// Solver settings.
@@ -201,8 +203,10 @@ pub struct Solver {
     pub refine_distance: f64,
     /// time step as a share of the stability limit, 0..1
     pub step_share: f64,
-    /// fixed time step, s; 0: from the stability limit
+    /// fixed time step, s; 0: from the stability limit or the error
     pub step: f64,
+    /// error that one step of the implicit method may have, m
+    pub tolerance: f64,
 }
 
 /// When wire leaves the computation.

@@ -84,6 +84,7 @@ pub struct SolverSettings {
     pub refine_distance: f64,
     pub step_share: f64,
     pub step: f64,
+    pub tolerance: f64,
 }
 
 /// The scene of Fig. 8 with a section-consistent copper wire, and the settings of this program
@@ -156,11 +157,12 @@ impl Default for SceneSettings {
             },
             solver: SolverSettings {
                 integrator: "auto".to_owned(),
-                spacing_near: 0.5e-3,
-                spacing_free: 1e-3,
-                refine_distance: 6e-3,
+                spacing_near: 0.0,
+                spacing_free: 0.0,
+                refine_distance: 0.0,
                 step_share: 0.9,
                 step: 0.0,
+                tolerance: 5e-6,
             },
             freeze: super::Freeze {
                 enabled: true,

@@ -7,7 +7,7 @@ use crate::math::{Spin, V3};
 
 impl Simulation {
     pub(super) fn keep_house(&mut self, dt: f64) -> Result<(), SimError> {
-        let look = self.steps.is_multiple_of(HOUSE_STEPS);
+        let look = self.implicit.is_some() || self.steps.is_multiple_of(HOUSE_STEPS);
         if look {
             self.check_health()?;
         }
@@ -36,7 +36,7 @@ impl Simulation {
             self.freeze(freeze);
         }
         // bring the forces in line with the new arrays; what the change itself cost is the method's
-        self.sys.evaluate(Some(0.0));
+        self.sys.refresh();
         self.sys.books.numerical += self.sys.energy_residual(None) - unexplained;
         self.shift_velocities(-0.5 * dt);
         Ok(())
@@ -79,10 +79,7 @@ impl Simulation {
     }
 
     fn distance_to_coil(&self, p: V3) -> f64 {
-        match &self.sys.contacts {
-            Some(c) => c.surface.nearest(p).distance,
-            None => f64::INFINITY,
-        }
+        self.sys.distance_to_core(p)
     }
 
     /// How many nodes from the clamp are at rest, settled long enough and in place (eq. 8, 9).
@@ -107,7 +104,7 @@ impl Simulation {
     /// flat can land at once, so the pairs are watched from half a turn on.
     fn watch_live_wire(&mut self) {
         let laid = self.laid_angles().last().map_or(0.0, |a| a.abs());
-        if laid > 0.5 * std::f64::consts::TAU {
+        if laid > 0.5 * std::f64::consts::TAU && self.sys.line.is_none() {
             self.sys.live.get_or_insert_default();
         }
     }
@@ -139,11 +136,15 @@ impl Simulation {
                 tension: self.sys.load.tension[i],
                 plastic_strain: self.sys.rod.stretch[i].strain,
             };
-            let settled = self.settled(node.point, arc, node.plastic_strain);
+            let centre = spin.to_core(self.sys.centre(i));
+            let settled = self.settled(centre, arc, node.plastic_strain);
+            if i > 0 {
+                self.rest_depth = self.rest_depth.max(self.sys.depth(i));
+            }
+            if let Some(l) = &mut self.sys.line {
+                l.tube.push(node.point, node.arc);
+            }
             if let Some(c) = &mut self.sys.contacts {
-                if i > 0 {
-                    self.rest_depth = self.rest_depth.max(c.nodes[i].depth());
-                }
                 c.tube.push(node);
             }
             let (turns, defects) = (self.coil.turns_settled(), self.coil.defect_count());
@@ -155,6 +156,9 @@ impl Simulation {
         self.watch.remove_front(count);
         if let Some(c) = &mut self.sys.contacts {
             c.forget_surroundings();
+        }
+        if let Some(l) = &mut self.sys.line {
+            l.forget_surroundings();
         }
     }
 

@@ -17,7 +17,9 @@ pub use summary::{EnergySummary, PenetrationSummary, Summary};
 
 use crate::contact::damping_for_restitution;
 use crate::freeze::{FreezePolicy, Watch};
-use crate::integrate::{self, RK4_LIMIT, System, VERLET_LIMIT, highest_frequency, longest_step};
+use crate::integrate::{
+    self, Implicit, RK4_LIMIT, Scheme, System, VERLET_LIMIT, highest_frequency, longest_step,
+};
 use crate::math::{Spin, V3};
 use crate::measure::{Coil, SettledNode, polar_angle, wrap_to_pi};
 use crate::scene::{Integrator, Scene};
@@ -36,6 +38,8 @@ pub struct Simulation {
     programme: Programme,
     /// core angle at the start, rad
     angle0: f64,
+    /// the implicit method, if that is the one
+    implicit: Option<Implicit>,
     longest_step: f64,
     last_step: f64,
     time: f64,
@@ -65,9 +69,11 @@ impl Simulation {
     pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
         check_finite(&inputs, 0.0)?;
         let (mut sys, coil, angle0) = start::wire(scene, &inputs)?;
+        let implicit =
+            (scene.solver.integrator == Integrator::Implicit).then(|| implicit_for(scene));
         let limit = match scene.solver.integrator {
             Integrator::Rk4 => RK4_LIMIT,
-            Integrator::Verlet => VERLET_LIMIT,
+            Integrator::Verlet | Integrator::Implicit => VERLET_LIMIT,
         };
         let spacing = scene.solver.spacing_near.min(scene.solver.spacing_free);
         let contact = scene.contact.stiffness;
@@ -79,7 +85,7 @@ impl Simulation {
         } else {
             stable * scene.solver.step_share
         };
-        if longest_step > stable {
+        if longest_step > stable && implicit.is_none() {
             return Err(SimError::setup(format!(
                 "solver.step = {:.4e} s is too long for the explicit method: the limit of this wire at {} mm spacing is {:.4e} s",
                 scene.solver.step,
@@ -87,7 +93,7 @@ impl Simulation {
                 stable
             )));
         }
-        sys.evaluate(Some(0.0));
+        sys.refresh();
         sys.books.initial = sys.stored() + sys.kinetic();
         let policy = FreezePolicy {
             window: scene.freeze.window,
@@ -109,6 +115,7 @@ impl Simulation {
             policy,
             angle0,
             longest_step,
+            implicit,
             last_step: longest_step,
             time: 0.0,
             steps: 0,
@@ -151,12 +158,9 @@ impl Simulation {
         self.sys.spindle.acceleration = 0.0;
         self.sys.set_tension = inputs.tension_setpoint;
         self.reset_extremes();
-        let (count, step) = self.divide(dt);
         self.sys.place_supports();
-        for _ in 0..count {
-            self.sys.support[1].velocity = V3::new(0.0, travel / dt, 0.0);
-            self.step(step)?;
-        }
+        self.sys.support[1].velocity = V3::new(0.0, travel / dt, 0.0);
+        self.through(dt, 0.0)?;
         self.sys.support[1].velocity = V3::zeros();
         self.sys.support[1].point.y = target;
         self.finish(dt);
@@ -168,19 +172,57 @@ impl Simulation {
         self.reset_extremes();
         let end = self.time + dt;
         for piece in self.programme.pieces(self.time, end) {
-            let (count, step) = self.divide(piece.duration);
             self.sys.spindle.speed = piece.speed;
             self.sys.spindle.acceleration = piece.acceleration;
-            for _ in 0..count {
-                let s = self.sys.spindle;
-                let rate = (s.after(step).angle - s.angle) / step;
-                self.sys.support[1].velocity =
-                    V3::new(0.0, self.programme.travel_per_angle * rate, 0.0);
-                self.step(step)?;
-            }
+            self.through(piece.duration, self.programme.travel_per_angle)?;
         }
         self.finish(dt);
         Ok(())
+    }
+
+    /// Goes through `dt` in steps that the method finds fit. The nozzle follows the spindle where
+    /// `per_angle` is not 0, m/rad; else it keeps its velocity.
+    fn through(&mut self, dt: f64, per_angle: f64) -> Result<(), SimError> {
+        if self.implicit.is_none() || self.broken {
+            let (count, step) = self.divide(dt);
+            for _ in 0..count {
+                self.guide_nozzle(step, per_angle);
+                self.step(step)?;
+            }
+            return Ok(());
+        }
+        let mut left = dt;
+        while left > 0.0 {
+            // the nozzle's path over the step is straight: an error of second order in the ramp
+            self.guide_nozzle(left.min(self.last_step), per_angle);
+            let taken = self.implicit_step(left)?;
+            left = if taken >= left { 0.0 } else { left - taken };
+        }
+        Ok(())
+    }
+
+    fn guide_nozzle(&mut self, step: f64, per_angle: f64) {
+        if per_angle != 0.0 {
+            let s = self.sys.spindle;
+            let rate = (s.after(step).angle - s.angle) / step;
+            self.sys.support[1].velocity = V3::new(0.0, per_angle * rate, 0.0);
+        }
+    }
+
+    fn implicit_step(&mut self, most: f64) -> Result<f64, SimError> {
+        let Some(method) = &mut self.implicit else {
+            return Ok(most);
+        };
+        let taken = method.step(&mut self.sys, most).map_err(|e| SimError {
+            time: self.sys.time,
+            node: Some(e.node),
+            reason: e.to_string(),
+        })?;
+        self.last_step = taken;
+        self.steps += 1;
+        self.watch_tension();
+        self.keep_house(taken)?;
+        Ok(taken)
     }
 
     /// Splits `dt` into the fewest equal steps within the stability limit.
@@ -200,6 +242,8 @@ impl Simulation {
         match self.scene.solver.integrator {
             Integrator::Rk4 => integrate::rk4::step(&mut self.sys, dt),
             Integrator::Verlet => integrate::verlet::step(&mut self.sys, dt),
+            // a broken wire was handled above; nothing else comes here
+            Integrator::Implicit => {}
         }
         self.steps += 1;
         self.watch_tension();
@@ -281,7 +325,7 @@ impl Simulation {
         let mut arc = self.sys.arc0;
         let mut extra = Vec::new();
         for i in 0..=lift {
-            let p = spin.to_core(self.sys.rod.x[i]);
+            let p = spin.to_core(self.sys.centre(i));
             extra.push(self.settled(
                 p,
                 arc,
@@ -293,9 +337,9 @@ impl Simulation {
     }
 
     fn settled(&self, position: V3, arc: f64, plastic_strain: f64) -> SettledNode {
-        let height = match &self.sys.contacts {
-            Some(c) => c.surface.nearest(position).distance - self.scene.wire.radius(),
-            None => 0.0,
+        let height = match self.sys.distance_to_core(position) {
+            d if d.is_finite() => d - self.scene.wire.radius(),
+            _ => 0.0,
         };
         SettledNode {
             position,
@@ -340,13 +384,10 @@ impl Simulation {
 
     /// Last node from the clamp that touches something: where the wire leaves the coil.
     fn lift_off(&self) -> usize {
-        match &self.sys.contacts {
-            Some(c) => (1..self.sys.rod.nodes() - 1)
-                .rev()
-                .find(|i| c.nodes[*i].touches())
-                .unwrap_or(0),
-            None => 0,
-        }
+        (1..self.sys.rod.nodes() - 1)
+            .rev()
+            .find(|i| self.sys.touches(*i))
+            .unwrap_or(0)
     }
 
     fn update_outputs(&mut self) {
@@ -409,7 +450,10 @@ impl Simulation {
         o.fill_factor = self.coil.fill_factor();
         o.wire_strain = self.coil.wire_strain();
         o.solver_steps = self.steps as f64;
-        o.solver_rejects = 0.0;
+        o.solver_rejects = self
+            .implicit
+            .as_ref()
+            .map_or(0.0, |m| (m.effort.rejects + m.effort.stalls) as f64);
         o.live_nodes = rod.nodes() as i32;
         o.penetration_max = self.sys.deepest;
         o.energy_residual = residual;
@@ -448,6 +492,13 @@ impl Simulation {
         line
     }
 
+    /// What the implicit method took so far; nothing for an explicit one.
+    pub fn effort(&self) -> integrate::Effort {
+        self.implicit
+            .as_ref()
+            .map_or_else(Default::default, |m| m.effort)
+    }
+
     /// The mechanical system, for verification and tests.
     pub fn system(&self) -> &System {
         &self.sys
@@ -457,6 +508,16 @@ impl Simulation {
     pub fn system_mut(&mut self) -> &mut System {
         &mut self.sys
     }
+}
+
+/// The production method for a scene.
+fn implicit_for(scene: &Scene) -> Implicit {
+    let solver = scene.solver;
+    // a step of a nanosecond resolves any contact: what fails there fails for another reason; a tenth
+    // of a second is longer than any motion of a wire takes
+    let mut method = Implicit::new(Scheme::Bdf2, solver.tolerance, 1e-9, 0.1);
+    method.fixed = (solver.step > 0.0).then_some(solver.step);
+    method
 }
 
 fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {

@@ -1,15 +1,15 @@
 //! The state at the start: wire clamped at mid-face, straight to the nozzle, at the set tension.
 
 use super::{Inputs, SimError};
-use crate::contact::{ContactLaw, Contacts, damping_for_restitution};
+use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution};
 use crate::core_shape::generate::{cylinder, rounded_box, segments_for_sagitta};
-use crate::core_shape::{Surface, TriMesh};
+use crate::core_shape::{Shape, Surface, TriMesh};
 use crate::feed::{Feed, FeedSpec};
 use crate::integrate::{Spindle, Support, System, turn_about_y};
 use crate::math::{Spin, V3};
 use crate::measure::{Coil, CoilSpec, polar_angle};
 use crate::rod::{Rod, Scalar, frame_along};
-use crate::scene::{Core, Scene};
+use crate::scene::{Core, Integrator, Scene};
 use std::sync::Arc;
 
 /// Facets of a generated core lie at most this far under the true surface, m.
@@ -43,6 +43,28 @@ pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
         }
     };
     Ok(Surface::new(mesh))
+}
+
+/// The core as smooth contact sees it.
+pub(crate) fn core_shape(core: &Core, surface: &Arc<Surface>) -> Shape {
+    match core {
+        Core::RoundedBox {
+            width_x,
+            height_z,
+            length_y,
+            corner_radius,
+        } => Shape::RoundedBox {
+            half_x: 0.5 * width_x,
+            half_z: 0.5 * height_z,
+            half_y: 0.5 * length_y,
+            corner_radius: *corner_radius,
+        },
+        Core::Cylinder { radius, length_y } => Shape::Cylinder {
+            radius: *radius,
+            half_y: 0.5 * length_y,
+        },
+        Core::Mesh { .. } => Shape::Mesh(surface.clone()),
+    }
 }
 
 /// Half width of the core on +x at mid-length: where the wire is clamped.
@@ -149,6 +171,11 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
         section.diameter,
         sys.rod.nodes(),
     ));
+    if scene.solver.integrator == Integrator::Implicit {
+        let shape = core_shape(&scene.core, &surface);
+        sys.line = Some(LineContact::new(shape, law, radius, sys.rod.nodes()));
+        sys.twist = false;
+    }
     let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,

@@ -130,6 +130,7 @@ impl Simulation {
             integrator: match self.scene.solver.integrator {
                 Integrator::Rk4 => "rk4",
                 Integrator::Verlet => "verlet",
+                Integrator::Implicit => "implicit",
             },
             spacing_m: [
                 self.scene.solver.spacing_near,

@@ -73,11 +73,12 @@ impl VerifyArgs {
         }
         let integrator = match (settings.solver.integrator.as_str(), preset) {
             ("rk4", _) | ("auto", Preset::Paper) => Integrator::Rk4,
-            ("verlet" | "auto", _) => Integrator::Verlet,
+            ("verlet", _) => Integrator::Verlet,
+            ("implicit" | "auto", _) => Integrator::Implicit,
             (other, _) => {
                 return Err(VerifyError::Setting {
                     text: format!("solver.integrator={other}"),
-                    problem: "auto, verlet or rk4 is wanted".to_owned(),
+                    problem: "auto, implicit, verlet or rk4 is wanted".to_owned(),
                 });
             }
         };

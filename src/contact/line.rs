@@ -1,0 +1,417 @@
+//! Line contact of the implicit solver: smooth core, smooth frozen turns, friction with memory.
+//!
+//! The wire touches at two points per node, one on the quadratic B-spline of the nodes at each node
+//! and one at the middle of each edge, so that a coarse polygon neither cuts a corner nor hooks on
+//! a kink. Everything is in the core frame. The normal force has a smooth onset; friction is a
+//! bristle from an anchor, cut off at the friction coefficient times a *lagged* normal force, so
+//! that for given lags normal and tangential force derive from one potential. The lag is renewed
+//! with every iterate, so the converged step has none left.
+
+use super::law::{ContactLaw, TANGENTIAL_SHARE};
+use super::{ContactLoss, OWN_WIRE};
+use crate::core_shape::Shape;
+use crate::freeze::SplineTube;
+use crate::math::{M3, V3};
+use crate::rod::outer;
+
+/// Passages of frozen wire a point can have near it: neighbours left and right, and a layer below.
+const PASSAGES: usize = 4;
+/// A point's surroundings are looked up again after this way, in wire diameters.
+const SKIN: f64 = 0.15;
+/// Depth over which the normal force sets in, m: contact of a 15 N corner is 1 um deep.
+const ONSET: f64 = 1e-6;
+
+/// One possible touch of a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Touch {
+    /// where to look for the closest point of frozen wire
+    start: u32,
+    /// whether an anchor holds
+    held: bool,
+    /// core frame, m
+    anchor: V3,
+    /// largest friction force by the normal force of the last iterate, N
+    lag: f64,
+    /// the same by the iterate in hand, N
+    fresh: f64,
+    normal: V3,
+    depth: f64,
+}
+
+const NONE: Touch = Touch {
+    start: u32::MAX,
+    held: false,
+    anchor: V3::new(0.0, 0.0, 0.0),
+    lag: 0.0,
+    fresh: 0.0,
+    normal: V3::new(0.0, 0.0, 0.0),
+    depth: 0.0,
+};
+
+/// A contact point of the wire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Point {
+    /// place at the last accepted instant, m
+    last: V3,
+    placed: bool,
+    /// where the surroundings were looked up, and how far that holds
+    centre: V3,
+    reach: f64,
+    /// core first, then passages of frozen wire
+    touch: [Touch; 1 + PASSAGES],
+    core_near: bool,
+    passages: usize,
+}
+
+const FRESH: Point = Point {
+    last: V3::new(0.0, 0.0, 0.0),
+    placed: false,
+    centre: V3::new(0.0, 0.0, 0.0),
+    reach: -1.0,
+    touch: [NONE; 1 + PASSAGES],
+    core_near: false,
+    passages: 0,
+};
+
+/// What the touches of one point add to potential, gradient and Hessian.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Push {
+    /// potential with the friction limits of the iterate before, J
+    pub energy_lagged: f64,
+    /// potential with the limits of this one, J
+    pub energy: f64,
+    /// gradient with respect to the point, N
+    pub gradient: V3,
+    /// Hessian with respect to the point, N/m
+    pub hessian: M3,
+}
+
+/// The wire's contact points and what they can touch.
+#[derive(Clone, Debug)]
+pub struct LineContact {
+    /// the core
+    pub shape: Shape,
+    /// frozen turns
+    pub tube: SplineTube,
+    /// the law
+    pub law: ContactLaw,
+    /// depth over which the normal force sets in, m
+    pub onset: f64,
+    /// wire radius, m
+    pub radius: f64,
+    /// totals of what was lost
+    pub loss: ContactLoss,
+    /// deepest touch of any accepted instant, m
+    pub deepest: f64,
+    points: Vec<Point>,
+    found: Vec<u32>,
+}
+
+impl LineContact {
+    /// Nothing touches yet.
+    pub fn new(shape: Shape, law: ContactLaw, radius: f64, nodes: usize) -> Self {
+        Self {
+            shape,
+            tube: SplineTube::new(radius),
+            law,
+            onset: ONSET,
+            radius,
+            loss: ContactLoss::default(),
+            deepest: 0.0,
+            points: vec![FRESH; 2 * nodes],
+            found: Vec::with_capacity(64),
+        }
+    }
+
+    /// Forgets lags and surroundings so that a run can be repeated from here to the bit.
+    pub fn forget_surroundings(&mut self) {
+        for p in &mut self.points {
+            p.reach = -1.0;
+        }
+    }
+
+    /// A node was put in the middle of edge `j`: its point of contact becomes the node's.
+    pub fn split(&mut self, j: usize) {
+        // edge j's middle (2j + 1) turns into the new node's point, with new middles either side
+        self.points.insert(2 * j + 1, FRESH);
+        self.points.insert(2 * j + 3, FRESH);
+    }
+
+    /// The first `count` nodes left.
+    pub fn remove_front(&mut self, count: usize) {
+        self.points.drain(..2 * count);
+    }
+
+    /// Nodes came back at the front.
+    pub fn insert_front(&mut self, count: usize) {
+        self.points
+            .splice(0..0, std::iter::repeat_n(FRESH, 2 * count));
+    }
+
+    /// Node `i` was taken out.
+    pub fn merge(&mut self, i: usize) {
+        // its own point becomes the middle of the joined edge
+        self.points.remove(2 * i + 1);
+        self.points.remove(2 * i - 1);
+    }
+
+    /// Depth of the deepest touch of node `i` and the halves of its edges, m; 0: none.
+    pub fn depth(&self, i: usize) -> f64 {
+        let from = (2 * i).saturating_sub(1);
+        self.points[from..=2 * i + 1]
+            .iter()
+            .flat_map(|p| p.touch.iter())
+            .map(|t| t.depth)
+            .fold(0.0, f64::max)
+    }
+
+    /// Whether node `i` or the wire next to it touches anything.
+    pub fn touches(&self, i: usize) -> bool {
+        self.depth(i) > 0.0
+    }
+
+    /// Puts the present place of a point on record if it is new.
+    pub fn place(&mut self, point: usize, p: V3) {
+        let point = &mut self.points[point];
+        if !point.placed {
+            point.last = p;
+            point.placed = true;
+        }
+    }
+
+    fn look_up(&mut self, k: usize, p: V3, own: f64) {
+        let skin = SKIN * 2.0 * self.tube.radius();
+        let point = &mut self.points[k];
+        point.centre = p;
+        let core = self.shape.lower_bound(p);
+        let core = if core > skin + self.radius {
+            core
+        } else {
+            self.shape.nearness(p).distance
+        };
+        let core_room = core - self.radius;
+        point.core_near = core_room < skin;
+        if !point.core_near {
+            point.touch[0] = NONE;
+        }
+        let wire = self.radius + self.tube.radius();
+        // far away the search ball would be large: the core is inside the coil, so stay modest
+        let reach = (core_room + skin).clamp(skin, 4.0 * skin);
+        self.found.clear();
+        if self.tube.len() > 1 {
+            self.tube.gather(p, wire + reach, own, &mut self.found);
+        }
+        let mut next = [NONE; PASSAGES];
+        let mut count = 0;
+        let mut nearest = f64::INFINITY;
+        for &start in &self.found {
+            let foot = self.tube.foot(p, start);
+            nearest = nearest.min(foot.distance - wire);
+            if foot.distance - wire > skin || count == PASSAGES {
+                continue;
+            }
+            // the passage keeps its friction: it is the one whose segment is close by along the wire
+            let known = point.touch[1..=point.passages]
+                .iter()
+                .find(|t| t.start.abs_diff(foot.segment) < 6);
+            next[count] = known.copied().unwrap_or(NONE);
+            next[count].start = foot.segment;
+            count += 1;
+        }
+        point.touch[1..].copy_from_slice(&next);
+        point.passages = count;
+        let wire_room = nearest.min(reach);
+        let room = if point.core_near { 0.0 } else { core_room }.min(if count > 0 {
+            0.0
+        } else {
+            wire_room
+        });
+        point.reach = if room > 0.0 { room } else { skin };
+    }
+
+    /// Potential, gradient and Hessian of point `k` at `p` standing for `length` of wire.
+    ///
+    /// `own` is the unstretched length beyond which frozen wire counts as the point's own
+    /// neighbourhood; `step` the time since the last accepted instant. `None` where nothing touches.
+    #[inline]
+    pub fn push(&mut self, k: usize, p: V3, length: f64, own: f64, step: f64) -> Option<Push> {
+        let point = &self.points[k];
+        if point.reach < 0.0 || (p - point.centre).norm_squared() >= point.reach * point.reach {
+            self.look_up(k, p, own);
+        }
+        let point = &self.points[k];
+        if !point.core_near && point.passages == 0 {
+            return None;
+        }
+        self.touches_of(k, p, length, step)
+    }
+
+    fn touches_of(&mut self, k: usize, p: V3, length: f64, step: f64) -> Option<Push> {
+        let Self {
+            points,
+            tube,
+            shape,
+            law,
+            onset,
+            radius,
+            ..
+        } = self;
+        let point = &mut points[k];
+        let mut sum = Push::default();
+        let mut any = false;
+        for slot in 0..=point.passages {
+            let (depth, normal) = if slot == 0 {
+                if !point.core_near {
+                    continue;
+                }
+                let n = shape.nearness(p);
+                (*radius - n.distance, n.normal)
+            } else {
+                let foot = tube.foot(p, point.touch[slot].start);
+                point.touch[slot].start = foot.segment;
+                (*radius + tube.radius() - foot.distance, foot.normal)
+            };
+            let last = point.last;
+            let touch = &mut point.touch[slot];
+            touch.depth = depth;
+            touch.normal = normal;
+            if depth <= 0.0 {
+                touch.fresh = 0.0;
+                continue;
+            }
+            any = true;
+            let k_n = law.stiffness * length;
+            let (e, f, s) = onset_law(depth, *onset);
+            let force = k_n * f;
+            sum.energy += k_n * e;
+            sum.energy_lagged += k_n * e;
+            sum.gradient -= normal * force;
+            let nn = outer(&normal, &normal);
+            let mut hessian = nn * (k_n * s);
+            if law.mu_static > 0.0 {
+                let way = p - last;
+                let slide = (way - normal * way.dot(&normal)).norm() / step;
+                touch.fresh = law.mu(slide) * force;
+                let anchor = if touch.held { touch.anchor } else { last };
+                let b = p - anchor;
+                let b = b - normal * b.dot(&normal);
+                let k_t = k_n * TANGENTIAL_SHARE;
+                let size = b.norm();
+                sum.energy_lagged += huber(k_t, touch.lag, size);
+                sum.energy += huber(k_t, touch.fresh, size);
+                if k_t * size <= touch.fresh {
+                    sum.gradient += b * k_t;
+                    hessian += (M3::identity() - nn) * k_t;
+                } else {
+                    let dir = b / size;
+                    sum.gradient += dir * touch.fresh;
+                    let h = touch.fresh / size;
+                    hessian += (M3::identity() - nn - outer(&dir, &dir)) * h;
+                }
+            }
+            sum.hessian += hessian;
+        }
+        any.then_some(sum)
+    }
+
+    /// Takes the friction limits of the iterate in hand over: call once an iterate is accepted.
+    pub fn renew_lags(&mut self) {
+        for p in &mut self.points {
+            if p.core_near || p.passages > 0 {
+                for t in &mut p.touch[..=p.passages] {
+                    t.lag = t.fresh;
+                }
+            }
+        }
+    }
+
+    /// Takes `p` over as the accepted place of point `k`: anchors move on, slip is booked.
+    /// Returns the force on the point, core frame, N.
+    pub fn commit(&mut self, k: usize, p: V3, length: f64, own: f64, step: f64) -> V3 {
+        let force = self
+            .push(k, p, length, own, step)
+            .map_or(V3::zeros(), |s| -s.gradient);
+        let k_t = self.law.stiffness * length * TANGENTIAL_SHARE;
+        let point = &mut self.points[k];
+        let last = point.last;
+        for t in &mut point.touch[..=point.passages] {
+            t.lag = t.fresh;
+            if t.depth <= 0.0 {
+                t.held = false;
+                continue;
+            }
+            if std::env::var("DBG").is_ok() && t.depth > 8e-6 {
+                eprintln!(
+                    "   DEEP point {k} depth {:.2e} start {} last-moved {:.2e} dn {:.2e} l {:.2e} q {:?}",
+                    t.depth,
+                    t.start as i32,
+                    (p - last).norm(),
+                    (p - last).dot(&t.normal),
+                    length,
+                    p * 1e3
+                );
+            }
+            self.deepest = self.deepest.max(t.depth);
+            let anchor = if t.held { t.anchor } else { last };
+            let b = p - anchor;
+            let b = b - t.normal * b.dot(&t.normal);
+            let size = b.norm();
+            t.held = true;
+            t.anchor = p - b;
+            if k_t * size > t.fresh {
+                let kept = t.fresh / k_t;
+                t.anchor = p - b * (kept / size);
+                self.loss.friction += t.fresh * (size - kept);
+            }
+        }
+        point.last = p;
+        force
+    }
+
+    /// Energy stored in the touches of point `k` standing for `length`, J.
+    pub fn stored(&self, k: usize, length: f64) -> f64 {
+        let k_n = self.law.stiffness * length;
+        let point = &self.points[k];
+        point.touch[..=point.passages]
+            .iter()
+            .filter(|t| t.depth > 0.0 && t.held)
+            .map(|t| {
+                let b = point.last - t.anchor;
+                let b = b - t.normal * b.dot(&t.normal);
+                k_n * onset_law(t.depth, self.onset).0
+                    + 0.5 * k_n * TANGENTIAL_SHARE * b.norm_squared()
+            })
+            .sum()
+    }
+}
+
+/// Wire this far back along itself is the point's own neighbourhood.
+pub fn own_wire(arc: f64, diameter: f64) -> f64 {
+    arc - OWN_WIRE * diameter
+}
+
+/// Energy, force and stiffness over contact stiffness at a depth: quadratic up to the onset depth,
+/// then linear.
+#[inline]
+fn onset_law(depth: f64, onset: f64) -> (f64, f64, f64) {
+    if depth < onset {
+        let s = depth / onset;
+        (s * depth * depth / 6.0, 0.5 * s * depth, s)
+    } else {
+        (
+            0.5 * depth * depth - 0.5 * depth * onset + onset * onset / 6.0,
+            depth - 0.5 * onset,
+            1.0,
+        )
+    }
+}
+
+/// Potential of a bristle of stiffness `k` that gives way at `limit`.
+#[inline]
+fn huber(k: f64, limit: f64, size: f64) -> f64 {
+    if k * size <= limit {
+        0.5 * k * size * size
+    } else {
+        limit * (size - 0.5 * limit / k)
+    }
+}

@@ -1,0 +1,223 @@
+//! Taking a converged step over as the new state, and the books of it.
+
+use super::Implicit;
+use super::model::spline_point;
+use super::scheme::{Scheme, Step};
+use super::tensioner::{NozzleEdge, advance};
+use crate::contact::own_wire;
+use crate::integrate::{Spindle, Support, System};
+use crate::math::{Spin, V3};
+
+impl Implicit {
+    pub(super) fn commit(
+        &mut self,
+        sys: &mut System,
+        step: &Step,
+        spindle: Spindle,
+        support: &[Support; 2],
+        nozzle: Option<NozzleEdge>,
+    ) {
+        let w = &mut self.work;
+        let h = step.h;
+        w.force.clone_from(&sys.load.force);
+        let spin = Spin::new(spindle.angle);
+        let nodes = sys.rod.nodes();
+        let (x0, v0) = (&mut w.start, &mut w.guess);
+        x0.clone_from(&sys.rod.x);
+        v0.clone_from(&sys.rod.v);
+        let kinetic = sys.kinetic();
+        let before = (
+            sys.spindle,
+            sys.torque_on_core,
+            sys.load.tension.last().copied(),
+        );
+        let (fed, grown) = self::feed(sys, step, nozzle, &w.q);
+        for i in 0..nodes {
+            let x = spin.to_lab(w.q[i]);
+            match self.scheme {
+                Scheme::Bdf2 => {
+                    sys.rod.x[i] = x;
+                    sys.rod.v[i] = (x - w.star[0][i]) / step.gamma;
+                }
+                Scheme::Midpoint => {
+                    sys.rod.x[i] = x * 2.0 - w.start[i];
+                    sys.rod.v[i] = (x - w.start[i]) * (4.0 / h) - w.guess[i];
+                }
+            }
+        }
+        if self.scheme == Scheme::Midpoint {
+            sys.spindle = sys.spindle.after(h);
+            sys.carry_supports(h);
+        } else {
+            sys.spindle = spindle;
+            sys.support = *support;
+        }
+        sys.time += h;
+        sys.place_supports();
+        let inflow = grown * 0.5 * sys.section.mass_per_length();
+        let feeds = sys.feed.is_some();
+        if let (Some(f), Some((_, feed))) = (fed, &mut sys.feed) {
+            *feed = f;
+            let last = sys.rod.edges() - 1;
+            sys.rod.rest[last] += grown;
+            // the node before the nozzle gains mass that moves as it does
+            sys.books.inflow += 0.5 * inflow * sys.rod.v[last].norm_squared();
+        }
+        sys.settle_forces(h, true);
+        // books: work of forces at both ends of the step
+        let turned = sys.spindle.angle - before.0.angle;
+        sys.books.spindle -= 0.5 * (sys.torque_on_core + before.1) * turned;
+        if feeds {
+            let last = sys.rod.edges() - 1;
+            let plastic = sys.rod.stretch[last].strain;
+            let now = sys.load.tension[last];
+            let tension = 0.5 * (now + before.2.unwrap_or(now));
+            let law = sys.laws.stretch;
+            sys.books.nozzle -=
+                (tension * (1.0 + plastic) + 0.5 * tension * tension / law.modulus) * grown;
+            let n = nodes - 1;
+            let force = (sys.load.force[n] + w.force[n]) * 0.5;
+            sys.books.nozzle -= force.dot(&sys.support[1].velocity) * h;
+        }
+        // what Newton's law and the forces at both ends of the step do not agree on is the method's
+        let mut work = 0.0;
+        for i in sys.free_nodes() {
+            work += 0.5 * (sys.load.force[i] + w.force[i]).dot(&(sys.rod.x[i] - w.start[i]));
+        }
+        let gained = if feeds {
+            0.5 * inflow * sys.rod.v[sys.rod.edges() - 1].norm_squared()
+        } else {
+            0.0
+        };
+        sys.books.numerical += work - (sys.kinetic() - kinetic - gained);
+        let past = &mut sys.past;
+        std::mem::swap(&mut past.x, &mut w.start);
+        std::mem::swap(&mut past.v, &mut w.guess);
+        past.q.rotate_right(1);
+        past.q[0].clear();
+        let spin = Spin::new(sys.spindle.angle);
+        past.q[0].extend(sys.rod.x.iter().map(|x| spin.to_core(*x)));
+        past.h = [h, past.h[0]];
+        past.known = (past.known + 1).min(2);
+    }
+}
+
+/// The feed after the step and how much wire came in.
+fn feed(
+    sys: &mut System,
+    step: &Step,
+    nozzle: Option<NozzleEdge>,
+    q: &[V3],
+) -> (Option<crate::feed::Feed>, f64) {
+    let (Some(nozzle), Some((spec, feed))) = (nozzle, &sys.feed) else {
+        return (None, 0.0);
+    };
+    let last = sys.rod.edges() - 1;
+    let length = (q[last + 1] - q[last]).norm();
+    let grown = nozzle.rest(length) - sys.rod.rest[last];
+    let line = nozzle.stretched(length).tension / sys.exit_grip();
+    let next = advance(spec, feed, &sys.past, step, (grown, line, sys.set_tension));
+    let past = &mut sys.past;
+    past.fed = [feed.fed, past.fed[0]];
+    (past.paid, past.paid_rate) = (feed.paid, feed.paid_rate);
+    (Some(next), grown)
+}
+
+impl System {
+    /// Makes the history of the present instant complete: at the start and after changes of the wire.
+    pub(super) fn begin_past(&mut self) {
+        let nodes = self.rod.nodes();
+        if self.past.q[0].len() != nodes || self.past.known == 0 {
+            let spin = Spin::new(self.spindle.angle);
+            self.past.known = 0;
+            self.past.q[0].clear();
+            self.past.q[0].extend(self.rod.x.iter().map(|x| spin.to_core(*x)));
+            if let Some((_, f)) = &self.feed {
+                self.past.fed = [f.fed; 2];
+                (self.past.paid, self.past.paid_rate) = (f.paid, f.paid_rate);
+            }
+            self.place_points();
+        }
+        if self.load.force.len() != nodes {
+            self.settle_forces(0.0, false);
+        }
+    }
+
+    /// Forces of the present state after it was set up or changed; nothing moves on but the frames.
+    pub fn refresh(&mut self) {
+        if self.line.is_none() {
+            return self.evaluate(Some(0.0));
+        }
+        self.internal(true);
+        self.begin_past();
+        self.place_points();
+        self.settle_forces(0.0, false);
+    }
+
+    /// Puts the present places of the contact points on record.
+    fn place_points(&mut self) {
+        let Some(line) = &mut self.line else { return };
+        let q = &self.past.q[0];
+        for j in 0..q.len() - 1 {
+            if j > 0 {
+                line.place(2 * j, spline_point(q, j));
+            }
+            line.place(2 * j + 1, (q[j] + q[j + 1]) * 0.5);
+        }
+    }
+
+    /// Forces at the present state into `load`, with contact of the line kind. `commit` moves plastic
+    /// state, frames and anchors on after a step of `h`.
+    pub(super) fn settle_forces(&mut self, h: f64, commit: bool) {
+        self.internal(commit);
+        let spin = Spin::new(self.spindle.angle);
+        let mut moment = 0.0;
+        if let Some(line) = &mut self.line {
+            let (rod, force) = (&self.rod, &mut self.load.force);
+            let diameter = self.section.diameter;
+            let mut arc = self.arc0;
+            let step = if h > 0.0 { h } else { f64::INFINITY };
+            for j in 0..rod.edges() {
+                let rest = rod.rest[j];
+                for at_node in [true, false] {
+                    if at_node && j == 0 {
+                        continue;
+                    }
+                    let (p, length, own, k) = if at_node {
+                        let p = (rod.x[j - 1] + rod.x[j + 1]) * 0.125 + rod.x[j] * 0.75;
+                        (p, 0.5 * rod.voronoi(j), arc, 2 * j)
+                    } else {
+                        let p = (rod.x[j] + rod.x[j + 1]) * 0.5;
+                        (p, 0.5 * rest, arc + 0.5 * rest, 2 * j + 1)
+                    };
+                    let own = own_wire(own, diameter);
+                    let q = spin.to_core(p);
+                    let f = if commit {
+                        line.commit(k, q, length, own, step)
+                    } else {
+                        line.push(k, q, length, own, step)
+                            .map_or(V3::zeros(), |s| -s.gradient)
+                    };
+                    if f == V3::zeros() {
+                        continue;
+                    }
+                    let f = spin.to_lab(f);
+                    moment -= p.z * f.x - p.x * f.z;
+                    if at_node {
+                        force[j - 1] += f * 0.125;
+                        force[j] += f * 0.75;
+                        force[j + 1] += f * 0.125;
+                    } else {
+                        force[j] += f * 0.5;
+                        force[j + 1] += f * 0.5;
+                    }
+                }
+                arc += rest;
+            }
+            self.deepest = self.deepest.max(line.deepest);
+            self.books.friction = line.loss.friction;
+            self.books.damping = line.loss.damping;
+        }
+        self.torque_on_core = moment + self.clamp_torque();
+    }
+}

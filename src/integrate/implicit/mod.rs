@@ -1,0 +1,388 @@
+//! The production method: implicit, second order, error-controlled.
+//!
+//! A step reads: place supports and spindle, guess, turn the plastic curvature along, minimise the
+//! incremental potential, estimate the error, commit. Everything before the commit happens in
+//! scratch arrays, so a rejected step leaves no trace.
+
+mod commit;
+mod model;
+mod newton;
+mod scheme;
+mod tensioner;
+
+pub(in crate::integrate) use model::spline_point;
+pub use scheme::{Past, Scheme};
+
+use super::{Banded, Spindle, Support, System, turn_about_y};
+use crate::math::{Quat, Spin, V3};
+use crate::rod::{Joint, align, rotate};
+use model::Model;
+use scheme::{Step, extrapolation};
+use tensioner::NozzleEdge;
+
+/// Largest growth of the step from one to the next; variable-step BDF2 is stable to 2.4.
+const GROWTH: f64 = 1.7;
+/// Share of the tolerance that a step length is chosen for.
+const AIM: f64 = 0.7;
+/// Newton's update at which a solve is done, over the tolerance.
+const CLOSE: f64 = 0.1;
+
+/// Settings and step length of the production method.
+#[derive(Clone, Debug)]
+pub struct Implicit {
+    /// estimated local error that a step may have, m (root mean square over the wire)
+    pub tolerance: f64,
+    /// bounds of the step, s
+    pub shortest: f64,
+    /// see `shortest`
+    pub longest: f64,
+    /// proposed next step, s
+    pub next: f64,
+    /// take this step and no other (convergence studies), s
+    pub fixed: Option<f64>,
+    /// which scheme
+    pub scheme: Scheme,
+    /// what it took so far
+    pub effort: Effort,
+    work: Work,
+}
+
+/// Counts since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Effort {
+    /// accepted steps
+    pub steps: u64,
+    /// steps thrown away for their error
+    pub rejects: u64,
+    /// steps thrown away because Newton's method stalled
+    pub stalls: u64,
+    /// factorisations
+    pub solves: u64,
+    /// evaluations of potential, gradient and Hessian
+    pub evaluations: u64,
+    /// halvings of a Newton step
+    pub cuts: u64,
+}
+
+/// Scratch arrays of a step, core frame.
+#[derive(Clone, Debug)]
+struct Work {
+    q: Vec<V3>,
+    start: Vec<V3>,
+    guess: Vec<V3>,
+    target: Vec<V3>,
+    /// lab-frame `x*` and `v*`
+    star: [Vec<V3>; 2],
+    mass: Vec<f64>,
+    /// plastic curvature per joint as a vector, 1/m
+    set: Vec<V3>,
+    /// stretch of each edge at the last evaluation and at the accepted iterate
+    axial: Vec<Axial>,
+    base: Vec<Axial>,
+    /// stretch of each edge as the update promises it
+    expected: Vec<Axial>,
+    gradient: Vec<V3>,
+    update: Vec<f64>,
+    matrix: Banded<3>,
+    force: Vec<V3>,
+    evaluations: u64,
+    solves: u64,
+    cuts: u64,
+}
+
+/// An edge's stretch as Newton's method sees it.
+///
+/// A lateral move of a tenth of an edge stretches it by half a percent in the second order, which is
+/// 250 N in this wire. Hessian and line search therefore take the tension that follows the
+/// update linearly (mixed integration points: Magisano, Leonetti, Garcea 2017); the residual is the true one.
+#[derive(Clone, Copy, Debug, Default)]
+struct Axial {
+    along: V3,
+    length: f64,
+    tension: f64,
+    stiffness: f64,
+    energy: f64,
+}
+
+/// The method can't get past this instant.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "no step of {step:.2e} s or more goes on from here: {cause} at node {node} (update {update:.2e} m)"
+)]
+pub struct Stopped {
+    /// smallest step tried, s
+    pub step: f64,
+    /// node that would not settle
+    pub node: usize,
+    /// its last update, m
+    pub update: f64,
+    /// what is likely to blame
+    pub cause: &'static str,
+}
+
+impl Implicit {
+    /// `tolerance` in m; steps between `shortest` and `longest`, s.
+    pub fn new(scheme: Scheme, tolerance: f64, shortest: f64, longest: f64) -> Self {
+        Self {
+            tolerance,
+            shortest,
+            longest,
+            next: (1e-5f64).clamp(shortest, longest),
+            fixed: None,
+            scheme,
+            effort: Effort::default(),
+            work: Work {
+                q: Vec::new(),
+                start: Vec::new(),
+                guess: Vec::new(),
+                target: Vec::new(),
+                star: [Vec::new(), Vec::new()],
+                mass: Vec::new(),
+                set: Vec::new(),
+                axial: Vec::new(),
+                base: Vec::new(),
+                expected: Vec::new(),
+                gradient: Vec::new(),
+                update: Vec::new(),
+                matrix: Banded::new(),
+                force: Vec::new(),
+                evaluations: 0,
+                solves: 0,
+                cuts: 0,
+            },
+        }
+    }
+
+    /// Takes one step of at most `most` seconds; returns its length.
+    pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, Stopped> {
+        sys.begin_past();
+        let mut h = self.fixed.unwrap_or(self.next).min(self.longest);
+        if h >= most {
+            h = most;
+        } else if 2.0 * h > most && self.fixed.is_none() {
+            // two equal steps to the end instead of a long and a very short one
+            h = 0.5 * most;
+        }
+        loop {
+            let step = Step::new(self.scheme, &sys.past, h);
+            let spindle = sys.spindle.after(step.share * h);
+            let support = moved(&sys.support, step.share * h);
+            let nozzle = self.prepare(sys, &step, &spindle, &support);
+            let back = Spin::new(spindle.angle);
+            let mut model = Model {
+                rod: &sys.rod,
+                laws: &sys.laws,
+                line: sys.line.as_mut(),
+                loads: &sys.loads,
+                tension: &sys.load.tension,
+                clamp: clamp_directions(&support, &spindle),
+                nozzle,
+                gamma: step.gamma,
+                elapsed: step.share * h,
+                diameter: sys.section.diameter,
+                arc0: sys.arc0,
+                back,
+                held: [support[0].hold, support[1].hold],
+            };
+            let solved = newton::solve(&mut model, &mut self.work, CLOSE * self.tolerance);
+            self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
+            self.effort.solves += std::mem::take(&mut self.work.solves);
+            self.effort.cuts += std::mem::take(&mut self.work.cuts);
+            let retry = match solved {
+                Ok(_) => {
+                    let error = step.error * self.difference();
+                    if std::env::var("DBG").is_ok() {
+                        eprintln!(
+                            "t {:.6} h {:.3e} err {:.3e} known {} newton {:?} nodes {} T {:.2}",
+                            sys.time,
+                            h,
+                            error,
+                            sys.past.known,
+                            solved,
+                            sys.rod.nodes(),
+                            sys.load.tension.last().unwrap()
+                        );
+                    }
+                    let factor = (AIM * self.tolerance / error.max(1e-30)).cbrt();
+                    if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
+                        self.commit(sys, &step, spindle, &support, nozzle);
+                        self.effort.steps += 1;
+                        // a step cut short by the end of the interval says nothing against a longer one
+                        let grown =
+                            (h * factor.clamp(0.3, GROWTH)).clamp(self.shortest, self.longest);
+                        self.next = if h < self.next && factor > 1.0 {
+                            grown.max(self.next)
+                        } else {
+                            grown
+                        };
+                        return Ok(h);
+                    }
+                    self.effort.rejects += 1;
+                    h * factor.clamp(0.2, 0.8)
+                }
+                Err(stuck) => {
+                    self.effort.stalls += 1;
+                    if h <= self.shortest || self.fixed.is_some() {
+                        return Err(Stopped {
+                            step: h,
+                            node: stuck.node,
+                            update: stuck.update,
+                            cause: if stuck.update.is_finite() {
+                                "Newton's method does not settle"
+                            } else {
+                                "a value is not finite"
+                            },
+                        });
+                    }
+                    0.4 * h
+                }
+            };
+            h = retry.max(self.shortest);
+            self.next = h;
+        }
+    }
+
+    /// Fills guess, inertial target, masses and plastic curvature for a step.
+    fn prepare(
+        &mut self,
+        sys: &System,
+        step: &Step,
+        spindle: &Spindle,
+        support: &[Support; 2],
+    ) -> Option<NozzleEdge> {
+        let w = &mut self.work;
+        let (rod, past) = (&sys.rod, &sys.past);
+        let nodes = rod.nodes();
+        let spin = Spin::new(spindle.angle);
+        let e = extrapolation(step.share * step.h, past);
+        w.guess.clear();
+        w.target.clear();
+        w.mass.clear();
+        for s in &mut w.star {
+            s.clear();
+        }
+        for i in 0..nodes {
+            let (x, v) = (rod.x[i], rod.v[i]);
+            let (xs, vs) = if step.weight[1] == 0.0 {
+                (x, v)
+            } else {
+                (step.blend(x, past.x[i]), step.blend(v, past.v[i]))
+            };
+            w.star[0].push(xs);
+            w.star[1].push(vs);
+            w.target.push(spin.to_core(xs + vs * step.gamma));
+            w.guess.push(match past.known {
+                0 => spin.to_core(x + v * (step.share * step.h)),
+                1 => past.q[0][i] * e[0] + past.q[1][i] * e[1],
+                _ => past.q[0][i] * e[0] + past.q[1][i] * e[1] + past.q[2][i] * e[2],
+            });
+            w.mass.push(rod.mass(&sys.section, i));
+        }
+        for (end, i) in [(0, 0), (1, nodes - 1)] {
+            let s = &support[end];
+            if s.turning && s.holds_all() {
+                w.guess[i] = s.point;
+            } else {
+                let mut lab = spin.to_lab(w.guess[i]);
+                for a in 0..3 {
+                    if s.hold[a] {
+                        lab[a] = s.point[a];
+                    }
+                }
+                w.guess[i] = spin.to_core(lab);
+            }
+        }
+        w.q.clone_from(&w.guess);
+        self.turn_plastic_curvature(sys, spindle, support);
+        let (spec, feed) = sys.feed.as_ref()?;
+        let last = rod.edges() - 1;
+        Some(NozzleEdge::new(
+            spec,
+            feed,
+            past,
+            step,
+            (
+                rod.rest[last],
+                sys.set_tension,
+                sys.exit_grip(),
+                sys.laws.stretch.modulus,
+                rod.stretch[last].strain,
+            ),
+        ))
+    }
+
+    /// Plastic curvature of each joint as a vector in the core frame, turned along with the guess.
+    fn turn_plastic_curvature(&mut self, sys: &System, spindle: &Spindle, support: &[Support; 2]) {
+        let w = &mut self.work;
+        let rod = &sys.rod;
+        let back = turn_about_y(-spindle.angle);
+        w.set.clear();
+        w.set.resize(rod.nodes(), V3::zeros());
+        for i in 0..rod.nodes() {
+            let k = rod.bend[i].curvature;
+            if k == [0.0; 2] {
+                continue;
+            }
+            let frame = |j: usize| {
+                let d = w.guess[j + 1] - w.guess[j];
+                align(&(back * rod.frame[j]), &(d / d.norm()), 0.0)
+            };
+            let clamp = |s: &Support| s.frame.map(|f| if s.turning { f } else { back * f });
+            let before = if i > 0 {
+                Some(frame(i - 1))
+            } else {
+                clamp(&support[0])
+            };
+            let after = if i < rod.edges() {
+                Some(frame(i))
+            } else {
+                clamp(&support[1])
+            };
+            let (Some(p), Some(n)) = (before, after) else {
+                continue;
+            };
+            w.set[i] = mid_frame_vector(&p, &n, k);
+        }
+    }
+
+    /// Root mean square over the wire of what Newton's method moved the guess by, m.
+    fn difference(&self) -> f64 {
+        let w = &self.work;
+        let (mut sum, mut mass) = (0.0, 0.0);
+        for ((q, g), m) in w.q.iter().zip(&w.guess).zip(&w.mass) {
+            sum += m * (q - g).norm_squared();
+            mass += m;
+        }
+        (sum / mass).sqrt()
+    }
+}
+
+/// A vector with components `k` in the frame half-way between the frames of two edges.
+fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
+    let joint = Joint::between(p, n);
+    let half = crate::rod::relative([0.5 * joint.bend[0], 0.5 * joint.bend[1]], 0.0);
+    let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
+    let mid = p * Quat::new(c, 0.0, 0.0, s) * half;
+    rotate(&mid, &V3::new(k[0], k[1], 0.0))
+}
+
+/// The supports `dt` later.
+fn moved(support: &[Support; 2], dt: f64) -> [Support; 2] {
+    let mut s = *support;
+    for s in &mut s {
+        s.point += s.velocity * dt;
+    }
+    s
+}
+
+/// Directions of the clamped ends in the core frame.
+fn clamp_directions(support: &[Support; 2], spindle: &Spindle) -> [Option<V3>; 2] {
+    let spin = Spin::new(spindle.angle);
+    let of = |s: &Support| {
+        s.frame.map(|f| {
+            let t = rotate(&f, &V3::z());
+            if s.turning { t } else { spin.to_core(t) }
+        })
+    };
+    [of(&support[0]), of(&support[1])]
+}

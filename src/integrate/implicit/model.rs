@@ -1,0 +1,252 @@
+//! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
+
+use super::tensioner::NozzleEdge;
+use super::{Axial, Work};
+use crate::contact::{LineContact, own_wire};
+use crate::integrate::Loads;
+use crate::math::{M3, V3};
+use crate::rod::{Bent, Laws, Rod, bent, stretched};
+
+/// What an evaluation needs besides the iterate.
+pub(super) struct Model<'a> {
+    pub(super) rod: &'a Rod,
+    pub(super) laws: &'a Laws,
+    pub(super) line: Option<&'a mut LineContact>,
+    pub(super) loads: &'a Loads,
+    /// tension of each edge at the last accepted instant, N
+    pub(super) tension: &'a [f64],
+    /// directions of the clamps in the core frame
+    pub(super) clamp: [Option<V3>; 2],
+    pub(super) nozzle: Option<NozzleEdge>,
+    /// time over which forces act, and since the last accepted instant, s
+    pub(super) gamma: f64,
+    pub(super) elapsed: f64,
+    pub(super) diameter: f64,
+    pub(super) arc0: f64,
+    /// gravity and dead forces turned into the core frame
+    pub(super) back: crate::math::Spin,
+    /// nodes and coordinates that do not move
+    pub(super) held: [[bool; 3]; 2],
+}
+
+/// Value of the potential, J.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Value {
+    /// as the line search sees it: friction limits of the iterate before, tensions that follow the
+    /// update linearly
+    pub(super) merit: f64,
+    /// as it is
+    pub(super) now: f64,
+}
+
+const NO_JOINT: Bent = Bent {
+    energy: 0.0,
+    before: V3::new(0.0, 0.0, 0.0),
+    after: V3::new(0.0, 0.0, 0.0),
+    hessian: [M3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0); 3],
+};
+
+impl Model<'_> {
+    /// Evaluates at `work.q` into `work.gradient` and `work.matrix`.
+    pub(super) fn evaluate(&mut self, work: &mut Work) -> Value {
+        work.evaluations += 1;
+        let nodes = work.q.len();
+        work.gradient.clear();
+        work.gradient.resize(nodes, V3::zeros());
+        work.matrix.reset(nodes);
+        let mut energy = self.inertia_and_loads(work);
+        let (bending, stretch) = self.rod_forces(work);
+        energy += bending;
+        let mut value = Value {
+            merit: energy + stretch.merit,
+            now: energy + stretch.now,
+        };
+        self.contact(work, &mut value);
+        for (end, i) in [(0, 0), (1, nodes - 1)] {
+            for a in 0..3 {
+                if self.held[end][a] {
+                    work.matrix.pin(i, a);
+                    work.gradient[i][a] = 0.0;
+                }
+            }
+        }
+        value
+    }
+
+    fn inertia_and_loads(&self, work: &mut Work) -> f64 {
+        let weight = 1.0 / (self.gamma * self.gamma);
+        let gravity = self.back.to_core(self.loads.gravity);
+        let mut energy = 0.0;
+        for i in 0..work.q.len() {
+            let m = work.mass[i];
+            let d = work.q[i] - work.target[i];
+            let k = m * weight;
+            energy += 0.5 * k * d.norm_squared() - m * gravity.dot(&work.q[i]);
+            work.gradient[i] += d * k - gravity * m;
+            for a in 0..3 {
+                work.matrix.add_to_entry(i, a, k);
+            }
+        }
+        for (i, f) in &self.loads.nodal {
+            let f = self.back.to_core(*f);
+            energy -= f.dot(&work.q[*i]);
+            work.gradient[*i] -= f;
+        }
+        energy
+    }
+
+    /// Energy of bending, and of stretch.
+    fn rod_forces(&self, work: &mut Work) -> (f64, Value) {
+        let edges = work.q.len() - 1;
+        let mut energy = 0.0;
+        let mut axial = Value::default();
+        // edge in hand, the joint at its start, the cross block there
+        let mut before = (self.clamp[0], 0.0);
+        let mut at_start = NO_JOINT;
+        let mut stretch = M3::zeros();
+        let mut pull = V3::zeros();
+        for j in 0..=edges {
+            let (mut after, mut length) = ((self.clamp[1], 0.0), 0.0);
+            if j < edges {
+                let d = work.q[j + 1] - work.q[j];
+                length = d.norm();
+                let il = 1.0 / length;
+                after = (Some(d * il), il);
+            }
+            let mut joint = NO_JOINT;
+            if let (Some(p), Some(n)) = (&before.0, &after.0) {
+                joint = bent(
+                    &self.laws.bend,
+                    &work.set[j],
+                    self.rod.bend[j].rise,
+                    self.rod.voronoi(j),
+                    [p, n],
+                    [before.1, after.1],
+                );
+                energy += joint.energy;
+            }
+            if j > 0 {
+                // edge j - 1 is complete
+                let e = j - 1;
+                let g = pull + at_start.after + joint.before;
+                work.gradient[j] += g;
+                work.gradient[e] -= g;
+                let b = &at_start.hessian[1];
+                let own = stretch + at_start.hessian[2] + joint.hessian[0];
+                add_symmetric(&mut work.matrix, e, &own);
+                add_symmetric(&mut work.matrix, j, &own);
+                if e > 0 {
+                    add_symmetric(&mut work.matrix, e, &-(b + b.transpose()));
+                }
+                add(&mut work.matrix, e, 1, &(b + joint.hessian[1] - own));
+                if j < edges {
+                    add(&mut work.matrix, e, 2, &-joint.hessian[1]);
+                }
+            }
+            if j < edges {
+                let at_nozzle = self.nozzle.filter(|_| j + 1 == edges);
+                let s = match at_nozzle {
+                    Some(nozzle) => nozzle.stretched(length),
+                    None => stretched(
+                        &self.laws.stretch,
+                        &self.rod.stretch[j],
+                        self.rod.rest[j],
+                        length,
+                        // a spike of tension that the update is about to straighten out is no reason to yield
+                        work.expected[j].length,
+                    ),
+                };
+                let t = after.0.unwrap_or_default();
+                pull = t * s.tension;
+                let mut expected = work.expected[j];
+                if at_nozzle.is_some() {
+                    // it gives way and can go slack: nothing to straighten out there
+                    (expected.energy, expected.tension) = (s.energy, s.tension);
+                    expected.length = length;
+                }
+                axial.now += s.energy;
+                axial.merit += expected.energy + expected.tension * (length - expected.length);
+                // a pressed edge would turn over: its geometric part is left out
+                let across = expected.tension.max(0.0) * after.1;
+                work.axial[j] = Axial {
+                    along: t,
+                    length,
+                    tension: s.tension,
+                    stiffness: s.stiffness,
+                    energy: s.energy,
+                };
+                stretch = crate::rod::outer(&t, &t) * (s.stiffness - across)
+                    + M3::from_diagonal_element(across);
+            }
+            before = after;
+            at_start = joint;
+        }
+        (energy, axial)
+    }
+
+    fn contact(&mut self, work: &mut Work, value: &mut Value) {
+        let Some(line) = self.line.as_deref_mut() else {
+            return;
+        };
+        let edges = work.q.len() - 1;
+        let mut arc = self.arc0;
+        for j in 0..edges {
+            let rest = self.rod.rest[j];
+            if j > 0 {
+                let p = spline_point(&work.q, j);
+                let own = own_wire(arc, self.diameter);
+                let length = 0.5 * self.rod.voronoi(j);
+                if let Some(push) = line.push(2 * j, p, length, own, self.elapsed) {
+                    value.merit += push.energy_lagged;
+                    value.now += push.energy;
+                    spread(
+                        work,
+                        j - 1,
+                        &[0.125, 0.75, 0.125],
+                        &push.gradient,
+                        &push.hessian,
+                    );
+                }
+            }
+            let p = (work.q[j] + work.q[j + 1]) * 0.5;
+            let own = own_wire(arc + 0.5 * rest, self.diameter);
+            if let Some(push) = line.push(2 * j + 1, p, 0.5 * rest, own, self.elapsed) {
+                value.merit += push.energy_lagged;
+                value.now += push.energy;
+                spread(work, j, &[0.5, 0.5], &push.gradient, &push.hessian);
+            }
+            arc += rest;
+        }
+    }
+}
+
+/// Point of the wire's spline at node `i` (not an end), m.
+pub(in crate::integrate) fn spline_point(q: &[V3], i: usize) -> V3 {
+    (q[i - 1] + q[i + 1]) * 0.125 + q[i] * 0.75
+}
+
+fn spread(work: &mut Work, first: usize, weight: &[f64], gradient: &V3, hessian: &M3) {
+    for (a, wa) in weight.iter().enumerate() {
+        work.gradient[first + a] += gradient * *wa;
+        add_symmetric(&mut work.matrix, first + a, &(hessian * (wa * wa)));
+        for (b, wb) in weight.iter().enumerate().skip(a + 1) {
+            add(&mut work.matrix, first + a, b - a, &(hessian * (wa * wb)));
+        }
+    }
+}
+
+fn rows(m: &M3) -> [[f64; 3]; 3] {
+    [
+        [m[(0, 0)], m[(0, 1)], m[(0, 2)]],
+        [m[(1, 0)], m[(1, 1)], m[(1, 2)]],
+        [m[(2, 0)], m[(2, 1)], m[(2, 2)]],
+    ]
+}
+
+fn add_symmetric(matrix: &mut crate::integrate::Banded<3>, i: usize, m: &M3) {
+    matrix.add_diagonal(i, &rows(m));
+}
+
+fn add(matrix: &mut crate::integrate::Banded<3>, i: usize, k: usize, m: &M3) {
+    matrix.add(i, k, &rows(m));
+}

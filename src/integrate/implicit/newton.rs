@@ -1,0 +1,176 @@
+//! Newton's method on the incremental potential, with line search.
+
+use super::Work;
+use super::model::Model;
+use crate::math::V3;
+
+/// Newton steps before a time step counts as failed.
+const MOST_STEPS: usize = 12;
+/// Halvings of one Newton step.
+const MOST_CUTS: usize = 12;
+/// Largest move of a node in one Newton step, m.
+const LONGEST_MOVE: f64 = 0.5e-3;
+/// Rounding noise of the potential as a share of its size.
+const NOISE: f64 = 1e-13;
+
+/// Why a solve gave up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Stuck {
+    /// node with the largest update
+    pub(super) node: usize,
+    /// that update, m
+    pub(super) update: f64,
+    /// Newton steps taken
+    pub(super) steps: usize,
+}
+
+/// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
+pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<usize, Stuck> {
+    expect_nothing(model, work);
+    let mut value = model.evaluate(work).now;
+    if let Some(line) = model.line.as_deref_mut() {
+        line.renew_lags();
+    }
+    // inertia bounds the update from above: a guess that is good enough costs no solve
+    let weight = model.gamma * model.gamma;
+    let bound = work
+        .gradient
+        .iter()
+        .zip(&work.mass)
+        .map(|(g, m)| g.amax() * weight / m)
+        .fold(0.0, f64::max);
+    if bound < close {
+        return Ok(0);
+    }
+    let mut last_update = f64::INFINITY;
+    for step in 1..=MOST_STEPS {
+        work.solves += 1;
+        if let Err(loose) = work.matrix.factor() {
+            return Err(Stuck {
+                node: loose.node,
+                update: f64::NAN,
+                steps: step,
+            });
+        }
+        work.update.clear();
+        for g in &work.gradient {
+            work.update.extend_from_slice(&[-g.x, -g.y, -g.z]);
+        }
+        work.matrix.solve(&mut work.update);
+        let (mut update, mut node) = (0.0, 0);
+        for (k, u) in work.update.iter().enumerate() {
+            if !(u.abs() <= update) {
+                update = u.abs();
+                node = k / 3;
+            }
+        }
+        if !update.is_finite() {
+            return Err(Stuck {
+                node,
+                update,
+                steps: step,
+            });
+        }
+        if std::env::var("DBG2").is_ok() {
+            eprintln!(
+                "   it {step} update {update:.3e} node {node} value {value:.9e} q {:?}",
+                work.q[node] * 1e3
+            );
+        }
+        if std::env::var("DBG2").is_ok() {
+            let n = work.q.len();
+            for k in [n - 4, n - 3, n - 2] {
+                eprintln!(
+                    "       node {k} q {:?} guess-target {:?} upd {:.2e} {:.2e} {:.2e} T {:.2} exp {:.2} rest {:.4e}",
+                    (work.q[k] * 1e3).as_slice(),
+                    ((work.q[k] - work.target[k]) * 1e3).as_slice(),
+                    work.update[3 * k],
+                    work.update[3 * k + 1],
+                    work.update[3 * k + 2],
+                    work.axial[k].tension,
+                    work.expected[k].tension,
+                    model.rod.rest[k]
+                );
+            }
+        }
+        let mut share = (LONGEST_MOVE / update).min(1.0);
+        work.start.clone_from(&work.q);
+        work.base.clone_from(&work.axial);
+        // near the end each step shrinks the update by the same factor or better
+        let next = if last_update.is_finite() {
+            update * (update / last_update).min(1.0)
+        } else {
+            update
+        };
+        if share == 1.0 && (update < close || next < 0.5 * close) {
+            take(work, 1.0);
+            return Ok(step);
+        }
+        let mut cuts = 0;
+        loop {
+            take(work, share);
+            expect_tension(work, share);
+            let trial = model.evaluate(work);
+            if trial.merit <= value + NOISE * value.abs() || share * update < close {
+                value = trial.now;
+                if let Some(line) = model.line.as_deref_mut() {
+                    line.renew_lags();
+                }
+                break;
+            }
+            if std::env::var("DBG2").is_ok() {
+                eprintln!("      cut share {share} trial {:.9e} ", trial.merit);
+            }
+            cuts += 1;
+            work.cuts += 1;
+            if cuts > MOST_CUTS {
+                return Err(Stuck {
+                    node,
+                    update,
+                    steps: step,
+                });
+            }
+            share *= 0.5;
+        }
+        last_update = if share == 1.0 { update } else { f64::INFINITY };
+    }
+    Err(Stuck {
+        node: 0,
+        update: last_update,
+        steps: MOST_STEPS,
+    })
+}
+
+/// At the start tensions are expected to stay what they were at the last accepted instant.
+fn expect_nothing(model: &Model, work: &mut Work) {
+    work.expected.clear();
+    for j in 0..model.rod.edges() {
+        let tension = model.tension.get(j).copied().unwrap_or(0.0);
+        let strain = model.rod.stretch[j].strain + tension / model.laws.stretch.modulus;
+        work.expected.push(super::Axial {
+            tension,
+            length: model.rod.rest[j] * (1.0 + strain),
+            ..Default::default()
+        });
+    }
+    work.axial.clone_from(&work.expected);
+}
+
+/// What the update promises for the stretch of each edge.
+fn expect_tension(work: &mut Work, share: f64) {
+    for (j, (e, a)) in work.expected.iter_mut().zip(&work.base).enumerate() {
+        let u = &work.update[3 * j..3 * j + 6];
+        let change = V3::new(u[3] - u[0], u[4] - u[1], u[5] - u[2]) * share;
+        let longer = a.along.dot(&change);
+        e.length = a.length + longer;
+        e.tension = a.tension + a.stiffness * longer;
+        e.energy = a.energy + longer * (a.tension + 0.5 * a.stiffness * longer);
+    }
+}
+
+fn take(work: &mut Work, share: f64) {
+    for (i, q) in work.q.iter_mut().enumerate() {
+        let u = &work.update[3 * i..3 * i + 3];
+        *q = work.start[i] + V3::new(u[0], u[1], u[2]) * share;
+    }
+}

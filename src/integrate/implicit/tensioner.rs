@@ -1,0 +1,224 @@
+//! The edge at the nozzle together with line and tensioner, as one spring.
+//!
+//! How much wire passes the nozzle in a step follows from equal forces in the edge and in the
+//! line. Both schemes make the line's tension a straight line over the wire passed, so the length of
+//! the edge is the root of a quadratic and its tension has a closed potential: the feed costs no
+//! unknown.
+
+use super::scheme::{Past, Step};
+use crate::feed::{Feed, FeedSpec};
+use crate::rod::Stretched;
+
+/// The edge at the nozzle during one solve.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct NozzleEdge {
+    /// tension at the nozzle is `a + b * rest`, N and N/m
+    a: f64,
+    b: f64,
+    /// elastic modulus, N, and `1 + plastic stretch`
+    ea: f64,
+    set: f64,
+    /// rest length at which the line goes slack, m
+    slack: f64,
+}
+
+impl NozzleEdge {
+    /// `rest` is the edge's unstretched length now, `pull` the tensioner's force, `grip` the ratio of
+    /// tension after to before the exit, `ea` the wire's modulus, `plastic` its plastic stretch.
+    pub(super) fn new(
+        spec: &FeedSpec,
+        feed: &Feed,
+        past: &Past,
+        step: &Step,
+        (rest, pull, grip, ea, plastic): (f64, f64, f64, f64, f64),
+    ) -> Self {
+        let (t0, slope) = line_over_fed(spec, feed, past, step, pull);
+        // tension = t0 + slope * fed, fed = feed.fed + rest' - rest
+        let a = grip * (t0 + slope * (feed.fed - rest));
+        let b = grip * slope;
+        Self {
+            a,
+            b,
+            ea,
+            set: 1.0 + plastic,
+            slack: if b > 0.0 { -a / b } else { f64::NEG_INFINITY },
+        }
+    }
+
+    /// Unstretched length of the edge when it is `length` long.
+    pub(super) fn rest(&self, length: f64) -> f64 {
+        let c = self.ea * self.set + self.a;
+        let y = if self.b > 0.0 {
+            // b y^2 + c y = EA length, the positive root in the form without cancellation
+            let d = (c * c + 4.0 * self.b * self.ea * length).sqrt();
+            if c > 0.0 {
+                2.0 * self.ea * length / (c + d)
+            } else {
+                (d - c) / (2.0 * self.b)
+            }
+        } else {
+            self.ea * length / c
+        };
+        if y <= self.slack || self.a + self.b * y < 0.0 {
+            // the line is slack: the edge is as long as it likes
+            length / self.set
+        } else {
+            y
+        }
+    }
+
+    /// Tension, stiffness and potential at a length.
+    pub(super) fn stretched(&self, length: f64) -> Stretched {
+        let y = self.rest(length);
+        let tension = self.a + self.b * y;
+        if tension <= 0.0 {
+            return Stretched::default();
+        }
+        let c = self.ea * self.set + self.a;
+        let (a, b) = (self.a, self.b);
+        let slope = self.ea / (2.0 * b * y + c);
+        // integral of the tension over the length, with d length = (2 b y + c) / EA dy
+        let primitive = |y: f64| {
+            (a * c * y + (2.0 * a * b + b * c) * y * y * 0.5 + 2.0 * b * b * y * y * y / 3.0)
+                / self.ea
+        };
+        // from where the line begins to pull, or from nothing where it always does: the constant
+        // does not matter, but staying near keeps digits
+        let from = if self.slack.is_finite() && self.slack > 0.0 {
+            self.slack
+        } else {
+            0.0
+        };
+        Stretched {
+            tension,
+            stiffness: if b > 0.0 { b * slope } else { 0.0 },
+            energy: primitive(y) - primitive(from),
+        }
+    }
+}
+
+/// Line tension at zero wire passed and its slope: `T = t0 + slope * fed` at the end of the step.
+fn line_over_fed(spec: &FeedSpec, feed: &Feed, past: &Past, step: &Step, pull: f64) -> (f64, f64) {
+    if spec.mass == 0.0 {
+        return (pull, 0.0);
+    }
+    let g = step.gamma;
+    let fed = step.blend(feed.fed, past.fed[0]);
+    let rate = step.blend(feed.paid_rate, past.paid_rate);
+    if !spec.line_stiffness.is_finite() {
+        // the mass sits at the nozzle: u = (fed - fed*) / g, m (u - u*) / g = T - pull
+        let slope = spec.mass / (g * g);
+        return (pull - slope * (fed + g * rate), slope);
+    }
+    let paid = step.blend(feed.paid, past.paid);
+    let (k, c) = (spec.line_stiffness, spec.line_damping);
+    // T = k (fed - s) + c (fed' - u) with s = s* + g u, u = u* + g (T - pull) / m
+    let brake = k * g + c;
+    let soft = 1.0 + brake * g / spec.mass;
+    let slope = (k + c / g) / soft;
+    let t0 = (-k * paid - c * fed / g - brake * (rate - g * pull / spec.mass)) / soft;
+    (t0, slope)
+}
+
+/// The feed after a step that let the edge grow by `grown` under the line tension `line`.
+pub(super) fn advance(
+    spec: &FeedSpec,
+    feed: &Feed,
+    past: &Past,
+    step: &Step,
+    (grown, line, pull): (f64, f64, f64),
+) -> Feed {
+    let g = step.gamma;
+    let fed = feed.fed + grown;
+    let rate = (fed - step.blend(feed.fed, past.fed[0])) / g;
+    let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
+    let (paid, paid_rate) = if elastic_line {
+        let u = step.blend(feed.paid_rate, past.paid_rate) + g * (line - pull) / spec.mass;
+        (step.blend(feed.paid, past.paid) + g * u, u)
+    } else {
+        (fed, rate)
+    };
+    Feed {
+        fed,
+        rate,
+        paid,
+        paid_rate,
+        line_tension: line,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::scheme::Scheme;
+    use super::*;
+
+    fn setting() -> (FeedSpec, Feed, Past, Step) {
+        let spec = FeedSpec {
+            mass: 1e-3,
+            line_stiffness: 97_800.0,
+            line_damping: 2.0,
+            exit_friction: 0.0,
+        };
+        let feed = Feed {
+            fed: 0.012,
+            rate: 3.0,
+            paid: 0.012 - 14.0 / 97_800.0,
+            paid_rate: 2.9,
+            line_tension: 14.0,
+        };
+        let past = Past {
+            known: 1,
+            fed: [0.012 - 3e-4; 2],
+            paid: 0.012 - 3e-4 - 14.0 / 97_800.0,
+            paid_rate: 2.9,
+            h: [1e-4, 0.0],
+            ..Past::default()
+        };
+        let step = Step::new(Scheme::Bdf2, &past, 1.2e-4);
+        (spec, feed, past, step)
+    }
+
+    #[test]
+    fn wire_and_line_pull_alike() {
+        let (spec, feed, past, step) = setting();
+        let ea = 48_900.0;
+        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.1, ea, 1e-4));
+        let length = 3.36e-3 * (1.0 + 3e-4);
+        let y = edge.rest(length);
+        let s = edge.stretched(length);
+        assert!((s.tension - ea * (length / y - 1.0 - 1e-4)).abs() < 1e-6);
+        // the line's own law, step by step
+        let line = s.tension / 1.1;
+        let next = advance(&spec, &feed, &past, &step, (y - 3e-3, line, 15.0));
+        let law = spec.line_stiffness * (next.fed - next.paid)
+            + spec.line_damping * (next.rate - next.paid_rate);
+        assert!((law - line).abs() < 1e-6, "{law} {line}");
+        let h = 1e-9;
+        let d =
+            (edge.stretched(length + h).tension - edge.stretched(length - h).tension) / (2.0 * h);
+        assert!((d / s.stiffness - 1.0).abs() < 1e-5);
+        let de =
+            (edge.stretched(length + h).energy - edge.stretched(length - h).energy) / (2.0 * h);
+        assert!((de / s.tension - 1.0).abs() < 1e-4, "{de}");
+    }
+
+    #[test]
+    fn a_slack_line_does_not_push() {
+        let (spec, feed, past, step) = setting();
+        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.0, 48_900.0, 0.0));
+        let s = edge.stretched(1e-3);
+        assert_eq!(s.tension, 0.0);
+        assert!((edge.rest(1e-3) - 1e-3).abs() < 1e-15);
+    }
+
+    #[test]
+    fn without_mass_the_set_force_acts() {
+        let (mut spec, feed, past, step) = setting();
+        spec.mass = 0.0;
+        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.0, 48_900.0, 0.0));
+        for length in [2e-3, 3e-3, 4e-3] {
+            let s = edge.stretched(length);
+            assert!((s.tension - 15.0).abs() < 1e-12 && s.stiffness == 0.0);
+        }
+    }
+}
