@@ -11,8 +11,8 @@ use super::law::{ContactLaw, TANGENTIAL_SHARE};
 use super::{ContactLoss, OWN_WIRE};
 use crate::core_shape::Shape;
 use crate::freeze::SplineTube;
-use crate::math::{M3, V3};
-use crate::rod::outer;
+use crate::math::V3;
+use crate::rod::{Block, add_outer};
 
 /// Passages of frozen wire a point can have near it: neighbours left and right, and a layer below.
 const PASSAGES: usize = 4;
@@ -21,6 +21,7 @@ const SKIN: f64 = 0.15;
 /// Depth over which the normal force sets in, m: contact of a 15 N corner is 1 um deep.
 const ONSET: f64 = 1e-6;
 
+const FRICW: f64 = 0.9;
 /// One possible touch of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Touch {
@@ -83,7 +84,7 @@ pub struct Push {
     /// gradient with respect to the point, N
     pub gradient: V3,
     /// Hessian with respect to the point, N/m
-    pub hessian: M3,
+    pub hessian: Block,
 }
 
 /// The wire's contact points and what they can touch.
@@ -101,6 +102,9 @@ pub struct LineContact {
     pub radius: f64,
     /// totals of what was lost
     pub loss: ContactLoss,
+    /// take the friction limits of the iterate before instead of the present one's. A guess may be deep
+    /// in what it lands on; friction from such a normal force would throw the wire sideways.
+    pub hold_limits: bool,
     /// deepest touch of any accepted instant, m
     pub deepest: f64,
     points: Vec<Point>,
@@ -117,6 +121,7 @@ impl LineContact {
             onset: ONSET,
             radius,
             loss: ContactLoss::default(),
+            hold_limits: false,
             deepest: 0.0,
             points: vec![FRESH; 2 * nodes],
             found: Vec::with_capacity(64),
@@ -165,6 +170,23 @@ impl LineContact {
             .fold(0.0, f64::max)
     }
 
+    pub fn report(&self) {
+        for (k, p) in self.points.iter().enumerate() {
+            for (s, t) in p.touch.iter().enumerate() {
+                if t.depth > 5e-6 {
+                    eprintln!(
+                        "      deep point {k} slot {s} depth {:.2e} start {} held {} normal {:?} core_near {} passages {}",
+                        t.depth,
+                        t.start as i32,
+                        t.held,
+                        t.normal.as_slice(),
+                        p.core_near,
+                        p.passages
+                    );
+                }
+            }
+        }
+    }
     /// Whether node `i` or the wire next to it touches anything.
     pub fn touches(&self, i: usize) -> bool {
         self.depth(i) > 0.0
@@ -254,6 +276,7 @@ impl LineContact {
             law,
             onset,
             radius,
+            hold_limits,
             ..
         } = self;
         let point = &mut points[k];
@@ -286,12 +309,15 @@ impl LineContact {
             sum.energy += k_n * e;
             sum.energy_lagged += k_n * e;
             sum.gradient -= normal * force;
-            let nn = outer(&normal, &normal);
-            let mut hessian = nn * (k_n * s);
+            let mut along = k_n * s;
             if law.mu_static > 0.0 {
                 let way = p - last;
                 let slide = (way - normal * way.dot(&normal)).norm() / step;
-                touch.fresh = law.mu(slide) * force;
+                touch.fresh = if *hold_limits {
+                    touch.lag
+                } else {
+                    law.mu(slide) * force
+                };
                 let anchor = if touch.held { touch.anchor } else { last };
                 let b = p - anchor;
                 let b = b - normal * b.dot(&normal);
@@ -301,15 +327,18 @@ impl LineContact {
                 sum.energy += huber(k_t, touch.fresh, size);
                 if k_t * size <= touch.fresh {
                     sum.gradient += b * k_t;
-                    hessian += (M3::identity() - nn) * k_t;
+                    add_identity(&mut sum.hessian, k_t);
+                    along -= k_t;
                 } else {
                     let dir = b / size;
                     sum.gradient += dir * touch.fresh;
                     let h = touch.fresh / size;
-                    hessian += (M3::identity() - nn - outer(&dir, &dir)) * h;
+                    add_identity(&mut sum.hessian, h);
+                    add_outer(&mut sum.hessian, &(dir * (-FRICW * h)), &dir);
+                    along -= h;
                 }
             }
-            sum.hessian += hessian;
+            add_outer(&mut sum.hessian, &(normal * along), &normal);
         }
         any.then_some(sum)
     }
@@ -403,6 +432,12 @@ fn onset_law(depth: f64, onset: f64) -> (f64, f64, f64) {
             depth - 0.5 * onset,
             1.0,
         )
+    }
+}
+
+fn add_identity(m: &mut Block, c: f64) {
+    for (k, row) in m.iter_mut().enumerate() {
+        row[k] += c;
     }
 }
 

@@ -8,7 +8,7 @@
 //! et al., *Discrete Elastic Rods*, 2008; the angle itself in place of twice its tangent.
 
 use super::plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
-use crate::math::{M3, V3};
+use crate::math::V3;
 
 /// Smallest `1 + cos` of a turning angle: just short of a complete fold.
 const FOLD: f64 = 1e-6;
@@ -61,7 +61,7 @@ pub struct Bent {
     /// its gradient, N
     pub after: V3,
     /// Gauss-Newton Hessian, N/m: before-before, before-after, after-after
-    pub hessian: [M3; 3],
+    pub hessian: [Block; 3],
 }
 
 /// Bending of a joint between edges of directions `t` and inverse lengths `il`.
@@ -79,27 +79,94 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
     let (moment, energy, along, across, dir) = respond(law, trial, rise);
     let (energy, c_across, c_along) = (energy * lv, across * inv, (along - across) * inv);
     // in terms of the curvature binormal: angle = s(kb^2) kb
+    let kb2 = kb.norm_squared();
     let turn = |a: &V3| a * s + kb * (2.0 * s1 * kb.dot(a));
     let g = turn(&moment);
     let t_sum = (t[0] + t[1]) * (0.5 * f);
     let kg = t_sum * kb.dot(&g);
     let before = (t[1].cross(&g) * f - kg) * il[0];
     let after = (t[0].cross(&g) * -f - kg) * il[1];
-    // K = S (c I + (c' - c) d d^T) S with S = s I + 2 s' kb kb^T, symmetric
-    let (a, b) = (s * s, 4.0 * s1 * (s + s1 * kb.norm_squared()));
-    let d = turn(&dir);
-    let k = outer(&kb, &kb) * (b * c_across)
-        + M3::from_diagonal_element(a * c_across)
-        + outer(&d, &d) * c_along;
-    let gb = gradient(t[1], -f, &kb, &t_sum, il[0]);
-    let ga = gradient(t[0], f, &kb, &t_sum, il[1]);
-    let kga = k * ga;
+    // S (c I + (c' - c) d d^T) S with S = s I + 2 s' kb kb^T is c1 I + c2 kb kb^T + c3 (S d)(S d)^T
+    let c1 = s * s * c_across;
+    let c2 = 4.0 * s1 * (s + s1 * kb2) * c_across;
+    // gradients G = (+-f [t]x - kb ts^T) / l of the binormal, transposed, on kb and on S d
+    let a = [kb.cross(t[1]), kb.cross(t[0])];
+    let on = |v: &V3, cross: [V3; 2]| {
+        let kv = kb.dot(v);
+        [
+            (cross[0] * -f - t_sum * kv) * il[0],
+            (cross[1] * f - t_sum * kv) * il[1],
+        ]
+    };
+    let u = on(&kb, a);
+    let cf = c1 * f;
+    let cf2 = cf * f;
+    let ck = c1 * kb2;
+    let mut hessian = [
+        scaled_identity(cf2),
+        scaled_identity(-cf2 * t[0].dot(t[1])),
+        scaled_identity(cf2),
+    ];
+    add_outer(&mut hessian[0], t[1], &(t[1] * -cf2));
+    add_outer_pair(&mut hessian[0], &(a[0] * cf), &t_sum);
+    add_outer(&mut hessian[2], t[0], &(t[0] * -cf2));
+    add_outer_pair(&mut hessian[2], &(a[1] * -cf), &t_sum);
+    add_outer(&mut hessian[1], t[0], &(t[1] * cf2));
+    add_outer(&mut hessian[1], &(a[0] * cf + t_sum * ck), &t_sum);
+    add_outer(&mut hessian[1], &(t_sum * -cf), &a[1]);
+    for k in [0, 2] {
+        add_outer(&mut hessian[k], &(t_sum * ck), &t_sum);
+    }
+    let scale = [il[0] * il[0], il[0] * il[1], il[1] * il[1]];
+    for (h, s) in hessian.iter_mut().zip(scale) {
+        for row in h.iter_mut() {
+            for x in row.iter_mut() {
+                *x *= s;
+            }
+        }
+    }
+    add_outer(&mut hessian[0], &(u[0] * c2), &u[0]);
+    add_outer(&mut hessian[1], &(u[0] * c2), &u[1]);
+    add_outer(&mut hessian[2], &(u[1] * c2), &u[1]);
+    if c_along != 0.0 {
+        let d = turn(&dir);
+        let w = on(&d, [d.cross(t[1]), d.cross(t[0])]);
+        add_outer(&mut hessian[0], &(w[0] * c_along), &w[0]);
+        add_outer(&mut hessian[1], &(w[0] * c_along), &w[1]);
+        add_outer(&mut hessian[2], &(w[1] * c_along), &w[1]);
+    }
     Bent {
         energy,
         before,
         after,
-        hessian: [gb.tr_mul(&(k * gb)), gb.tr_mul(&kga), ga.tr_mul(&kga)],
+        hessian,
     }
+}
+
+/// A block of the Hessian, row by row.
+pub type Block = [[f64; 3]; 3];
+
+#[inline]
+fn scaled_identity(c: f64) -> Block {
+    [[c, 0.0, 0.0], [0.0, c, 0.0], [0.0, 0.0, c]]
+}
+
+/// Adds `a b^T`.
+#[inline]
+pub fn add_outer(m: &mut Block, a: &V3, b: &V3) {
+    let (a, b) = ([a.x, a.y, a.z], [b.x, b.y, b.z]);
+    for (row, a) in m.iter_mut().zip(a) {
+        for (x, b) in row.iter_mut().zip(b) {
+            *x += a * b;
+        }
+    }
+}
+
+/// Adds `a b^T + b a^T`.
+#[inline]
+fn add_outer_pair(m: &mut Block, a: &V3, b: &V3) {
+    add_outer(m, a, b);
+    add_outer(m, b, a);
 }
 
 /// Moment, energy per length, stiffness along and across the moment, its direction.
@@ -125,40 +192,6 @@ fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3) {
         along,
         law.modulus * m[0] / n,
         dir,
-    )
-}
-
-/// Derivative of the curvature binormal with respect to an edge: `(f [t]x - kb ts^T) / l`.
-#[inline]
-fn gradient(t: &V3, f: f64, kb: &V3, ts: &V3, il: f64) -> M3 {
-    let (x, y, z) = (f * t.x, f * t.y, f * t.z);
-    let o = outer(kb, ts);
-    M3::new(
-        -o[(0, 0)],
-        -z - o[(0, 1)],
-        y - o[(0, 2)],
-        z - o[(1, 0)],
-        -o[(1, 1)],
-        -x - o[(1, 2)],
-        -y - o[(2, 0)],
-        x - o[(2, 1)],
-        -o[(2, 2)],
-    ) * il
-}
-
-/// `a b^T`.
-#[inline]
-pub fn outer(a: &V3, b: &V3) -> M3 {
-    M3::new(
-        a.x * b.x,
-        a.x * b.y,
-        a.x * b.z,
-        a.y * b.x,
-        a.y * b.y,
-        a.y * b.z,
-        a.z * b.x,
-        a.z * b.y,
-        a.z * b.z,
     )
 }
 
@@ -242,7 +275,8 @@ mod tests {
         let set = turning([&t[0], &t[1]]) / lv;
         let b = at(&l, &set, 0.0, lv, e);
         let h = 1e-9;
-        let scale = b.hessian.iter().map(M3::norm).fold(0.0, f64::max);
+        let h3 = b.hessian.map(|m| crate::math::M3::from(m).transpose());
+        let scale = h3.iter().map(|m| m.norm()).fold(0.0, f64::max);
         for (which, axis) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)] {
             let gradient = |s: f64| {
                 let mut m = e;
@@ -254,10 +288,10 @@ mod tests {
             for row in 0..2 {
                 let got = (p[row] - n[row]) / (2.0 * h);
                 let want = match (row, which) {
-                    (0, 0) => b.hessian[0].column(axis).into_owned(),
-                    (0, 1) => b.hessian[1].column(axis).into_owned(),
-                    (1, 0) => b.hessian[1].transpose().column(axis).into_owned(),
-                    _ => b.hessian[2].column(axis).into_owned(),
+                    (0, 0) => h3[0].column(axis).into_owned(),
+                    (0, 1) => h3[1].column(axis).into_owned(),
+                    (1, 0) => h3[1].transpose().column(axis).into_owned(),
+                    _ => h3[2].column(axis).into_owned(),
                 };
                 assert!((got - want).norm() < 1e-5 * scale, "{got:?} {want:?}");
             }
@@ -336,7 +370,7 @@ mod tests {
                 && folded
                     .hessian
                     .iter()
-                    .all(|h| h.iter().all(|x| x.is_finite()))
+                    .all(|h| h.iter().all(|x| x.iter().all(|y| y.is_finite())))
         );
     }
 

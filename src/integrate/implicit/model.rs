@@ -4,8 +4,8 @@ use super::tensioner::NozzleEdge;
 use super::{Axial, Work};
 use crate::contact::{LineContact, own_wire};
 use crate::integrate::Loads;
-use crate::math::{M3, V3};
-use crate::rod::{Bent, Laws, Rod, bent, stretched};
+use crate::math::V3;
+use crate::rod::{Bent, Block, Laws, Rod, add_outer, bent, stretched};
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {
@@ -43,7 +43,7 @@ const NO_JOINT: Bent = Bent {
     energy: 0.0,
     before: V3::new(0.0, 0.0, 0.0),
     after: V3::new(0.0, 0.0, 0.0),
-    hessian: [M3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0); 3],
+    hessian: [[[0.0; 3]; 3]; 3],
 };
 
 impl Model<'_> {
@@ -103,7 +103,7 @@ impl Model<'_> {
         // edge in hand, the joint at its start, the cross block there
         let mut before = (self.clamp[0], 0.0);
         let mut at_start = NO_JOINT;
-        let mut stretch = M3::zeros();
+        let mut stretch = [[0.0; 3]; 3];
         let mut pull = V3::zeros();
         for j in 0..=edges {
             let (mut after, mut length) = ((self.clamp[1], 0.0), 0.0);
@@ -132,15 +132,17 @@ impl Model<'_> {
                 work.gradient[j] += g;
                 work.gradient[e] -= g;
                 let b = &at_start.hessian[1];
-                let own = stretch + at_start.hessian[2] + joint.hessian[0];
-                add_symmetric(&mut work.matrix, e, &own);
-                add_symmetric(&mut work.matrix, j, &own);
-                if e > 0 {
-                    add_symmetric(&mut work.matrix, e, &-(b + b.transpose()));
-                }
-                add(&mut work.matrix, e, 1, &(b + joint.hessian[1] - own));
+                let next = &joint.hessian[1];
+                let own = combine(|r, c| {
+                    stretch[r][c] + at_start.hessian[2][r][c] + joint.hessian[0][r][c]
+                });
+                let first = combine(|r, c| own[r][c] - b[r][c] - b[c][r]);
+                work.matrix.add_diagonal(e, &first);
+                work.matrix.add_diagonal(j, &own);
+                let off = combine(|r, c| b[r][c] + next[r][c] - own[r][c]);
+                work.matrix.add(e, 1, &off);
                 if j < edges {
-                    add(&mut work.matrix, e, 2, &-joint.hessian[1]);
+                    work.matrix.add(e, 2, &combine(|r, c| -next[r][c]));
                 }
             }
             if j < edges {
@@ -175,8 +177,8 @@ impl Model<'_> {
                     stiffness: s.stiffness,
                     energy: s.energy,
                 };
-                stretch = crate::rod::outer(&t, &t) * (s.stiffness - across)
-                    + M3::from_diagonal_element(across);
+                stretch = combine(|r, c| if r == c { across } else { 0.0 });
+                add_outer(&mut stretch, &(t * (s.stiffness - across)), &t);
             }
             before = after;
             at_start = joint;
@@ -225,28 +227,19 @@ pub(in crate::integrate) fn spline_point(q: &[V3], i: usize) -> V3 {
     (q[i - 1] + q[i + 1]) * 0.125 + q[i] * 0.75
 }
 
-fn spread(work: &mut Work, first: usize, weight: &[f64], gradient: &V3, hessian: &M3) {
+fn spread(work: &mut Work, first: usize, weight: &[f64], gradient: &V3, hessian: &Block) {
     for (a, wa) in weight.iter().enumerate() {
         work.gradient[first + a] += gradient * *wa;
-        add_symmetric(&mut work.matrix, first + a, &(hessian * (wa * wa)));
+        let own = combine(|r, c| hessian[r][c] * (wa * wa));
+        work.matrix.add_diagonal(first + a, &own);
         for (b, wb) in weight.iter().enumerate().skip(a + 1) {
-            add(&mut work.matrix, first + a, b - a, &(hessian * (wa * wb)));
+            let cross = combine(|r, c| hessian[r][c] * (wa * wb));
+            work.matrix.add(first + a, b - a, &cross);
         }
     }
 }
 
-fn rows(m: &M3) -> [[f64; 3]; 3] {
-    [
-        [m[(0, 0)], m[(0, 1)], m[(0, 2)]],
-        [m[(1, 0)], m[(1, 1)], m[(1, 2)]],
-        [m[(2, 0)], m[(2, 1)], m[(2, 2)]],
-    ]
-}
-
-fn add_symmetric(matrix: &mut crate::integrate::Banded<3>, i: usize, m: &M3) {
-    matrix.add_diagonal(i, &rows(m));
-}
-
-fn add(matrix: &mut crate::integrate::Banded<3>, i: usize, k: usize, m: &M3) {
-    matrix.add(i, k, &rows(m));
+#[inline]
+fn combine(entry: impl Fn(usize, usize) -> f64) -> Block {
+    std::array::from_fn(|r| std::array::from_fn(|c| entry(r, c)))
 }

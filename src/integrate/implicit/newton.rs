@@ -27,9 +27,14 @@ pub(super) struct Stuck {
 /// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
 pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<usize, Stuck> {
     expect_nothing(model, work);
+    hold_limits(model, true);
     let mut value = model.evaluate(work).now;
-    if let Some(line) = model.line.as_deref_mut() {
-        line.renew_lags();
+    hold_limits(model, false);
+    if std::env::var("DBG2").is_ok() {
+        if let Some(l) = model.line.as_deref() {
+            l.report();
+        }
+        eprintln!("start h {:.3e}", model.elapsed);
     }
     // inertia bounds the update from above: a guess that is good enough costs no solve
     let weight = model.gamma * model.gamma;
@@ -139,6 +144,12 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
         update: last_update,
         steps: MOST_STEPS,
     })
+}
+
+fn hold_limits(model: &mut Model, hold: bool) {
+    if let Some(line) = model.line.as_deref_mut() {
+        line.hold_limits = hold;
+    }
 }
 
 /// At the start tensions are expected to stay what they were at the last accepted instant.
