@@ -7,6 +7,7 @@
 //! that for given lags normal and tangential force derive from one potential. The lag is renewed
 //! with every iterate, so the converged step has none left.
 
+use super::between::Between;
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
 use super::{ContactLoss, OWN_WIRE};
 use crate::core_shape::Shape;
@@ -107,6 +108,8 @@ pub struct LineContact {
     pub hold_limits: bool,
     /// deepest touch of any accepted instant, m
     pub deepest: f64,
+    /// live wire against live wire, where they may meet
+    pub between: Option<Between>,
     points: Vec<Point>,
     found: Vec<u32>,
 }
@@ -123,6 +126,7 @@ impl LineContact {
             loss: ContactLoss::default(),
             hold_limits: false,
             deepest: 0.0,
+            between: None,
             points: vec![FRESH; 2 * nodes],
             found: Vec::with_capacity(64),
         }
@@ -140,11 +144,17 @@ impl LineContact {
         // edge j's middle (2j + 1) turns into the new node's point, with new middles either side
         self.points.insert(2 * j + 1, FRESH);
         self.points.insert(2 * j + 3, FRESH);
+        if let Some(b) = &mut self.between {
+            b.split(j);
+        }
     }
 
     /// The first `count` nodes left.
     pub fn remove_front(&mut self, count: usize) {
         self.points.drain(..2 * count);
+        if let Some(b) = &mut self.between {
+            b.remove_front(count);
+        }
     }
 
     /// Nodes came back at the front.
@@ -345,6 +355,9 @@ impl LineContact {
 
     /// Takes the friction limits of the iterate in hand over: call once an iterate is accepted.
     pub fn renew_lags(&mut self) {
+        if let Some(b) = &mut self.between {
+            b.renew_lags();
+        }
         for p in &mut self.points {
             if p.core_near || p.passages > 0 {
                 for t in &mut p.touch[..=p.passages] {
@@ -422,7 +435,7 @@ pub fn own_wire(arc: f64, diameter: f64) -> f64 {
 /// Energy, force and stiffness over contact stiffness at a depth: quadratic up to the onset depth,
 /// then linear.
 #[inline]
-fn onset_law(depth: f64, onset: f64) -> (f64, f64, f64) {
+pub(super) fn onset_law(depth: f64, onset: f64) -> (f64, f64, f64) {
     if depth < onset {
         let s = depth / onset;
         (s * depth * depth / 6.0, 0.5 * s * depth, s)
@@ -443,7 +456,7 @@ fn add_identity(m: &mut Block, c: f64) {
 
 /// Potential of a bristle of stiffness `k` that gives way at `limit`.
 #[inline]
-fn huber(k: f64, limit: f64, size: f64) -> f64 {
+pub(super) fn huber(k: f64, limit: f64, size: f64) -> f64 {
     if k * size <= limit {
         0.5 * k * size * size
     } else {

@@ -4,10 +4,12 @@
 //! node remembers how far it may move before its surroundings have to be looked up again, so a
 //! node in the free span costs one comparison a step.
 
+mod between;
 mod law;
 mod line;
 mod live;
 
+pub use between::{Between, Cross, PairPush, add_cross};
 pub use law::{ContactLaw, TouchForce, damping_for_restitution};
 pub use line::{LineContact, Push, own_wire};
 pub use live::{LiveContact, Wire};

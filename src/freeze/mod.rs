@@ -9,5 +9,5 @@ mod spline;
 mod tube;
 
 pub use policy::{FreezePolicy, Watch};
-pub use spline::{Foot, SplineTube};
+pub use spline::{Curve, Foot, SplineTube};
 pub use tube::{FrozenNode, SIDES, Tube};

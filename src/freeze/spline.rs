@@ -149,7 +149,7 @@ impl SplineTube {
 
     /// Hands the boxes round a segment, each about a cell wide, to the grid.
     fn for_boxes(&mut self, segment: usize, mut change: impl FnMut(&mut Grid, u32, V3, V3)) {
-        let piece = self.piece(segment, V3::zeros());
+        let piece = self.curve().piece(segment, V3::zeros());
         let chord = piece.arm(piece.high) - piece.arm(piece.low);
         let parts = (chord.amax() / self.grid.edge()).ceil().clamp(1.0, 1024.0);
         let width = (piece.high - piece.low) / parts;
@@ -191,8 +191,8 @@ impl SplineTube {
 
     /// Whether a local minimum of the distance, within `reach`, lies on a segment.
     fn has_foot(&self, segment: usize, p: V3, reach: f64) -> bool {
-        let piece = self.piece(segment, p);
-        match self.settle(segment, &piece) {
+        let piece = self.curve().piece(segment, p);
+        match self.curve().settle(segment, &piece) {
             (Lies::At(s), _) => piece.arm(s).norm() <= reach,
             _ => false,
         }
@@ -202,24 +202,83 @@ impl SplineTube {
     /// the longer of its edges from its node.
     #[inline(always)]
     fn may_reach(&self, segment: usize, p: V3, reach: f64) -> bool {
-        let [before, after] = self.edges(segment);
+        let [before, after] = self.curve().edges(segment);
         let half_sq = 0.25 * before.norm_squared().max(after.norm_squared());
         // (reach + half)^2 is at most twice the sum of the squares, with some room for rounding
         (self.points[segment] - p).norm_squared() <= 2.001 * (reach * reach + half_sq)
     }
 
+    /// The centreline.
+    #[inline(always)]
+    pub fn curve(&self) -> Curve<'_> {
+        Curve(&self.points)
+    }
+
+    /// The foot of `p` on the passage that `start` belongs to, see [`Curve::foot`].
+    #[inline]
+    pub fn foot(&self, p: V3, start: u32) -> Foot {
+        self.curve().foot(p, start)
+    }
+
+    /// All local minima of the distance within `reach`, by dense sampling and golden sections: the
+    /// slow twin of [`Self::gather`] with [`Self::foot`].
+    pub fn feet_brute(&self, p: V3, reach: f64, own: f64) -> Vec<Foot> {
+        const SAMPLES: usize = 64;
+        const GOLDEN: f64 = 0.618_033_988_749_894_9;
+        let mut feet = Vec::new();
+        if self.points.len() < 2 {
+            return feet;
+        }
+        // t: segment plus share
+        let distance = |t: f64| self.curve().piece(t as usize, p).arm(t.fract()).norm();
+        let first = SAMPLES / 2;
+        let last = (self.points.len() - 1) * SAMPLES + SAMPLES / 2;
+        let t_of = |i: usize| i as f64 / SAMPLES as f64;
+        for i in first..=last {
+            let here = distance(t_of(i));
+            let lower_before = i > first && distance(t_of(i - 1)) <= here;
+            let lower_after = i < last && distance(t_of(i + 1)) < here;
+            if lower_before || lower_after {
+                continue;
+            }
+            let (mut a, mut b) = (t_of(i.max(first + 1) - 1), t_of((i + 1).min(last)));
+            for _ in 0..60 {
+                let (c, d) = (b - (b - a) * GOLDEN, a + (b - a) * GOLDEN);
+                if distance(c) <= distance(d) {
+                    b = d;
+                } else {
+                    a = c;
+                }
+            }
+            let t = 0.5 * (a + b);
+            let segment = t as usize;
+            let at_end = b <= t_of(first) + 1e-9 || a >= t_of(last) - 1e-9;
+            let foot = self.curve().piece(segment, p).foot(p, segment, t.fract(), at_end);
+            if foot.distance <= reach && self.arc[segment] <= own {
+                feet.push(foot);
+            }
+        }
+        feet
+    }
+}
+
+/// A centreline by its nodes, two at least: frozen wire, or live wire as it lies now.
+#[derive(Clone, Copy, Debug)]
+pub struct Curve<'a>(pub &'a [V3]);
+
+impl Curve<'_> {
     /// The foot of `p` in the passage of the wire that `start` (a segment) belongs to: downhill
     /// from there to the first local minimum of the distance.
     ///
-    /// Panics with fewer than two nodes. Started from [`Self::gather`]'s segments near the
+    /// Panics with fewer than two nodes. Started from [`SplineTube::gather`]'s segments near the
     /// same p it gives that minimum; after p has moved, a minimum may have merged with
     /// its neighbour, and two starts end on one foot. After 64 joints it stops where it is.
     #[inline]
     pub fn foot(&self, p: V3, start: u32) -> Foot {
-        assert!(self.points.len() > 1, "a foot needs wire to stand on");
-        let segment = (start as usize).min(self.points.len() - 1);
+        assert!(self.0.len() > 1, "a foot needs wire to stand on");
+        let segment = (start as usize).min(self.0.len() - 1);
         // By far the most frequent case: the foot is where it was, away from the wire's ends.
-        if segment > 0 && segment + 1 < self.points.len() {
+        if segment > 0 && segment + 1 < self.0.len() {
             let piece = self.inner_piece(segment, p);
             if piece.rises() {
                 return piece.foot(p, segment, piece.dip(), false);
@@ -248,51 +307,10 @@ impl SplineTube {
         piece.foot(p, segment, s, false)
     }
 
-    /// All local minima of the distance within `reach`, by dense sampling and golden sections: the
-    /// slow twin of [`Self::gather`] with [`Self::foot`].
-    pub fn feet_brute(&self, p: V3, reach: f64, own: f64) -> Vec<Foot> {
-        const SAMPLES: usize = 64;
-        const GOLDEN: f64 = 0.618_033_988_749_894_9;
-        let mut feet = Vec::new();
-        if self.points.len() < 2 {
-            return feet;
-        }
-        // t: segment plus share
-        let distance = |t: f64| self.piece(t as usize, p).arm(t.fract()).norm();
-        let first = SAMPLES / 2;
-        let last = (self.points.len() - 1) * SAMPLES + SAMPLES / 2;
-        let t_of = |i: usize| i as f64 / SAMPLES as f64;
-        for i in first..=last {
-            let here = distance(t_of(i));
-            let lower_before = i > first && distance(t_of(i - 1)) <= here;
-            let lower_after = i < last && distance(t_of(i + 1)) < here;
-            if lower_before || lower_after {
-                continue;
-            }
-            let (mut a, mut b) = (t_of(i.max(first + 1) - 1), t_of((i + 1).min(last)));
-            for _ in 0..60 {
-                let (c, d) = (b - (b - a) * GOLDEN, a + (b - a) * GOLDEN);
-                if distance(c) <= distance(d) {
-                    b = d;
-                } else {
-                    a = c;
-                }
-            }
-            let t = 0.5 * (a + b);
-            let segment = t as usize;
-            let at_end = b <= t_of(first) + 1e-9 || a >= t_of(last) - 1e-9;
-            let foot = self.piece(segment, p).foot(p, segment, t.fract(), at_end);
-            if foot.distance <= reach && self.arc[segment] <= own {
-                feet.push(foot);
-            }
-        }
-        feet
-    }
-
     /// The edges before and after a node; at the wire's ends the one edge there is, twice.
     #[inline(always)]
     fn edges(&self, segment: usize) -> [V3; 2] {
-        let points = &self.points[..];
+        let points = &self.0[..];
         let here = points[segment];
         if segment == 0 {
             let edge = points[1] - here;
@@ -307,23 +325,23 @@ impl SplineTube {
 
     /// A segment as seen from `p`, with the range of it that is wire.
     fn piece(&self, segment: usize, p: V3) -> Piece {
-        let last = self.points.len() - 1;
+        let last = self.0.len() - 1;
         if segment > 0 && segment < last {
             return self.inner_piece(segment, p);
         }
-        let here = self.points[segment];
+        let here = self.0[segment];
         let [edge, _] = self.edges(segment);
         // the same operations as in the neighbour, so that g agrees at the joint
         let (start, low, g_low) = if segment == 0 {
             (here - edge * 0.5 - p, 0.5, (here - p).dot(&edge))
         } else {
-            let start = (self.points[segment - 1] + here) * 0.5 - p;
+            let start = (self.0[segment - 1] + here) * 0.5 - p;
             (start, 0.0, start.dot(&edge))
         };
         let (high, g_high) = if segment == last {
             (0.5, (here - p).dot(&edge))
         } else {
-            let end = (here + self.points[segment + 1]) * 0.5 - p;
+            let end = (here + self.0[segment + 1]) * 0.5 - p;
             (1.0, end.dot(&edge))
         };
         Piece {
@@ -341,7 +359,7 @@ impl SplineTube {
     /// [`Self::piece`] of a segment that is not at an end.
     #[inline(always)]
     fn inner_piece(&self, segment: usize, p: V3) -> Piece {
-        let [behind, here, ahead] = *self.points[segment - 1..]
+        let [behind, here, ahead] = *self.0[segment - 1..]
             .first_chunk()
             .expect("an inner node has two neighbours");
         let (before, after) = (here - behind, ahead - here);
@@ -371,9 +389,25 @@ impl SplineTube {
     fn settle(&self, segment: usize, piece: &Piece) -> (Lies, bool) {
         match piece.minimum() {
             Lies::Before if segment == 0 => (Lies::At(piece.low), true),
-            Lies::Beyond if segment + 1 == self.points.len() => (Lies::At(piece.high), true),
+            Lies::Beyond if segment + 1 == self.0.len() => (Lies::At(piece.high), true),
             lies => (lies, false),
         }
+    }
+
+    /// Nodes on which the point at `share` of a segment depends, and how much on each.
+    pub fn weights(&self, segment: usize, share: f64) -> ([usize; 3], [f64; 3]) {
+        let last = self.0.len() - 1;
+        let s = share;
+        if segment == 0 {
+            return ([0, 1, 1], [1.5 - s, s - 0.5, 0.0]);
+        }
+        if segment == last {
+            return ([last - 1, last, last], [0.5 - s, 0.5 + s, 0.0]);
+        }
+        (
+            [segment - 1, segment, segment + 1],
+            [0.5 * (1.0 - s) * (1.0 - s), 0.5 + s - s * s, 0.5 * s * s],
+        )
     }
 }
 

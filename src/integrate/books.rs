@@ -63,7 +63,10 @@ impl System {
                 };
                 node + line.stored(2 * j + 1, 0.5 * rod.rest[j])
             })
-            .sum()
+            .sum::<f64>()
+            + line.between.as_ref().map_or(0.0, |b| {
+                b.stored(&line.law, line.onset, |p| super::implicit::point_length(rod, p))
+            })
     }
 
     /// Motion energy of the free nodes and spinning edges, J.

@@ -104,8 +104,15 @@ impl Simulation {
     /// flat can land at once, so the pairs are watched from half a turn on.
     fn watch_live_wire(&mut self) {
         let laid = self.laid_angles().last().map_or(0.0, |a| a.abs());
-        if laid > 0.5 * std::f64::consts::TAU && self.sys.line.is_none() {
-            self.sys.live.get_or_insert_default();
+        if laid > 0.5 * std::f64::consts::TAU {
+            match &mut self.sys.line {
+                Some(line) => {
+                    line.between.get_or_insert_default();
+                }
+                None => {
+                    self.sys.live.get_or_insert_default();
+                }
+            }
         }
     }
 

@@ -1,12 +1,13 @@
 //! Taking a converged step over as the new state, and the books of it.
 
 use super::Implicit;
-use super::model::spline_point;
-use super::scheme::{Scheme, Step};
+use super::model::{point_length, spline_point};
+use super::scheme::{Past, Scheme, Step};
 use super::tensioner::{NozzleEdge, advance};
-use crate::contact::own_wire;
+use crate::contact::{LineContact, own_wire};
 use crate::integrate::{Spindle, Support, System};
 use crate::math::{Spin, V3};
+use crate::rod::Rod;
 
 impl Implicit {
     pub(super) fn commit(
@@ -215,9 +216,56 @@ impl System {
                 arc += rest;
             }
             self.deepest = self.deepest.max(line.deepest);
-            self.books.friction = line.loss.friction;
+            between_forces(line, rod, force, &self.past, spin, (diameter, step), commit);
+            let between = line.between.as_ref().map_or(0.0, |b| b.loss.friction);
+            self.books.friction = line.loss.friction + between;
             self.books.damping = line.loss.damping;
         }
         self.torque_on_core = moment + self.clamp_torque();
+    }
+}
+
+/// Forces of live wire on live wire; inner forces, they put no moment on the core.
+fn between_forces(
+    line: &mut LineContact,
+    rod: &Rod,
+    force: &mut [V3],
+    past: &Past,
+    spin: Spin,
+    (diameter, step): (f64, f64),
+    commit: bool,
+) {
+    let LineContact {
+        between: Some(between),
+        law,
+        onset,
+        deepest,
+        ..
+    } = line
+    else {
+        return;
+    };
+    let q: Vec<V3> = rod.x.iter().map(|x| spin.to_core(*x)).collect();
+    let last = if past.q[0].len() == q.len() { &past.q[0] } else { &q };
+    between.evaluate(
+        law,
+        *onset,
+        (&q, last),
+        diameter,
+        step,
+        false,
+        |point| point_length(rod, point),
+        |cross, push| {
+            let f = spin.to_lab(push.gradient);
+            for side in [&cross.young, &cross.old] {
+                for (node, weight) in side.0.iter().zip(side.1) {
+                    force[*node] -= f * weight;
+                }
+            }
+        },
+    );
+    if commit {
+        between.commit(law, (&q, last), |point| point_length(rod, point));
+        *deepest = deepest.max(between.deepest());
     }
 }

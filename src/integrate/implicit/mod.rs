@@ -5,12 +5,13 @@
 //! scratch arrays, so a rejected step leaves no trace.
 
 mod commit;
+mod conjugate;
 mod model;
 mod newton;
 mod scheme;
 mod tensioner;
 
-pub(in crate::integrate) use model::spline_point;
+pub(in crate::integrate) use model::{point_length, spline_point};
 pub use scheme::{Past, Scheme};
 
 use super::{Banded, Spindle, Support, System, turn_about_y};
@@ -84,6 +85,7 @@ struct Work {
     gradient: Vec<V3>,
     update: Vec<f64>,
     matrix: Banded<3>,
+    gradients: conjugate::Scratch,
     force: Vec<V3>,
     evaluations: u64,
     solves: u64,
@@ -145,6 +147,7 @@ impl Implicit {
                 gradient: Vec::new(),
                 update: Vec::new(),
                 matrix: Banded::new(),
+                gradients: conjugate::Scratch::default(),
                 force: Vec::new(),
                 evaluations: 0,
                 solves: 0,
@@ -156,6 +159,9 @@ impl Implicit {
     /// Takes one step of at most `most` seconds; returns its length.
     pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, Stopped> {
         sys.begin_past();
+        if let Some(b) = sys.line.as_mut().and_then(|l| l.between.as_mut()) {
+            b.list(&sys.past.q[0], &sys.rod.rest, sys.section.diameter);
+        }
         let mut h = self.fixed.unwrap_or(self.next).min(self.longest);
         if h >= most {
             h = most;
@@ -174,6 +180,7 @@ impl Implicit {
                 laws: &sys.laws,
                 line: sys.line.as_mut(),
                 loads: &sys.loads,
+                last: &sys.past.q[0],
                 tension: &sys.load.tension,
                 clamp: clamp_directions(&support, &spindle),
                 nozzle,

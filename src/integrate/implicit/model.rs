@@ -13,6 +13,8 @@ pub(super) struct Model<'a> {
     pub(super) laws: &'a Laws,
     pub(super) line: Option<&'a mut LineContact>,
     pub(super) loads: &'a Loads,
+    /// the wire at the last accepted instant, core frame
+    pub(super) last: &'a [V3],
     /// tension of each edge at the last accepted instant, N
     pub(super) tension: &'a [f64],
     /// directions of the clamps in the core frame
@@ -218,6 +220,72 @@ impl Model<'_> {
                 spread(work, j, &[0.5, 0.5], &push.gradient, &push.hessian);
             }
             arc += rest;
+        }
+        let LineContact {
+            between: Some(between),
+            law,
+            onset,
+            hold_limits,
+            ..
+        } = line
+        else {
+            return;
+        };
+        let Work {
+            q,
+            gradient,
+            matrix,
+            ..
+        } = work;
+        between.evaluate(
+            law,
+            *onset,
+            (q, self.last),
+            self.diameter,
+            self.elapsed,
+            *hold_limits,
+            |point| point_length(self.rod, point),
+            |cross, push| {
+                value.merit += push.energy_lagged;
+                value.now += push.energy;
+                for side in [&cross.young, &cross.old] {
+                    spread_block(gradient, matrix, side, &push.gradient, &cross.block);
+                }
+            },
+        );
+    }
+}
+
+/// Length of wire that a contact point stands for, m.
+pub(in crate::integrate) fn point_length(rod: &Rod, point: usize) -> f64 {
+    0.5 * if point.is_multiple_of(2) {
+        rod.voronoi(point / 2)
+    } else {
+        rod.rest[point / 2]
+    }
+}
+
+/// Adds a point's gradient and Hessian to three neighbouring nodes.
+fn spread_block(
+    gradient: &mut [V3],
+    matrix: &mut crate::integrate::Banded<3>,
+    (nodes, weights): &([usize; 3], [f64; 3]),
+    g: &V3,
+    block: &Block,
+) {
+    for a in 0..3 {
+        let (i, wa) = (nodes[a], weights[a]);
+        if wa == 0.0 {
+            continue;
+        }
+        gradient[i] += g * wa;
+        matrix.add_diagonal(i, &combine(|r, c| block[r][c] * (wa * wa)));
+        for b in a + 1..3 {
+            let wb = weights[b];
+            if wb != 0.0 {
+                let cross = combine(|r, c| block[r][c] * (wa * wb));
+                matrix.add(i, nodes[b] - i, &cross);
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Newton's method on the incremental potential, with line search.
 
-use super::Work;
+use super::{Work, conjugate};
 use super::model::Model;
 use crate::math::V3;
 
@@ -61,7 +61,18 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
         for g in &work.gradient {
             work.update.extend_from_slice(&[-g.x, -g.y, -g.z]);
         }
-        work.matrix.solve(&mut work.update);
+        match model.line.as_deref().and_then(|l| l.between.as_ref()) {
+            Some(between) if !between.cross.is_empty() => {
+                conjugate::solve(
+                    &work.matrix,
+                    &between.cross,
+                    model.held,
+                    &mut work.update,
+                    &mut work.gradients,
+                );
+            }
+            _ => work.matrix.solve(&mut work.update),
+        }
         let (mut update, mut node) = (0.0, 0);
         for (k, u) in work.update.iter().enumerate() {
             if !(u.abs() <= update) {

@@ -1,0 +1,345 @@
+//! Live wire against live wire in the implicit method.
+//!
+//! Where lift-off comes round before the wire there is at rest, the younger wire's contact points
+//! touch the spline of the older wire. Force and reaction go to the nodes of both, the bristle of friction
+//! grows with the relative slide and so travels with both. Such a pair couples nodes a whole turn
+//! apart, which no band holds: its share of the Hessian between the partners is kept aside, and the
+//! linear system is solved by conjugate gradients with the banded part as preconditioner.
+
+use super::law::{ContactLaw, TANGENTIAL_SHARE};
+use super::line::{huber, onset_law};
+use super::{ContactLoss, OWN_WIRE};
+use crate::freeze::Curve;
+use crate::math::V3;
+use crate::measure::{polar_angle, wrap_to_pi};
+use crate::rod::{Block, add_outer};
+use std::f64::consts::TAU;
+
+/// Pairs are listed when nearer than this beyond touching, in wire diameters: farther than a point
+/// moves in a step.
+const SKIN: f64 = 1.0;
+/// How far from one turn back along the wire a partner may lie, rad.
+const WINDOW: f64 = 0.6;
+
+/// A point of contact and the older wire near it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pair {
+    point: u32,
+    segment: u32,
+    held: bool,
+    bristle: V3,
+    lag: f64,
+    fresh: f64,
+    depth: f64,
+    /// where the foot was in the last evaluation
+    share: f64,
+    normal: V3,
+}
+
+/// The coupling of two far-apart triples of nodes: `weights a b^T` times a block.
+#[derive(Clone, Copy, Debug)]
+pub struct Cross {
+    /// nodes of the younger wire and their weights
+    pub young: ([usize; 3], [f64; 3]),
+    /// nodes of the older wire and their weights, negative
+    pub old: ([usize; 3], [f64; 3]),
+    /// Hessian with respect to the distance vector, N/m
+    pub block: Block,
+}
+
+/// What a pair adds to the step's potential.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PairPush {
+    /// potential with the friction limit of the iterate before, J
+    pub energy_lagged: f64,
+    /// potential with the present limit, J
+    pub energy: f64,
+    /// gradient with respect to the young point, N; its negative acts on the foot
+    pub gradient: V3,
+}
+
+/// Pairs of live wire and what their friction remembers.
+#[derive(Clone, Debug, Default)]
+pub struct Between {
+    pairs: Vec<Pair>,
+    /// those of the step before, while the next ones are listed
+    old: Vec<Pair>,
+    angle: Vec<f64>,
+    arc: Vec<f64>,
+    /// couplings of the last evaluation
+    pub cross: Vec<Cross>,
+    /// totals of what was lost
+    pub loss: ContactLoss,
+}
+
+/// Nodes and weights of contact point `point`: `2 i` the spline at node i, `2 j + 1` the middle of
+/// edge j.
+pub fn point_weights(point: usize) -> ([usize; 3], [f64; 3]) {
+    let i = point / 2;
+    if point.is_multiple_of(2) {
+        ([i - 1, i, i + 1], [0.125, 0.75, 0.125])
+    } else {
+        ([i, i + 1, i + 1], [0.5, 0.5, 0.0])
+    }
+}
+
+/// The weighted place.
+fn place(q: &[V3], (nodes, weights): &([usize; 3], [f64; 3])) -> V3 {
+    q[nodes[0]] * weights[0] + q[nodes[1]] * weights[1] + q[nodes[2]] * weights[2]
+}
+
+impl Between {
+    /// A node was put into edge `j`.
+    pub fn split(&mut self, j: usize) {
+        for p in &mut self.pairs {
+            // points beyond the new node move up by two, segments by one
+            p.point += 2 * u32::from(p.point as usize > 2 * j + 1);
+            p.segment += u32::from(p.segment as usize > j);
+        }
+    }
+
+    /// The first `count` nodes left.
+    pub fn remove_front(&mut self, count: usize) {
+        self.pairs.retain(|p| p.segment as usize >= count);
+        for p in &mut self.pairs {
+            p.point -= 2 * count as u32;
+            p.segment -= count as u32;
+        }
+    }
+
+    /// Lists the pairs for a step that starts at `q` (core frame); `rest` are its edges' unstretched lengths.
+    pub fn list(&mut self, q: &[V3], rest: &[f64], diameter: f64) {
+        self.angle.clear();
+        self.arc.clear();
+        let mut last = (0.0, polar_angle(q[0]));
+        let mut arc = 0.0;
+        for (i, p) in q.iter().enumerate() {
+            let polar = polar_angle(*p);
+            last = (last.0 + wrap_to_pi(polar - last.1), polar);
+            self.angle.push(last.0);
+            self.arc.push(arc);
+            arc += rest.get(i).copied().unwrap_or(0.0);
+        }
+        // wire runs round the core either way
+        if last.0 < 0.0 {
+            self.angle.iter_mut().for_each(|a| *a = -*a);
+        }
+        let arc = &self.arc;
+        std::mem::swap(&mut self.pairs, &mut self.old);
+        self.pairs.clear();
+        let last_point = 2 * (q.len() - 1);
+        for point in 1..last_point {
+            let i = point / 2;
+            let back = self.angle[i] - TAU;
+            if back < -WINDOW {
+                continue;
+            }
+            let weights = point_weights(point);
+            let p = place(q, &weights);
+            let own = arc[i] - OWN_WIRE * diameter;
+            let from = self.angle[..i].partition_point(|a| *a < back - WINDOW);
+            let mut best: Option<(f64, usize)> = None;
+            for k in from..i {
+                if self.angle[k] > back + WINDOW || arc[k + 1] > own {
+                    break;
+                }
+                let d = (q[k] - p).norm_squared();
+                if best.is_none_or(|(least, _)| d < least) {
+                    best = Some((d, k));
+                }
+            }
+            let Some((_, k)) = best else { continue };
+            let foot = Curve(q).foot(p, k as u32);
+            if foot.distance > (1.0 + SKIN) * diameter || arc[foot.segment as usize] > own {
+                continue;
+            }
+            let known = self
+                .old
+                .iter()
+                .find(|o| o.point == point as u32 && o.segment.abs_diff(foot.segment) < 6);
+            self.pairs.push(Pair {
+                point: point as u32,
+                segment: foot.segment,
+                held: known.is_some_and(|o| o.held),
+                bristle: known.map_or(V3::zeros(), |o| o.bristle),
+                lag: known.map_or(0.0, |o| o.lag),
+                fresh: 0.0,
+                depth: known.map_or(0.0, |o| o.depth),
+                share: foot.share,
+                normal: foot.normal,
+            });
+        }
+    }
+
+    /// Number of pairs near each other.
+    pub fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Whether no live wire is near live wire.
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// Depth of the deepest touch, m; 0: none.
+    pub fn deepest(&self) -> f64 {
+        self.pairs.iter().map(|p| p.depth).fold(0.0, f64::max)
+    }
+
+    /// Takes the friction limits of the iterate in hand over.
+    pub fn renew_lags(&mut self) {
+        for p in &mut self.pairs {
+            p.lag = p.fresh;
+        }
+    }
+
+    /// Evaluates all pairs at `q`; `last` is the wire at the last accepted instant, `length` tells what a
+    /// point stands for. Hands each touching pair's push to `take`, and keeps the couplings.
+    pub fn evaluate(
+        &mut self,
+        law: &ContactLaw,
+        onset: f64,
+        (q, last): (&[V3], &[V3]),
+        diameter: f64,
+        step: f64,
+        hold_limits: bool,
+        length: impl Fn(usize) -> f64,
+        mut take: impl FnMut(&Cross, &PairPush),
+    ) {
+        self.cross.clear();
+        let curve = Curve(q);
+        for pair in &mut self.pairs {
+            let young = point_weights(pair.point as usize);
+            let p = place(q, &young);
+            let foot = curve.foot(p, pair.segment);
+            pair.segment = foot.segment;
+            (pair.share, pair.normal) = (foot.share, foot.normal);
+            pair.depth = diameter - foot.distance;
+            if pair.depth <= 0.0 {
+                pair.fresh = 0.0;
+                continue;
+            }
+            let old = curve.weights(foot.segment as usize, foot.share);
+            let k_n = law.stiffness * length(pair.point as usize);
+            let (e, f, s) = onset_law(pair.depth, onset);
+            let n = foot.normal;
+            let mut push = PairPush {
+                energy_lagged: k_n * e,
+                energy: k_n * e,
+                gradient: n * (-k_n * f),
+            };
+            let mut block = Block::default();
+            let mut along = k_n * s;
+            if law.mu_static > 0.0 {
+                let way = (p - place(last, &young)) - (foot.point - place(last, &old));
+                let way = way - n * way.dot(&n);
+                pair.fresh = if hold_limits {
+                    pair.lag
+                } else {
+                    law.mu(way.norm() / step) * k_n * f
+                };
+                let b = pair.bristle + way;
+                let b = b - n * b.dot(&n);
+                let k_t = k_n * TANGENTIAL_SHARE;
+                let size = b.norm();
+                push.energy_lagged += huber(k_t, pair.lag, size);
+                push.energy += huber(k_t, pair.fresh, size);
+                let h = if k_t * size <= pair.fresh {
+                    k_t
+                } else {
+                    pair.fresh / size
+                };
+                push.gradient += b * h;
+                for (k, row) in block.iter_mut().enumerate() {
+                    row[k] += h;
+                }
+                along -= h;
+            }
+            add_outer(&mut block, &(n * along), &n);
+            let cross = Cross {
+                young,
+                old: (old.0, old.1.map(|w| -w)),
+                block,
+            };
+            take(&cross, &push);
+            self.cross.push(cross);
+        }
+    }
+
+    /// Takes the wire at `q` over as accepted: bristles move on, slip is booked.
+    pub fn commit(
+        &mut self,
+        law: &ContactLaw,
+        (q, last): (&[V3], &[V3]),
+        length: impl Fn(usize) -> f64,
+    ) {
+        let curve = Curve(q);
+        for pair in &mut self.pairs {
+            pair.lag = pair.fresh;
+            if pair.depth <= 0.0 {
+                pair.held = false;
+                pair.bristle = V3::zeros();
+                continue;
+            }
+            let young = point_weights(pair.point as usize);
+            let old = curve.weights(pair.segment as usize, pair.share);
+            let way = (place(q, &young) - place(last, &young)) - (place(q, &old) - place(last, &old));
+            let n = pair.normal;
+            let b = pair.bristle + way;
+            let b = b - n * b.dot(&n);
+            let k_t = law.stiffness * length(pair.point as usize) * TANGENTIAL_SHARE;
+            let size = b.norm();
+            pair.held = true;
+            pair.bristle = b;
+            if k_t * size > pair.fresh {
+                let kept = pair.fresh / k_t;
+                pair.bristle = b * (kept / size);
+                self.loss.friction += pair.fresh * (size - kept);
+            }
+        }
+    }
+
+    /// Energy stored in the touches, J.
+    pub fn stored(&self, law: &ContactLaw, onset: f64, length: impl Fn(usize) -> f64) -> f64 {
+        self.pairs
+            .iter()
+            .filter(|p| p.depth > 0.0)
+            .map(|p| {
+                let k_n = law.stiffness * length(p.point as usize);
+                k_n * onset_law(p.depth, onset).0
+                    + 0.5 * k_n * TANGENTIAL_SHARE * p.bristle.norm_squared()
+            })
+            .sum()
+    }
+}
+
+/// Adds the couplings' product with `x` to `y`, three coordinates a node.
+pub fn add_cross(cross: &[Cross], x: &[f64], y: &mut [f64]) {
+    for c in cross {
+        one_way(&c.block, &c.old, &c.young, x, y);
+        one_way(&c.block, &c.young, &c.old, x, y);
+    }
+}
+
+fn one_way(
+    block: &Block,
+    from: &([usize; 3], [f64; 3]),
+    to: &([usize; 3], [f64; 3]),
+    x: &[f64],
+    y: &mut [f64],
+) {
+    let mut s = [0.0; 3];
+    for (n, w) in from.0.iter().zip(from.1) {
+        for a in 0..3 {
+            s[a] += w * x[3 * n + a];
+        }
+    }
+    // symmetric block
+    let t: [f64; 3] =
+        std::array::from_fn(|r| block[r][0] * s[0] + block[r][1] * s[1] + block[r][2] * s[2]);
+    for (n, w) in to.0.iter().zip(to.1) {
+        for a in 0..3 {
+            y[3 * n + a] += w * t[a];
+        }
+    }
+}

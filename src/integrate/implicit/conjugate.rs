@@ -1,0 +1,77 @@
+//! Conjugate gradients for the few couplings that no band holds, the band as preconditioner.
+//!
+//! The banded part contains both partners' own shares of every pair, the couplings only what
+//! lies between them, so the sum is positive semidefinite and the preconditioner is its upper bound.
+
+use crate::contact::{Cross, add_cross};
+use crate::integrate::Banded;
+
+/// Residual, in the norm of the preconditioner, at which an update is good enough: Newton's method needs no more.
+const CLOSE: f64 = 1e-3;
+/// Steps at most; one per coupling is enough in exact arithmetic.
+const MOST_STEPS: usize = 60;
+
+/// Vectors of the iteration.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    x: Vec<f64>,
+    p: Vec<f64>,
+    z: Vec<f64>,
+    y: Vec<f64>,
+}
+
+/// Solves (banded + couplings) x = b in place; `matrix` is factored.
+pub(super) fn solve(
+    matrix: &Banded<3>,
+    cross: &[Cross],
+    held: [[bool; 3]; 2],
+    b: &mut [f64],
+    s: &mut Scratch,
+) {
+    let n = b.len();
+    for v in [&mut s.x, &mut s.p, &mut s.z, &mut s.y] {
+        v.clear();
+        v.resize(n, 0.0);
+    }
+    s.z.copy_from_slice(b);
+    matrix.solve(&mut s.z);
+    s.p.copy_from_slice(&s.z);
+    let mut rz = dot(b, &s.z);
+    let stop = rz * CLOSE * CLOSE;
+    for _ in 0..MOST_STEPS {
+        matrix.multiply(&s.p, &mut s.y);
+        add_cross(cross, &s.p, &mut s.y);
+        for (end, first) in [(0, 0), (1, n - 3)] {
+            for a in 0..3 {
+                if held[end][a] {
+                    s.y[first + a] = s.p[first + a];
+                }
+            }
+        }
+        let curvature = dot(&s.p, &s.y);
+        if curvature <= 0.0 || rz <= 0.0 {
+            break;
+        }
+        let alpha = rz / curvature;
+        for k in 0..n {
+            s.x[k] += alpha * s.p[k];
+            b[k] -= alpha * s.y[k];
+        }
+        s.z.copy_from_slice(b);
+        matrix.solve(&mut s.z);
+        let next = dot(b, &s.z);
+        if next <= stop {
+            break;
+        }
+        let beta = next / rz;
+        rz = next;
+        for k in 0..n {
+            s.p[k] = s.z[k] + beta * s.p[k];
+        }
+    }
+    b.copy_from_slice(&s.x);
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
