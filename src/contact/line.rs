@@ -19,8 +19,10 @@ use crate::rod::{Block, add_outer};
 const PASSAGES: usize = 4;
 /// A point's surroundings are looked up again after this way, in wire diameters.
 const SKIN: f64 = 0.15;
+/// Error of a contact force that an update may promise, over the force of one onset depth.
+const FORESIGHT: f64 = 0.01;
 /// Depth over which the normal force sets in, m: contact of a 15 N corner is 1 um deep.
-const ONSET: f64 = 1e-6;
+const ONSET: f64 = 1e-5;
 
 const FRICW: f64 = 0.9;
 /// One possible touch of a point.
@@ -110,8 +112,27 @@ pub struct LineContact {
     pub deepest: f64,
     /// live wire against live wire, where they may meet
     pub between: Option<Between>,
+    /// every surface near a point at the last evaluation
+    near: Vec<Near>,
     points: Vec<Point>,
     found: Vec<u32>,
+}
+
+/// A surface near a contact point: what an update needs to know of it in advance.
+#[derive(Clone, Copy, Debug)]
+pub struct Near {
+    /// the point
+    pub point: u32,
+    /// outward normal of the surface
+    pub normal: V3,
+    /// depth, negative for a gap, m
+    pub depth: f64,
+    /// contact stiffness of what the point stands for, N/m
+    pub stiffness: f64,
+    /// share of it that the Hessian holds
+    pub share: f64,
+    /// force at which that tangent leaves the depth of the iterate, N
+    pub force: f64,
 }
 
 impl LineContact {
@@ -127,6 +148,7 @@ impl LineContact {
             hold_limits: false,
             deepest: 0.0,
             between: None,
+            near: Vec::new(),
             points: vec![FRESH; 2 * nodes],
             found: Vec::with_capacity(64),
         }
@@ -287,6 +309,7 @@ impl LineContact {
             onset,
             radius,
             hold_limits,
+            near,
             ..
         } = self;
         let point = &mut points[k];
@@ -308,14 +331,25 @@ impl LineContact {
             let touch = &mut point.touch[slot];
             touch.depth = depth;
             touch.normal = normal;
+            let k_n = law.stiffness * length;
+            let mut row = Near {
+                point: k as u32,
+                normal,
+                depth,
+                stiffness: k_n,
+                share: 0.0,
+                force: 0.0,
+            };
             if depth <= 0.0 {
                 touch.fresh = 0.0;
+                near.push(row);
                 continue;
             }
             any = true;
-            let k_n = law.stiffness * length;
             let (e, f, s) = onset_law(depth, *onset);
             let force = k_n * f;
+            (row.share, row.force) = (s, force);
+            near.push(row);
             sum.energy += k_n * e;
             sum.energy_lagged += k_n * e;
             sum.gradient -= normal * force;
@@ -351,6 +385,49 @@ impl LineContact {
             add_outer(&mut sum.hessian, &(normal * along), &normal);
         }
         any.then_some(sum)
+    }
+
+    /// Forgets what was near before a new evaluation.
+    pub fn begin(&mut self) {
+        self.near.clear();
+    }
+
+    /// Looks where the update `move_of(point)` leads every point, and corrects the tangents that would be
+    /// wrong there: `correct(point, change of Hessian along normal, change of force, normal)`. Whether any was.
+    ///
+    /// A point on its way through a surface that the Hessian does not hold yet would otherwise be
+    /// thrown back and forth, with all its neighbours on a flat.
+    pub fn foresee(
+        &mut self,
+        move_of: impl Fn(usize) -> V3,
+        mut correct: impl FnMut(usize, f64, f64, V3),
+    ) -> bool {
+        let mut any = false;
+        for near in &mut self.near {
+            let away = near.normal.dot(&move_of(near.point as usize));
+            let (_, f, s) = if near.depth > away {
+                onset_law(near.depth - away, self.onset)
+            } else {
+                (0.0, 0.0, 0.0)
+            };
+            let force = near.stiffness * f;
+            let promised = near.force - near.stiffness * near.share * away;
+            if (force - promised).abs() <= FORESIGHT * near.stiffness * self.onset {
+                continue;
+            }
+            any = true;
+            // the tangent at the place the update leads to, brought back to the iterate
+            let there = force + near.stiffness * s * away;
+            correct(
+                near.point as usize,
+                near.stiffness * (s - near.share),
+                there - near.force,
+                near.normal,
+            );
+            near.share = s;
+            near.force = there;
+        }
+        any
     }
 
     /// Takes the friction limits of the iterate in hand over: call once an iterate is accepted.

@@ -192,6 +192,7 @@ impl Model<'_> {
         let Some(line) = self.line.as_deref_mut() else {
             return;
         };
+        line.begin();
         let edges = work.q.len() - 1;
         let mut arc = self.arc0;
         for j in 0..edges {
@@ -273,12 +274,23 @@ fn spread_block(
     g: &V3,
     block: &Block,
 ) {
+    for (i, w) in nodes.iter().zip(weights) {
+        gradient[*i] += g * *w;
+    }
+    add_block(matrix, &(*nodes, *weights), block);
+}
+
+/// Adds a point's Hessian to three neighbouring nodes.
+pub(super) fn add_block(
+    matrix: &mut crate::integrate::Banded<3>,
+    (nodes, weights): &([usize; 3], [f64; 3]),
+    block: &Block,
+) {
     for a in 0..3 {
         let (i, wa) = (nodes[a], weights[a]);
         if wa == 0.0 {
             continue;
         }
-        gradient[i] += g * wa;
         matrix.add_diagonal(i, &combine(|r, c| block[r][c] * (wa * wa)));
         for b in a + 1..3 {
             let wb = weights[b];

@@ -1,11 +1,15 @@
 //! Newton's method on the incremental potential, with line search.
 
+use super::model::{Model, add_block};
 use super::{Work, conjugate};
-use super::model::Model;
+use crate::contact::point_weights;
+use crate::rod::add_outer;
 use crate::math::V3;
 
 /// Newton steps before a time step counts as failed.
 const MOST_STEPS: usize = 12;
+/// Times that an update is solved again for contact it meets on its way.
+const LOOKS_AHEAD: usize = 4;
 /// Halvings of one Newton step.
 const MOST_CUTS: usize = 12;
 /// Largest move of a node in one Newton step, m.
@@ -50,28 +54,12 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
     let mut last_update = f64::INFINITY;
     for step in 1..=MOST_STEPS {
         work.solves += 1;
-        if let Err(loose) = work.matrix.factor() {
+        if let Err(node) = solve_linear(model, work) {
             return Err(Stuck {
-                node: loose.node,
+                node,
                 update: f64::NAN,
                 steps: step,
             });
-        }
-        work.update.clear();
-        for g in &work.gradient {
-            work.update.extend_from_slice(&[-g.x, -g.y, -g.z]);
-        }
-        match model.line.as_deref().and_then(|l| l.between.as_ref()) {
-            Some(between) if !between.cross.is_empty() => {
-                conjugate::solve(
-                    &work.matrix,
-                    &between.cross,
-                    model.held,
-                    &mut work.update,
-                    &mut work.gradients,
-                );
-            }
-            _ => work.matrix.solve(&mut work.update),
         }
         let (mut update, mut node) = (0.0, 0);
         for (k, u) in work.update.iter().enumerate() {
@@ -161,6 +149,69 @@ fn hold_limits(model: &mut Model, hold: bool) {
     if let Some(line) = model.line.as_deref_mut() {
         line.hold_limits = hold;
     }
+}
+
+/// The update from gradient and Hessian, with tangents of contact that fit where it leads.
+fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
+    let nodes = work.q.len();
+    work.load.clear();
+    for g in &work.gradient {
+        work.load.extend_from_slice(&[-g.x, -g.y, -g.z]);
+    }
+    for look in 0.. {
+        work.matrix.factor().map_err(|loose| loose.node)?;
+        work.update.clone_from(&work.load);
+        match model.line.as_deref().and_then(|l| l.between.as_ref()) {
+            Some(between) if !between.cross.is_empty() => conjugate::solve(
+                &work.matrix,
+                &between.cross,
+                model.held,
+                &mut work.update,
+                &mut work.gradients,
+            ),
+            _ => work.matrix.solve(&mut work.update),
+        }
+        let Some(line) = model.line.as_deref_mut().filter(|_| look < LOOKS_AHEAD) else {
+            break;
+        };
+        let Work {
+            update,
+            load,
+            matrix,
+            ..
+        } = work;
+        let move_of = |point: usize| {
+            let (at, weight) = point_weights(point);
+            let mut d = V3::zeros();
+            for (i, w) in at.iter().zip(weight) {
+                d += V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]) * w;
+            }
+            d
+        };
+        let any = line.foresee(move_of, |point, stiffness, force, n| {
+            let (at, mut weight) = point_weights(point);
+            for (w, i) in weight.iter_mut().zip(at) {
+                // held nodes keep their unit rows
+                let end = if i == 0 { Some(0) } else { (i == nodes - 1).then_some(1) };
+                if end.is_some_and(|e| model.held[e] == [true; 3]) {
+                    *w = 0.0;
+                }
+            }
+            let mut block = crate::rod::Block::default();
+            add_outer(&mut block, &(n * stiffness), &n);
+            add_block(matrix, &(at, weight), &block);
+            for (i, w) in at.iter().zip(weight) {
+                for a in 0..3 {
+                    load[3 * i + a] += w * n[a] * force;
+                }
+            }
+        });
+        if !any {
+            break;
+        }
+        work.solves += 1;
+    }
+    Ok(())
 }
 
 /// At the start tensions are expected to stay what they were at the last accepted instant.
