@@ -66,6 +66,8 @@ pub struct Between {
     old: Vec<Pair>,
     angle: Vec<f64>,
     arc: Vec<f64>,
+    /// room for the wire in the core frame
+    pub scratch: Vec<V3>,
     /// couplings of the last evaluation
     pub cross: Vec<Cross>,
     /// totals of what was lost
@@ -283,7 +285,8 @@ impl Between {
             }
             let young = point_weights(pair.point as usize);
             let old = curve.weights(pair.segment as usize, pair.share);
-            let way = (place(q, &young) - place(last, &young)) - (place(q, &old) - place(last, &old));
+            let way =
+                (place(q, &young) - place(last, &young)) - (place(q, &old) - place(last, &old));
             let n = pair.normal;
             let b = pair.bristle + way;
             let b = b - n * b.dot(&n);

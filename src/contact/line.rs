@@ -24,7 +24,9 @@ const FORESIGHT: f64 = 0.01;
 /// Depth over which the normal force sets in, m: contact of a 15 N corner is 1 um deep.
 const ONSET: f64 = 1e-5;
 
-const FRICW: f64 = 0.9;
+/// Share of the zero stiffness of a sliding bristle along its slide that the Hessian takes over. With
+/// all of it updates overshoot to the far side of the anchor, with none they crawl.
+const ALONG_SLIDE: f64 = 0.9;
 /// One possible touch of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Touch {
@@ -202,23 +204,6 @@ impl LineContact {
             .fold(0.0, f64::max)
     }
 
-    pub fn report(&self) {
-        for (k, p) in self.points.iter().enumerate() {
-            for (s, t) in p.touch.iter().enumerate() {
-                if t.depth > 5e-6 {
-                    eprintln!(
-                        "      deep point {k} slot {s} depth {:.2e} start {} held {} normal {:?} core_near {} passages {}",
-                        t.depth,
-                        t.start as i32,
-                        t.held,
-                        t.normal.as_slice(),
-                        p.core_near,
-                        p.passages
-                    );
-                }
-            }
-        }
-    }
     /// Whether node `i` or the wire next to it touches anything.
     pub fn touches(&self, i: usize) -> bool {
         self.depth(i) > 0.0
@@ -378,7 +363,7 @@ impl LineContact {
                     sum.gradient += dir * touch.fresh;
                     let h = touch.fresh / size;
                     add_identity(&mut sum.hessian, h);
-                    add_outer(&mut sum.hessian, &(dir * (-FRICW * h)), &dir);
+                    add_outer(&mut sum.hessian, &(dir * (-ALONG_SLIDE * h)), &dir);
                     along -= h;
                 }
             }
@@ -458,17 +443,6 @@ impl LineContact {
             if t.depth <= 0.0 {
                 t.held = false;
                 continue;
-            }
-            if std::env::var("DBG").is_ok() && t.depth > 8e-6 {
-                eprintln!(
-                    "   DEEP point {k} depth {:.2e} start {} last-moved {:.2e} dn {:.2e} l {:.2e} q {:?}",
-                    t.depth,
-                    t.start as i32,
-                    (p - last).norm(),
-                    (p - last).dot(&t.normal),
-                    length,
-                    p * 1e3
-                );
             }
             self.deepest = self.deepest.max(t.depth);
             let anchor = if t.held { t.anchor } else { last };

@@ -253,7 +253,10 @@ impl SplineTube {
             let t = 0.5 * (a + b);
             let segment = t as usize;
             let at_end = b <= t_of(first) + 1e-9 || a >= t_of(last) - 1e-9;
-            let foot = self.curve().piece(segment, p).foot(p, segment, t.fract(), at_end);
+            let foot = self
+                .curve()
+                .piece(segment, p)
+                .foot(p, segment, t.fract(), at_end);
             if foot.distance <= reach && self.arc[segment] <= own {
                 feet.push(foot);
             }

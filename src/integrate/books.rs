@@ -65,7 +65,9 @@ impl System {
             })
             .sum::<f64>()
             + line.between.as_ref().map_or(0.0, |b| {
-                b.stored(&line.law, line.onset, |p| super::implicit::point_length(rod, p))
+                b.stored(&line.law, line.onset, |p| {
+                    super::implicit::point_length(rod, p)
+                })
             })
     }
 

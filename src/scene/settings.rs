@@ -162,7 +162,7 @@ impl Default for SceneSettings {
                 refine_distance: 0.0,
                 step_share: 0.9,
                 step: 0.0,
-                tolerance: 5e-6,
+                tolerance: 2e-6,
             },
             freeze: super::Freeze {
                 enabled: true,

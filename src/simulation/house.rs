@@ -4,6 +4,7 @@ use super::{EventKind, HOUSE_STEPS, SimError, Simulation};
 use crate::freeze::FrozenNode;
 use crate::integrate::turn_about_y;
 use crate::math::{Spin, V3};
+use crate::measure::{polar_angle, wrap_to_pi};
 
 impl Simulation {
     pub(super) fn keep_house(&mut self, dt: f64) -> Result<(), SimError> {
@@ -103,8 +104,7 @@ impl Simulation {
     /// Live wire meets live wire where lift-off comes round before the wire there is at rest. A whole
     /// flat can land at once, so the pairs are watched from half a turn on.
     fn watch_live_wire(&mut self) {
-        let laid = self.laid_angles().last().map_or(0.0, |a| a.abs());
-        if laid > 0.5 * std::f64::consts::TAU {
+        if self.laid_angle() > 0.5 * std::f64::consts::TAU {
             match &mut self.sys.line {
                 Some(line) => {
                     line.between.get_or_insert_default();
@@ -116,17 +116,16 @@ impl Simulation {
         }
     }
 
-    /// Polar angle along the wire of the live nodes from the clamp to lift-off, rad.
-    fn laid_angles(&self) -> Vec<f64> {
+    /// Polar angle that the live wire covers from the clamp to lift-off, rad.
+    fn laid_angle(&self) -> f64 {
         let spin = Spin::new(self.sys.spindle.angle);
-        let points: Vec<V3> = (0..=self.lift_off())
-            .map(|i| spin.to_core(self.sys.rod.x[i]))
-            .collect();
-        crate::measure::unwrap_angles(
-            &points,
-            crate::measure::polar_angle(points[0]),
-            self.coil.spec().direction,
-        )
+        let x = &self.sys.rod.x;
+        let mut last = (0.0, polar_angle(spin.to_core(x[0])));
+        for x in &x[..=self.lift_off()] {
+            let polar = polar_angle(spin.to_core(*x));
+            last = (last.0 + wrap_to_pi(polar - last.1), polar);
+        }
+        last.0.abs()
     }
 
     /// The first `count` nodes become fixed geometry.

@@ -78,13 +78,13 @@ impl Programme {
     }
 
     /// Pieces of constant acceleration between two times.
-    pub fn pieces(&self, from: f64, to: f64) -> Vec<Piece> {
+    pub fn pieces(&self, from: f64, to: f64) -> impl Iterator<Item = Piece> + use<> {
         let ramp = self.ramp_time();
-        let mut pieces = Vec::with_capacity(2);
+        let mut pieces = [None; 2];
         if from < ramp {
             let end = to.min(ramp);
             if end > from {
-                pieces.push(Piece {
+                pieces[0] = Some(Piece {
                     duration: end - from,
                     speed: self.speed(from),
                     acceleration: self.speed / ramp,
@@ -93,12 +93,12 @@ impl Programme {
         }
         let start = from.max(ramp);
         if to > start {
-            pieces.push(Piece {
+            pieces[1] = Some(Piece {
                 duration: to - start,
                 speed: self.speed,
                 acceleration: 0.0,
             });
         }
-        pieces
+        pieces.into_iter().flatten()
     }
 }

@@ -245,8 +245,14 @@ fn between_forces(
     else {
         return;
     };
-    let q: Vec<V3> = rod.x.iter().map(|x| spin.to_core(*x)).collect();
-    let last = if past.q[0].len() == q.len() { &past.q[0] } else { &q };
+    let mut q = std::mem::take(&mut between.scratch);
+    q.clear();
+    q.extend(rod.x.iter().map(|x| spin.to_core(*x)));
+    let last = if past.q[0].len() == q.len() {
+        &past.q[0]
+    } else {
+        &q
+    };
     between.evaluate(
         law,
         *onset,
@@ -268,4 +274,5 @@ fn between_forces(
         between.commit(law, (&q, last), |point| point_length(rod, point));
         *deepest = deepest.max(between.deepest());
     }
+    between.scratch = q;
 }

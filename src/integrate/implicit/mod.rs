@@ -23,8 +23,9 @@ use tensioner::NozzleEdge;
 
 /// Largest growth of the step from one to the next; variable-step BDF2 is stable to 2.4.
 const GROWTH: f64 = 1.7;
-/// Share of the tolerance that a step length is chosen for.
-const AIM: f64 = 0.7;
+/// Share of the tolerance that a step length is chosen for: fewer steps thrown away outweigh more
+/// steps (at 0.7 a fifth of all steps was rejected, at 0.4 a tenth, for a tenth less work in all).
+const AIM: f64 = 0.4;
 /// Newton's update at which a solve is done, over the tolerance.
 const CLOSE: f64 = 0.1;
 
@@ -85,6 +86,8 @@ struct Work {
     gradient: Vec<V3>,
     update: Vec<f64>,
     load: Vec<f64>,
+    /// the update without a look ahead
+    plain: Vec<f64>,
     matrix: Banded<3>,
     gradients: conjugate::Scratch,
     force: Vec<V3>,
@@ -148,6 +151,7 @@ impl Implicit {
                 gradient: Vec::new(),
                 update: Vec::new(),
                 load: Vec::new(),
+                plain: Vec::new(),
                 matrix: Banded::new(),
                 gradients: conjugate::Scratch::default(),
                 force: Vec::new(),
@@ -200,18 +204,6 @@ impl Implicit {
             let retry = match solved {
                 Ok(_) => {
                     let error = step.error * self.difference();
-                    if std::env::var("DBG").is_ok() {
-                        eprintln!(
-                            "t {:.6} h {:.3e} err {:.3e} known {} newton {:?} nodes {} T {:.2}",
-                            sys.time,
-                            h,
-                            error,
-                            sys.past.known,
-                            solved,
-                            sys.rod.nodes(),
-                            sys.load.tension.last().unwrap()
-                        );
-                    }
                     let factor = (AIM * self.tolerance / error.max(1e-30)).cbrt();
                     if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
                         self.commit(sys, &step, spindle, &support, nozzle);

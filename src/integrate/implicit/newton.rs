@@ -3,11 +3,14 @@
 use super::model::{Model, add_block};
 use super::{Work, conjugate};
 use crate::contact::point_weights;
-use crate::rod::add_outer;
 use crate::math::V3;
+use crate::rod::add_outer;
 
 /// Newton steps before a time step counts as failed.
 const MOST_STEPS: usize = 12;
+/// Newton steps that renew the friction limits; from then on they stay, so that the rest converges
+/// quadratically. What is left of the lag is its last change.
+const LIMIT_STEPS: usize = 5;
 /// Times that an update is solved again for contact it meets on its way.
 const LOOKS_AHEAD: usize = 4;
 /// Halvings of one Newton step.
@@ -34,12 +37,6 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
     hold_limits(model, true);
     let mut value = model.evaluate(work).now;
     hold_limits(model, false);
-    if std::env::var("DBG2").is_ok() {
-        if let Some(l) = model.line.as_deref() {
-            l.report();
-        }
-        eprintln!("start h {:.3e}", model.elapsed);
-    }
     // inertia bounds the update from above: a guess that is good enough costs no solve
     let weight = model.gamma * model.gamma;
     let bound = work
@@ -61,6 +58,9 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
                 steps: step,
             });
         }
+        if slope(work) >= 0.0 {
+            work.update.clone_from(&work.plain);
+        }
         let (mut update, mut node) = (0.0, 0);
         for (k, u) in work.update.iter().enumerate() {
             if !(u.abs() <= update) {
@@ -74,28 +74,6 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
                 update,
                 steps: step,
             });
-        }
-        if std::env::var("DBG2").is_ok() {
-            eprintln!(
-                "   it {step} update {update:.3e} node {node} value {value:.9e} q {:?}",
-                work.q[node] * 1e3
-            );
-        }
-        if std::env::var("DBG2").is_ok() {
-            let n = work.q.len();
-            for k in [n - 4, n - 3, n - 2] {
-                eprintln!(
-                    "       node {k} q {:?} guess-target {:?} upd {:.2e} {:.2e} {:.2e} T {:.2} exp {:.2} rest {:.4e}",
-                    (work.q[k] * 1e3).as_slice(),
-                    ((work.q[k] - work.target[k]) * 1e3).as_slice(),
-                    work.update[3 * k],
-                    work.update[3 * k + 1],
-                    work.update[3 * k + 2],
-                    work.axial[k].tension,
-                    work.expected[k].tension,
-                    model.rod.rest[k]
-                );
-            }
         }
         let mut share = (LONGEST_MOVE / update).min(1.0);
         work.start.clone_from(&work.q);
@@ -112,6 +90,7 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
         }
         let mut cuts = 0;
         loop {
+            hold_limits(model, step > LIMIT_STEPS);
             take(work, share);
             expect_tension(work, share);
             let trial = model.evaluate(work);
@@ -121,9 +100,6 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
                     line.renew_lags();
                 }
                 break;
-            }
-            if std::env::var("DBG2").is_ok() {
-                eprintln!("      cut share {share} trial {:.9e} ", trial.merit);
             }
             cuts += 1;
             work.cuts += 1;
@@ -171,6 +147,9 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
             ),
             _ => work.matrix.solve(&mut work.update),
         }
+        if look == 0 {
+            work.plain.clone_from(&work.update);
+        }
         let Some(line) = model.line.as_deref_mut().filter(|_| look < LOOKS_AHEAD) else {
             break;
         };
@@ -192,7 +171,11 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
             let (at, mut weight) = point_weights(point);
             for (w, i) in weight.iter_mut().zip(at) {
                 // held nodes keep their unit rows
-                let end = if i == 0 { Some(0) } else { (i == nodes - 1).then_some(1) };
+                let end = if i == 0 {
+                    Some(0)
+                } else {
+                    (i == nodes - 1).then_some(1)
+                };
                 if end.is_some_and(|e| model.held[e] == [true; 3]) {
                     *w = 0.0;
                 }
@@ -239,6 +222,15 @@ fn expect_tension(work: &mut Work, share: f64) {
         e.tension = a.tension + a.stiffness * longer;
         e.energy = a.energy + longer * (a.tension + 0.5 * a.stiffness * longer);
     }
+}
+
+/// Slope of the potential along the update.
+fn slope(work: &Work) -> f64 {
+    work.gradient
+        .iter()
+        .zip(work.update.chunks_exact(3))
+        .map(|(g, u)| g.x * u[0] + g.y * u[1] + g.z * u[2])
+        .sum()
 }
 
 fn take(work: &mut Work, share: f64) {
