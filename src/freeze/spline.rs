@@ -665,7 +665,7 @@ mod tests {
 
     /// On the curve, at t = segment + share.
     fn on(tube: &SplineTube, t: f64) -> V3 {
-        tube.piece(t as usize, V3::zeros()).arm(t.fract())
+        tube.curve().piece(t as usize, V3::zeros()).arm(t.fract())
     }
 
     fn reachable(tube: &SplineTube, share: f64) -> f64 {
@@ -674,7 +674,7 @@ mod tests {
 
     /// Radius of curvature at t, m.
     fn bend_radius(tube: &SplineTube, t: f64) -> f64 {
-        let piece = tube.piece(t as usize, V3::zeros());
+        let piece = tube.curve().piece(t as usize, V3::zeros());
         let along = piece.along(t.fract());
         along.norm().powi(3) / along.cross(&piece.bend).norm()
     }
@@ -695,7 +695,7 @@ mod tests {
         }
         for k in 1..n {
             // place and derivative are the same from both sides
-            let (a, b) = (tube.piece(k - 1, V3::zeros()), tube.piece(k, V3::zeros()));
+            let (a, b) = (tube.curve().piece(k - 1, V3::zeros()), tube.curve().piece(k, V3::zeros()));
             assert!((a.arm(1.0) - b.arm(0.0)).norm() < 1e-17);
             assert!((a.along(1.0) - b.along(0.0)).norm() < 1e-17);
             assert_eq!(a.g_high, b.g_low);
@@ -754,7 +754,7 @@ mod tests {
             out in 0.02..0.8f64,
         ) {
             let t = reachable(&tube, t);
-            let along = tube.piece(t as usize, V3::zeros()).along(t.fract()).normalize();
+            let along = tube.curve().piece(t as usize, V3::zeros()).along(t.fract()).normalize();
             let side = across(&along);
             let way = side * libm::cos(round) + along.cross(&side) * libm::sin(round);
             let bend = bend_radius(&tube, t).min(bend_radius(&tube, (t - 0.5).max(0.5)))
@@ -782,7 +782,7 @@ mod tests {
             round in 0.0..6.3f64,
         ) {
             let joint = (joint * tube.len() as f64).floor();
-            let along = tube.piece(joint as usize, V3::zeros()).along(0.0).normalize();
+            let along = tube.curve().piece(joint as usize, V3::zeros()).along(0.0).normalize();
             let side = across(&along);
             let way = side * libm::cos(round) + along.cross(&side) * libm::sin(round);
             let bend = bend_radius(&tube, joint).min(bend_radius(&tube, joint - 1e-9));

@@ -60,8 +60,10 @@ pub struct Bent {
     pub before: V3,
     /// its gradient, N
     pub after: V3,
-    /// Gauss-Newton Hessian, N/m: before-before, before-after, after-after
-    pub hessian: [Block; 3],
+    /// Gauss-Newton Hessian, N/m: before-before and after-after
+    pub own: [Symmetric; 2],
+    /// its rest: rows before, columns after
+    pub cross: Block,
 }
 
 /// Bending of a joint between edges of directions `t` and inverse lengths `il`.
@@ -102,44 +104,38 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
     let cf = c1 * f;
     let cf2 = cf * f;
     let ck = c1 * kb2;
-    let mut hessian = [
-        scaled_identity(cf2),
-        scaled_identity(-cf2 * t[0].dot(t[1])),
-        scaled_identity(cf2),
-    ];
-    add_outer(&mut hessian[0], t[1], &(t[1] * -cf2));
-    add_outer_pair(&mut hessian[0], &(a[0] * cf), &t_sum);
-    add_outer(&mut hessian[2], t[0], &(t[0] * -cf2));
-    add_outer_pair(&mut hessian[2], &(a[1] * -cf), &t_sum);
-    add_outer(&mut hessian[1], t[0], &(t[1] * cf2));
-    add_outer(&mut hessian[1], &(a[0] * cf + t_sum * ck), &t_sum);
-    add_outer(&mut hessian[1], &(t_sum * -cf), &a[1]);
-    for k in [0, 2] {
-        add_outer(&mut hessian[k], &(t_sum * ck), &t_sum);
-    }
     let scale = [il[0] * il[0], il[0] * il[1], il[1] * il[1]];
-    for (h, s) in hessian.iter_mut().zip(scale) {
-        for row in h.iter_mut() {
-            for x in row.iter_mut() {
-                *x *= s;
-            }
+    let mut own = [[0.0; 6]; 2];
+    for (k, (other, sign)) in [(t[1], cf), (t[0], -cf)].into_iter().enumerate() {
+        let s = scale[2 * k];
+        let h = &mut own[k];
+        for d in [0, 2, 5] {
+            h[d] = cf2 * s;
         }
+        add_square(h, other, -cf2 * s);
+        let w = (a[k] * sign + t_sum * (0.5 * ck)) * s;
+        add_pair(h, &w, &t_sum);
+        add_square(h, &u[k], c2);
     }
-    add_outer(&mut hessian[0], &(u[0] * c2), &u[0]);
-    add_outer(&mut hessian[1], &(u[0] * c2), &u[1]);
-    add_outer(&mut hessian[2], &(u[1] * c2), &u[1]);
+    let s = scale[1];
+    let mut cross = scaled_identity(-cf2 * t[0].dot(t[1]) * s);
+    add_outer(&mut cross, t[0], &(t[1] * (cf2 * s)));
+    add_outer(&mut cross, &((a[0] * cf + t_sum * ck) * s), &t_sum);
+    add_outer(&mut cross, &(t_sum * (-cf * s)), &a[1]);
+    add_outer(&mut cross, &(u[0] * c2), &u[1]);
     if c_along != 0.0 {
         let d = turn(&dir);
         let w = on(&d, [d.cross(t[1]), d.cross(t[0])]);
-        add_outer(&mut hessian[0], &(w[0] * c_along), &w[0]);
-        add_outer(&mut hessian[1], &(w[0] * c_along), &w[1]);
-        add_outer(&mut hessian[2], &(w[1] * c_along), &w[1]);
+        add_square(&mut own[0], &w[0], c_along);
+        add_square(&mut own[1], &w[1], c_along);
+        add_outer(&mut cross, &(w[0] * c_along), &w[1]);
     }
     Bent {
         energy,
         before,
         after,
-        hessian,
+        own,
+        cross,
     }
 }
 
@@ -162,11 +158,30 @@ pub fn add_outer(m: &mut Block, a: &V3, b: &V3) {
     }
 }
 
+/// A symmetric block by its lower half, row by row.
+pub type Symmetric = [f64; 6];
+
+/// Adds `c a a^T`.
+#[inline]
+pub fn add_square(m: &mut Symmetric, a: &V3, c: f64) {
+    let b = a * c;
+    m[0] += b.x * a.x;
+    m[1] += b.y * a.x;
+    m[2] += b.y * a.y;
+    m[3] += b.z * a.x;
+    m[4] += b.z * a.y;
+    m[5] += b.z * a.z;
+}
+
 /// Adds `a b^T + b a^T`.
 #[inline]
-fn add_outer_pair(m: &mut Block, a: &V3, b: &V3) {
-    add_outer(m, a, b);
-    add_outer(m, b, a);
+fn add_pair(m: &mut Symmetric, a: &V3, b: &V3) {
+    m[0] += 2.0 * a.x * b.x;
+    m[1] += a.y * b.x + b.y * a.x;
+    m[2] += 2.0 * a.y * b.y;
+    m[3] += a.z * b.x + b.z * a.x;
+    m[4] += a.z * b.y + b.z * a.y;
+    m[5] += 2.0 * a.z * b.z;
 }
 
 /// Moment, energy per length, stiffness along and across the moment, its direction.
@@ -275,7 +290,14 @@ mod tests {
         let set = turning([&t[0], &t[1]]) / lv;
         let b = at(&l, &set, 0.0, lv, e);
         let h = 1e-9;
-        let h3 = b.hessian.map(|m| crate::math::M3::from(m).transpose());
+        let whole = |m: &Symmetric| {
+            crate::math::M3::new(m[0], m[1], m[3], m[1], m[2], m[4], m[3], m[4], m[5])
+        };
+        let h3 = [
+            whole(&b.own[0]),
+            crate::math::M3::from(b.cross).transpose(),
+            whole(&b.own[1]),
+        ];
         let scale = h3.iter().map(|m| m.norm()).fold(0.0, f64::max);
         for (which, axis) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)] {
             let gradient = |s: f64| {
@@ -365,13 +387,12 @@ mod tests {
             l,
             [V3::x() * l, V3::x() * -l],
         );
-        assert!(
-            folded.energy.is_finite()
-                && folded
-                    .hessian
-                    .iter()
-                    .all(|h| h.iter().all(|x| x.iter().all(|y| y.is_finite())))
-        );
+        let all = folded
+            .own
+            .iter()
+            .flatten()
+            .chain(folded.cross.iter().flatten());
+        assert!(folded.energy.is_finite() && all.copied().all(f64::is_finite));
     }
 
     #[test]

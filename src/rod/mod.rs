@@ -11,7 +11,9 @@ mod plasticity;
 mod section;
 mod state;
 
-pub use discrete::{Bent, Block, Stretched, add_outer, bent, stretched, turning};
+pub use discrete::{
+    Bent, Block, Stretched, Symmetric, add_outer, add_square, bent, stretched, turning,
+};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::{Joint, align, frame_along, relative, rotate, rotate_back};
 pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};

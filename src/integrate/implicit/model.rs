@@ -5,7 +5,7 @@ use super::{Axial, Work};
 use crate::contact::{LineContact, own_wire};
 use crate::integrate::Loads;
 use crate::math::V3;
-use crate::rod::{Bent, Block, Laws, Rod, add_outer, bent, stretched};
+use crate::rod::{Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched};
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {
@@ -45,7 +45,8 @@ const NO_JOINT: Bent = Bent {
     energy: 0.0,
     before: V3::new(0.0, 0.0, 0.0),
     after: V3::new(0.0, 0.0, 0.0),
-    hessian: [[[0.0; 3]; 3]; 3],
+    own: [[0.0; 6]; 2],
+    cross: [[0.0; 3]; 3],
 };
 
 impl Model<'_> {
@@ -85,9 +86,6 @@ impl Model<'_> {
             let k = m * weight;
             energy += 0.5 * k * d.norm_squared() - m * gravity.dot(&work.q[i]);
             work.gradient[i] += d * k - gravity * m;
-            for a in 0..3 {
-                work.matrix.add_to_entry(i, a, k);
-            }
         }
         for (i, f) in &self.loads.nodal {
             let f = self.back.to_core(*f);
@@ -105,7 +103,10 @@ impl Model<'_> {
         // edge in hand, the joint at its start, the cross block there
         let mut before = (self.clamp[0], 0.0);
         let mut at_start = NO_JOINT;
-        let mut stretch = [[0.0; 3]; 3];
+        let mut stretch = [0.0; 6];
+        // what the edge before puts on the node in hand
+        let mut carried = [0.0; 6];
+        let weight = 1.0 / (self.gamma * self.gamma);
         let mut pull = V3::zeros();
         for j in 0..=edges {
             let (mut after, mut length) = ((self.clamp[1], 0.0), 0.0);
@@ -133,18 +134,44 @@ impl Model<'_> {
                 let g = pull + at_start.after + joint.before;
                 work.gradient[j] += g;
                 work.gradient[e] -= g;
-                let b = &at_start.hessian[1];
-                let next = &joint.hessian[1];
-                let own = combine(|r, c| {
-                    stretch[r][c] + at_start.hessian[2][r][c] + joint.hessian[0][r][c]
-                });
-                let first = combine(|r, c| own[r][c] - b[r][c] - b[c][r]);
-                work.matrix.add_diagonal(e, &first);
-                work.matrix.add_diagonal(j, &own);
-                let off = combine(|r, c| b[r][c] + next[r][c] - own[r][c]);
+                let (b, next) = (&at_start.cross, &joint.cross);
+                let own: Symmetric =
+                    std::array::from_fn(|k| stretch[k] + at_start.own[1][k] + joint.own[0][k]);
+                let k = work.mass[e] * weight;
+                work.matrix.add_diagonal(
+                    e,
+                    &[
+                        [carried[0] + own[0] - 2.0 * b[0][0] + k, 0.0, 0.0],
+                        [
+                            carried[1] + own[1] - b[1][0] - b[0][1],
+                            carried[2] + own[2] - 2.0 * b[1][1] + k,
+                            0.0,
+                        ],
+                        [
+                            carried[3] + own[3] - b[2][0] - b[0][2],
+                            carried[4] + own[4] - b[2][1] - b[1][2],
+                            carried[5] + own[5] - 2.0 * b[2][2] + k,
+                        ],
+                    ],
+                );
+                carried = own;
+                let whole = [
+                    [own[0], own[1], own[3]],
+                    [own[1], own[2], own[4]],
+                    [own[3], own[4], own[5]],
+                ];
+                let off = combine(|r, c| b[r][c] + next[r][c] - whole[r][c]);
                 work.matrix.add(e, 1, &off);
                 if j < edges {
                     work.matrix.add(e, 2, &combine(|r, c| -next[r][c]));
+                } else {
+                    let k = work.mass[j] * weight;
+                    let last = [
+                        [own[0] + k, 0.0, 0.0],
+                        [own[1], own[2] + k, 0.0],
+                        [own[3], own[4], own[5] + k],
+                    ];
+                    work.matrix.add_diagonal(j, &last);
                 }
             }
             if j < edges {
@@ -179,8 +206,8 @@ impl Model<'_> {
                     stiffness: s.stiffness,
                     energy: s.energy,
                 };
-                stretch = combine(|r, c| if r == c { across } else { 0.0 });
-                add_outer(&mut stretch, &(t * (s.stiffness - across)), &t);
+                stretch = [across, 0.0, across, 0.0, 0.0, across];
+                add_square(&mut stretch, &t, s.stiffness - across);
             }
             before = after;
             at_start = joint;
