@@ -110,6 +110,7 @@ impl Between {
     }
 
     /// Lists the pairs for a step that starts at `q` (core frame); `rest` are its edges' unstretched lengths.
+    #[inline(never)]
     pub fn list(&mut self, q: &[V3], rest: &[f64], diameter: f64) {
         self.angle.clear();
         self.arc.clear();

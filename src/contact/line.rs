@@ -382,6 +382,7 @@ impl LineContact {
     ///
     /// A point on its way through a surface that the Hessian does not hold yet would otherwise be
     /// thrown back and forth, with all its neighbours on a flat.
+    #[inline(never)]
     pub fn foresee(
         &mut self,
         move_of: impl Fn(usize) -> V3,

@@ -21,6 +21,7 @@ pub(super) struct Scratch {
 }
 
 /// Solves (banded + couplings) x = b in place; `matrix` is factored.
+#[inline(never)]
 pub(super) fn solve(
     matrix: &Banded<3>,
     cross: &[Cross],

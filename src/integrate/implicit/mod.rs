@@ -244,6 +244,7 @@ impl Implicit {
     }
 
     /// Fills guess, inertial target, masses and plastic curvature for a step.
+    #[inline(never)]
     fn prepare(
         &mut self,
         sys: &System,

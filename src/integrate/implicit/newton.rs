@@ -32,6 +32,7 @@ pub(super) struct Stuck {
 }
 
 /// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
+#[inline(never)]
 pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<usize, Stuck> {
     expect_nothing(model, work);
     hold_limits(model, true);
@@ -128,6 +129,7 @@ fn hold_limits(model: &mut Model, hold: bool) {
 }
 
 /// The update from gradient and Hessian, with tangents of contact that fit where it leads.
+#[inline(never)]
 fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
     let nodes = work.q.len();
     work.load.clear();
@@ -213,6 +215,7 @@ fn expect_nothing(model: &Model, work: &mut Work) {
 }
 
 /// What the update promises for the stretch of each edge.
+#[inline(never)]
 fn expect_tension(work: &mut Work, share: f64) {
     for (j, (e, a)) in work.expected.iter_mut().zip(&work.base).enumerate() {
         let u = &work.update[3 * j..3 * j + 6];
