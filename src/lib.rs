@@ -5,6 +5,7 @@
 //! and the FMU drive it. SI units everywhere, see `ARCHITECTURE.md` for the map.
 #![forbid(unsafe_code)]
 
+pub mod bench;
 pub mod contact;
 pub mod core_shape;
 pub mod feed;

@@ -75,6 +75,15 @@ pub(super) enum Failure {
     /// Case files or settings of `verify` are wrong.
     #[error(transparent)]
     Cases(#[from] coilwind::verify::VerifyError),
+    /// Options or files of `bench` are wrong.
+    #[error(transparent)]
+    Bench(#[from] coilwind::bench::BenchError),
+    /// A benchmark stopped on the way; its line is printed.
+    #[error("bench: the solver gave up: {reason}")]
+    BenchStopped {
+        /// why
+        reason: String,
+    },
     /// A number is out of tolerance.
     #[error("not every number is right")]
     Verify,
@@ -105,8 +114,9 @@ impl Failure {
             | Self::Signals { .. }
             | Self::Write { .. }
             | Self::Output(_)
-            | Self::Cases(_) => 2,
-            Self::Solver { .. } => 3,
+            | Self::Cases(_)
+            | Self::Bench(_) => 2,
+            Self::Solver { .. } | Self::BenchStopped { .. } => 3,
             Self::Interrupted { .. } => 130,
         }
     }

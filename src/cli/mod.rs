@@ -1,5 +1,6 @@
 //! Command line: one file per command, one place for exit codes.
 
+mod bench;
 mod check;
 mod failure;
 mod frames;
@@ -37,6 +38,8 @@ enum Command {
     Variables(variables::VariablesArgs),
     /// Compare exact answers with what the code that winds computes
     Verify(coilwind::verify::VerifyArgs),
+    /// Time a known problem or a whole scene and print error and cost as one line of JSON
+    Bench(coilwind::bench::BenchArgs),
 }
 
 /// A scene and what to change in it.
@@ -76,6 +79,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Check(args) => check::check(&args),
         Command::Variables(args) => variables::variables(&args),
         Command::Verify(args) => verify::verify(&args),
+        Command::Bench(args) => bench::bench(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -1,0 +1,207 @@
+//! P2: ten periods of a cantilever's first mode, small.
+//!
+//! Released from the mode's shape, the tip follows `A cos(omega_1 t)`. Error: its largest deviation
+//! from that over the amplitude. What the step does to the amplitude is told on its own.
+
+use super::args::{BenchArgs, Method};
+use super::record::{Details, Outcome};
+use super::watch::Watch;
+use super::{BenchError, cantilever, elastic_wire, iterations, stable_step};
+use crate::integrate::{Implicit, Scheme, rk4, verlet};
+use crate::math::V3;
+use crate::rod::Section;
+use std::f64::consts::TAU;
+
+/// Length, m, and amplitude of the tip over it.
+const LENGTH: f64 = 0.1;
+const AMPLITUDE: f64 = 1e-3 * LENGTH;
+/// Periods.
+const PERIODS: f64 = 10.0;
+/// Root of `cos b cosh b = -1`.
+const ROOT: f64 = 1.875_104_068_711_961;
+/// Edges and steps a period.
+const EDGES: usize = 40;
+const STEPS: f64 = 200.0;
+/// Newton's tolerance, m: 1e-4 of the amplitude, a hundred times closer where it stops.
+const TOLERANCE: f64 = 1e-4 * AMPLITUDE;
+/// Share of the stability limit that an explicit method takes.
+const SHARE: f64 = 0.9;
+/// Most steps that can be asked for.
+const MOST: f64 = 1e9;
+
+pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
+    let n = args.n.unwrap_or(EDGES);
+    let section = elastic_wire()?;
+    let frequency = first_frequency(&section);
+    let end = PERIODS * TAU / frequency;
+    let method = args.method();
+    let stable = stable_step(method, &section, LENGTH / n as f64);
+    let wanted = match (args.dt, method) {
+        (Some(dt), _) => dt,
+        (None, Method::Implicit) => end / (PERIODS * STEPS),
+        (None, _) => SHARE * stable,
+    };
+    // whole steps to the end
+    let count = (end / wanted - 1e-9).ceil().max(1.0);
+    if wanted > end || count > MOST {
+        let allowed = format!("{:.3e} to {end:.3e} s", end / MOST);
+        return Err(args.wrong(format!("--dt {wanted:e}"), "out of range", allowed));
+    }
+    let dt = end / count;
+    if method != Method::Implicit && dt > stable {
+        let reason = format!("unstable with --integrator {} at n = {n}", method.name());
+        let allowed = format!("up to {stable:.3e} s");
+        return Err(args.wrong(format!("--dt {wanted:e}"), reason, allowed));
+    }
+    let tol = (method == Method::Implicit).then(|| args.tol.unwrap_or(TOLERANCE));
+    let mut outcome = Outcome {
+        n: Some(n),
+        dt: Some(dt),
+        tol,
+        ..Outcome::default()
+    };
+
+    let mut tip = Vec::with_capacity(count as usize);
+    let watch = Watch::start();
+    let (points, rest) = released(n);
+    let mut sys = cantilever(section, &points, rest);
+    let mut implicit = Implicit::new(Scheme::Midpoint, tol.unwrap_or(TOLERANCE), dt, dt);
+    implicit.fixed = Some(dt);
+    if method == Method::Verlet {
+        verlet::shift_velocities(&mut sys, -0.5 * dt);
+    }
+    for _ in 0..count as u64 {
+        match method {
+            Method::Implicit => {
+                if let Err(stopped) = implicit.step(&mut sys, f64::INFINITY) {
+                    outcome.failure = Some(stopped.to_string());
+                    break;
+                }
+            }
+            Method::Verlet => verlet::step(&mut sys, dt),
+            Method::Rk4 => rk4::step(&mut sys, dt),
+        }
+        tip.push(sys.rod.x[n].y);
+    }
+    outcome.spent = watch.spent();
+    outcome.steps = tip.len() as u64;
+    outcome.iterations = iterations(method, implicit.effort, outcome.steps);
+    let error = tip
+        .iter()
+        .enumerate()
+        .map(|(i, y)| (y - AMPLITUDE * libm::cos(frequency * dt * (i + 1) as f64)).abs())
+        .fold(0.0, f64::max);
+    outcome.error = Some(error / AMPLITUDE);
+    outcome.details = Details {
+        amplitude_loss: amplitude_loss(&tip, frequency * dt),
+        ..Details::default()
+    };
+    Ok(outcome)
+}
+
+/// Angular frequency of the first mode, rad/s.
+fn first_frequency(section: &Section) -> f64 {
+    let k = ROOT / LENGTH;
+    k * k * (section.ei / section.mass_per_length()).sqrt()
+}
+
+/// Nodes on the mode's shape and the lengths between them: bent, but not stretched.
+fn released(n: usize) -> (Vec<V3>, Vec<f64>) {
+    let h = LENGTH / n as f64;
+    let height = |i: usize| AMPLITUDE * mode(i as f64 / n as f64) / mode(1.0);
+    let mut points = vec![V3::zeros()];
+    for i in 1..=n {
+        let rise = height(i) - height(i - 1);
+        let x = points[i - 1].x + (h * h - rise * rise).sqrt();
+        points.push(V3::new(x, height(i), 0.0));
+    }
+    (points, vec![h; n])
+}
+
+/// First mode of a cantilever at a share of its length.
+fn mode(share: f64) -> f64 {
+    let b = ROOT * share;
+    let sigma = (libm::cosh(ROOT) + libm::cos(ROOT)) / (libm::sinh(ROOT) + libm::sin(ROOT));
+    libm::cosh(b) - libm::cos(b) - sigma * (libm::sinh(b) - libm::sin(b))
+}
+
+/// Share of the amplitude lost over all periods, from fits of a harmonic to the first and the last.
+fn amplitude_loss(tip: &[f64], phase: f64) -> Option<f64> {
+    let period = (TAU / phase).round() as usize;
+    if period < 8 || tip.len() < 3 * period {
+        return None;
+    }
+    let first = amplitude(&tip[..period], phase);
+    let last = amplitude(&tip[tip.len() - period..], phase);
+    let between = PERIODS - 1.0;
+    Some((1.0 - last / first) * PERIODS / between)
+}
+
+/// Amplitude of the harmonic `a cos + b sin` of step `phase` nearest to some values.
+fn amplitude(y: &[f64], phase: f64) -> f64 {
+    let (mut cc, mut cs, mut ss, mut yc, mut ys) = (0.0, 0.0, 0.0, 0.0, 0.0);
+    for (i, y) in y.iter().enumerate() {
+        let (c, s) = (libm::cos(phase * i as f64), libm::sin(phase * i as f64));
+        cc += c * c;
+        cs += c * s;
+        ss += s * s;
+        yc += y * c;
+        ys += y * s;
+    }
+    let det = cc * ss - cs * cs;
+    let (a, b) = ((yc * ss - ys * cs) / det, (ys * cc - yc * cs) / det);
+    (a * a + b * b).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::Problem;
+    use crate::verify::CaseFile;
+
+    #[test]
+    fn the_frequency_is_that_of_the_packed_reference() {
+        let files = CaseFile::packed().unwrap();
+        let file = files.iter().find(|f| f.kind == "bending_modes").unwrap();
+        let case = file
+            .cases
+            .iter()
+            .find(|c| c.id == "clamped-free_T0_L50mm")
+            .unwrap();
+        let f1 = case.expected["f1_Hz"].as_f64().unwrap();
+        // it falls with the square of the length, which is 50 mm there
+        let ours = first_frequency(&elastic_wire().unwrap()) / TAU * 4.0;
+        assert!((ours / f1 - 1.0).abs() < 1e-9, "{ours} {f1}");
+    }
+
+    #[test]
+    fn the_tip_converges_with_second_order_and_keeps_its_amplitude() {
+        let end = PERIODS * TAU / first_frequency(&elastic_wire().unwrap());
+        let run = |n: usize| {
+            let mut args = BenchArgs::new(Problem::P2);
+            args.n = Some(n);
+            args.dt = Some(end / (PERIODS * 5.0 * n as f64));
+            let outcome = run(&args).unwrap();
+            assert_eq!(outcome.failure, None);
+            assert!(outcome.details.amplitude_loss.unwrap().abs() < 1e-3);
+            outcome.error.unwrap()
+        };
+        let (coarse, fine) = (run(10), run(20));
+        assert!(
+            (coarse / fine).log2() > 1.8 && fine < 0.1,
+            "{coarse} {fine}"
+        );
+    }
+
+    #[test]
+    fn an_explicit_step_beyond_its_limit_is_bad_input() {
+        let mut args = BenchArgs::new(Problem::P2);
+        args.integrator = Some(Method::Verlet);
+        args.dt = Some(1e-4);
+        let error = run(&args).unwrap_err().to_string();
+        assert!(
+            error.contains("unstable") && error.contains("up to"),
+            "{error}"
+        );
+    }
+}
