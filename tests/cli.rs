@@ -307,3 +307,102 @@ fn an_interrupt_leaves_usable_files() {
     assert_eq!(summary["status"], "interrupted");
     assert_eq!(summary["simulated_s"].as_f64(), time.last().copied());
 }
+
+/// The line that a benchmark prints.
+fn benchmark(arguments: &[&str]) -> serde_json::Value {
+    let mut command = coilwind(&["bench"]);
+    let output = finished(command.args(arguments), 0);
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(text.lines().count(), 1, "{text}");
+    serde_json::from_str(&text).unwrap()
+}
+
+#[test]
+fn a_benchmark_prints_one_line_with_the_names_that_others_read() {
+    let line = benchmark(&["P1", "--n", "20", "--a", "5", "--repeat", "3"]);
+    for name in [
+        "peer",
+        "problem",
+        "n",
+        "dt",
+        "tol",
+        "error",
+        "cpu_s",
+        "wall_s",
+        "steps",
+        "iterations",
+        "ok",
+    ] {
+        assert!(line.get(name).is_some(), "{name} in {line}");
+    }
+    assert_eq!(
+        (&line["peer"], &line["problem"]),
+        (&"coilwind".into(), &"P1".into())
+    );
+    assert_eq!(line["ok"], true);
+    assert!(line["error"].as_f64().unwrap() < 2e-3);
+    let line = benchmark(&["P5", "--n", "20"]);
+    assert!(line["ns_per_node_step"].as_f64().unwrap() > 0.0, "{line}");
+    assert!(
+        line["ns_per_node_iteration"].as_f64().unwrap() > 0.0,
+        "{line}"
+    );
+}
+
+#[test]
+fn a_whole_scene_is_compared_with_stored_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("converged.json");
+    let file = file.to_str().unwrap();
+    let coarse = ["W", "--omega", "500", "--n", "84", "--tol", "2e-5"];
+    let with = |option: &'static str| [coarse.as_slice(), &[option, file]].concat();
+    let stored = benchmark(&with("--store"));
+    assert_eq!(stored["ok"], true, "{stored}");
+    let line = benchmark(&with("--against"));
+    assert_eq!(
+        (&line["ok"], &line["scene"]),
+        (&true.into(), &"fig8".into())
+    );
+    assert!(line["turns"].as_f64().unwrap() > 2.0);
+    // a member of the ensemble by all but a few hundredths of a millimetre
+    for (name, most) in [
+        ("bulge_error_m", 0.5e-3),
+        ("gap_error_m", 0.5e-3),
+        ("tension_error_N", 20.0),
+    ] {
+        assert!(line[name].as_f64().unwrap() < most, "{name} in {line}");
+    }
+    for name in ["rtf", "nodes_mean", "worst_ms_cpu_s", "omega"] {
+        assert!(line[name].as_f64().unwrap() > 0.0, "{name} in {line}");
+    }
+    let other = complaint(&["bench", "W", "--scene", file], 2);
+    assert!(other.contains(file), "{other}");
+    let garbled = folder.path().join("garbled.json");
+    std::fs::write(&garbled, "{\"scene\": 3}").unwrap();
+    let said = complaint(&["bench", "W", "--against", garbled.to_str().unwrap()], 2);
+    assert!(
+        said.contains("garbled.json") && said.contains("converged runs"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_benchmark_that_makes_no_sense_is_bad_input() {
+    let wrong: [(&[&str], &str); 11] = [
+        (&["P9"], "P9"),
+        (&["P1", "--integrator", "verlet"], "implicit"),
+        (&["P3", "--integrator", "rk4"], "implicit"),
+        (&["P2", "--integrator", "verlet", "--tol", "1e-6"], "--tol"),
+        (&["P2", "--integrator", "rk4", "--dt", "1e-3"], "unstable"),
+        (&["P1", "--n", "1"], "4 to 20000"),
+        (&["P1", "--a", "500"], "0.01 to 20"),
+        (&["P2", "--dt", "-1"], "--dt"),
+        (&["P1", "--repeat", "0"], "--repeat"),
+        (&["P5", "--omega", "30"], "P4 and W"),
+        (&["W", "--scene", "fig9"], "fig8"),
+    ];
+    for (arguments, expected) in wrong {
+        let said = complaint(&[&["bench"], arguments].concat(), 2);
+        assert!(said.contains(expected), "{arguments:?}: {said}");
+    }
+}

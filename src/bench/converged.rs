@@ -28,12 +28,13 @@ pub struct Converged {
 /// Smallest and largest tension of a turn.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-#[allow(non_snake_case)]
 pub struct Extremes {
     /// N
-    pub min_N: f64,
+    #[serde(rename = "min_N")]
+    pub min: f64,
     /// N
-    pub max_N: f64,
+    #[serde(rename = "max_N")]
+    pub max: f64,
 }
 
 /// Ensemble means at one spindle speed.
@@ -64,15 +65,15 @@ impl Extremes {
     /// Of no values.
     pub(super) fn none() -> Self {
         Self {
-            min_N: f64::INFINITY,
-            max_N: f64::NEG_INFINITY,
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
         }
     }
 
     /// With these as well.
     pub(super) fn add(&mut self, min: f64, max: f64) {
-        self.min_N = self.min_N.min(min);
-        self.max_N = self.max_N.max(max);
+        self.min = self.min.min(min);
+        self.max = self.max.max(max);
     }
 }
 
@@ -96,8 +97,8 @@ impl Speed {
                     rounded(share * sum, FORCE_DIGIT)
                 };
                 Extremes {
-                    min_N: of(|e| e.min_N),
-                    max_N: of(|e| e.max_N),
+                    min: of(|e| e.min),
+                    max: of(|e| e.max),
                 }
             })
             .collect();
@@ -230,8 +231,8 @@ mod tests {
             bulge: vec![Some(bulge); gap.len()],
             gap: gap.to_vec(),
             tension: vec![Extremes {
-                min_N: 10.0 + bulge,
-                max_N: 20.0,
+                min: 10.0 + bulge,
+                max: 20.0,
             }],
         }
     }
@@ -246,7 +247,7 @@ mod tests {
         assert_eq!(speed.bulge_m, [Some(2e-3); 2]);
         assert_eq!(speed.gap_m, [None, Some(2e-4)]);
         assert!((speed.bulge_scatter_m - 2.0_f64.sqrt() * 1e-3).abs() < 1e-8);
-        assert!((speed.tension[0].min_N - 10.002).abs() < 1e-9);
+        assert!((speed.tension[0].min - 10.002).abs() < 1e-9);
     }
 
     #[test]

@@ -22,8 +22,9 @@ const ROOT: f64 = 1.875_104_068_711_961;
 /// Edges and steps a period.
 const EDGES: usize = 40;
 const STEPS: f64 = 200.0;
-/// Newton's tolerance, m: 1e-4 of the amplitude, a hundred times closer where it stops.
-const TOLERANCE: f64 = 1e-4 * AMPLITUDE;
+/// Newton's tolerance, m: it stops ten times closer. A hundred times looser the method takes some
+/// guesses without a solve and the amplitude drifts.
+const TOLERANCE: f64 = 1e-3 * AMPLITUDE;
 /// Share of the stability limit that an explicit method takes.
 const SHARE: f64 = 0.9;
 /// Most steps that can be asked for.
@@ -126,19 +127,32 @@ fn mode(share: f64) -> f64 {
 }
 
 /// Share of the amplitude lost over all periods, from fits of a harmonic to the first and the last.
+///
+/// A harmonic of the wrong frequency takes some amplitude for phase, so the fits are repeated with
+/// the frequency that the first ones show.
 fn amplitude_loss(tip: &[f64], phase: f64) -> Option<f64> {
     let period = (TAU / phase).round() as usize;
     if period < 8 || tip.len() < 3 * period {
         return None;
     }
-    let first = amplitude(&tip[..period], phase);
-    let last = amplitude(&tip[tip.len() - period..], phase);
-    let between = PERIODS - 1.0;
-    Some((1.0 - last / first) * PERIODS / between)
+    let between = tip.len() - period;
+    let fits = |phase: f64| {
+        (
+            harmonic(&tip[..period], phase),
+            harmonic(&tip[between..], phase),
+        )
+    };
+    let (first, last) = fits(phase);
+    // how far the last fit is ahead of where this frequency would have brought the first
+    let ahead = last.1 - first.1 - phase * between as f64;
+    let own = phase + libm::remainder(ahead, TAU) / between as f64;
+    let (first, last) = fits(own);
+    let share = tip.len() as f64 / between as f64;
+    Some((1.0 - last.0 / first.0) * share)
 }
 
-/// Amplitude of the harmonic `a cos + b sin` of step `phase` nearest to some values.
-fn amplitude(y: &[f64], phase: f64) -> f64 {
+/// Amplitude and phase at the first value of the harmonic of step `phase` nearest to some values.
+fn harmonic(y: &[f64], phase: f64) -> (f64, f64) {
     let (mut cc, mut cs, mut ss, mut yc, mut ys) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (i, y) in y.iter().enumerate() {
         let (c, s) = (libm::cos(phase * i as f64), libm::sin(phase * i as f64));
@@ -150,7 +164,7 @@ fn amplitude(y: &[f64], phase: f64) -> f64 {
     }
     let det = cc * ss - cs * cs;
     let (a, b) = ((yc * ss - ys * cs) / det, (ys * cc - yc * cs) / det);
-    (a * a + b * b).sqrt()
+    ((a * a + b * b).sqrt(), libm::atan2(-b, a))
 }
 
 #[cfg(test)]
@@ -191,6 +205,19 @@ mod tests {
             (coarse / fine).log2() > 1.8 && fine < 0.1,
             "{coarse} {fine}"
         );
+    }
+
+    #[test]
+    fn a_known_loss_is_found_whatever_the_frequency() {
+        let phase = TAU / 50.0;
+        let tip: Vec<f64> = (1..=500)
+            .map(|i| {
+                let lost = 1.0 - 0.02 * f64::from(i) / 500.0;
+                lost * libm::cos(0.99 * phase * f64::from(i))
+            })
+            .collect();
+        let loss = amplitude_loss(&tip, phase).unwrap();
+        assert!((loss - 0.02).abs() < 1e-3, "{loss}");
     }
 
     #[test]

@@ -39,6 +39,9 @@ pub struct Details {
     /// P3: ratio of the end forces while the wire slips
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ratio: Option<f64>,
+    /// P3: error against the ratio that knows the bending stiffness left, relative
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiff_error: Option<f64>,
     /// P4: wire drawn in, m
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fed_length_m: Option<f64>,

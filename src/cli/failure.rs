@@ -79,7 +79,7 @@ pub(super) enum Failure {
     #[error(transparent)]
     Bench(#[from] coilwind::bench::BenchError),
     /// A benchmark stopped on the way; its line is printed.
-    #[error("bench: the solver gave up: {reason}")]
+    #[error("bench: no complete answer: {reason}")]
     BenchStopped {
         /// why
         reason: String,
