@@ -396,7 +396,7 @@ fn a_benchmark_that_makes_no_sense_is_bad_input() {
         (&["P2", "--integrator", "rk4", "--dt", "1e-3"], "unstable"),
         (&["P1", "--n", "1"], "4 to 20000"),
         (&["P1", "--a", "500"], "0.01 to 20"),
-        (&["P2", "--dt", "-1"], "--dt"),
+        (&["P2", "--dt=-1"], "a number above 0"),
         (&["P1", "--repeat", "0"], "--repeat"),
         (&["P5", "--omega", "30"], "P4 and W"),
         (&["W", "--scene", "fig9"], "fig8"),

@@ -202,7 +202,7 @@ mod tests {
         };
         let (coarse, fine) = (run(10), run(20));
         assert!(
-            (coarse / fine).log2() > 1.8 && fine < 0.1,
+            (coarse / fine).log2() > 1.9 && fine < 0.2,
             "{coarse} {fine}"
         );
     }
