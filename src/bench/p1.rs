@@ -25,7 +25,7 @@ const ON_THE_WAY: f64 = 5e-3;
 const FIRST_MOVE: f64 = 1e-3;
 /// Factorisations that a load step should take, and how its length follows from them.
 const WELL: u64 = 3;
-const LONGER: f64 = 2.0;
+const LONGER: f64 = 1.5;
 const SHORTER: f64 = 0.4;
 /// Smallest step of the load before giving up.
 const SMALLEST: f64 = 1e-6;
