@@ -128,6 +128,11 @@ fn wind(scene: &Scene, args: &BenchArgs) -> Result<Run, BenchError> {
     outcome.spent = watch.spent();
     outcome.failure = ended.err().map(|e| e.to_string());
     let outputs = simulation.outputs();
+    if outputs.defect_break {
+        // a broken wire costs nothing from then on, so its time means nothing
+        let text = "the wire broke on the way".to_owned();
+        outcome.failure.get_or_insert(text);
+    }
     outcome.steps = outputs.solver_steps as u64;
     outcome.iterations = iterations(method, simulation.effort(), outcome.steps);
     details.turns = outputs.turns_wound;
@@ -249,6 +254,9 @@ fn ensemble(args: &BenchArgs, mut settings: SceneSettings) -> Result<(Speed, Out
         outcome.spent.wall += wall;
         outcome.steps += steps;
         outcome.iterations += iterations;
+        if let Some(reason) = &mut outcome.failure {
+            *reason = format!("nozzle.distance = {} m: {reason}", settings.nozzle.distance);
+        }
         let share = 1.0 / MEMBERS as f64;
         winding.turns += share * run.details.turns;
         winding.nodes_mean += share * run.details.nodes_mean;
