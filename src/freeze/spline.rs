@@ -695,7 +695,10 @@ mod tests {
         }
         for k in 1..n {
             // place and derivative are the same from both sides
-            let (a, b) = (tube.curve().piece(k - 1, V3::zeros()), tube.curve().piece(k, V3::zeros()));
+            let (a, b) = (
+                tube.curve().piece(k - 1, V3::zeros()),
+                tube.curve().piece(k, V3::zeros()),
+            );
             assert!((a.arm(1.0) - b.arm(0.0)).norm() < 1e-17);
             assert!((a.along(1.0) - b.along(0.0)).norm() < 1e-17);
             assert_eq!(a.g_high, b.g_low);

@@ -194,7 +194,8 @@ impl Simulation {
         let mut left = dt;
         while left > 0.0 {
             // the nozzle's path over the step is straight: an error of second order in the ramp
-            self.guide_nozzle(left.min(self.last_step), per_angle);
+            let next = self.implicit.as_ref().map_or(left, |m| m.next);
+            self.guide_nozzle(left.min(next), per_angle);
             let taken = self.implicit_step(left)?;
             left = if taken >= left { 0.0 } else { left - taken };
         }

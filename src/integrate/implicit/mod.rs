@@ -197,7 +197,12 @@ impl Implicit {
                 back,
                 held: [support[0].hold, support[1].hold],
             };
-            let solved = newton::solve(&mut model, &mut self.work, CLOSE * self.tolerance);
+            let solved = newton::solve(
+                &mut model,
+                &mut self.work,
+                CLOSE * self.tolerance,
+                self.scheme == Scheme::Bdf2,
+            );
             self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
             self.effort.solves += std::mem::take(&mut self.work.solves);
             self.effort.cuts += std::mem::take(&mut self.work.cuts);

@@ -31,9 +31,15 @@ pub(super) struct Stuck {
     pub(super) steps: usize,
 }
 
-/// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
+/// Moves `work.q` to the minimum; `close` is the update below which it is there, m. `damped` tells whether
+/// the scheme forgets a small error.
 #[inline(never)]
-pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<usize, Stuck> {
+pub(super) fn solve(
+    model: &mut Model,
+    work: &mut Work,
+    close: f64,
+    damped: bool,
+) -> Result<usize, Stuck> {
     expect_nothing(model, work);
     hold_limits(model, true);
     let mut value = model.evaluate(work).now;
@@ -46,7 +52,8 @@ pub(super) fn solve(model: &mut Model, work: &mut Work, close: f64) -> Result<us
         .zip(&work.mass)
         .map(|(g, m)| g.amax() * weight / m)
         .fold(0.0, f64::max);
-    if bound < close {
+    // (the midpoint rule keeps what is wrong with a guess for ever)
+    if bound < close && damped {
         return Ok(0);
     }
     let mut last_update = f64::INFINITY;
