@@ -109,6 +109,25 @@ impl Between {
         }
     }
 
+    /// `count` nodes came back at the front.
+    pub fn insert_front(&mut self, count: usize) {
+        for p in &mut self.pairs {
+            p.point += 2 * count as u32;
+            p.segment += count as u32;
+        }
+    }
+
+    /// Node `i` was taken out; its own point becomes the middle of the joined edge.
+    pub fn merge(&mut self, i: usize) {
+        let i = i as u32;
+        self.pairs
+            .retain(|p| p.point != 2 * i - 1 && p.point != 2 * i + 1);
+        for p in &mut self.pairs {
+            p.point -= u32::from(p.point >= 2 * i) + u32::from(p.point > 2 * i);
+            p.segment -= u32::from(p.segment >= i);
+        }
+    }
+
     /// Lists the pairs for a step that starts at `q` (core frame); `rest` are its edges' unstretched lengths.
     #[inline(never)]
     pub fn list(&mut self, q: &[V3], rest: &[f64], diameter: f64) {

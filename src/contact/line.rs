@@ -79,6 +79,10 @@ const FRESH: Point = Point {
     passages: 0,
 };
 
+/// What a node's points of contact remember: places, anchors, passages.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Memory([Point; 2]);
+
 /// What the touches of one point add to potential, gradient and Hessian.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Push {
@@ -181,10 +185,21 @@ impl LineContact {
         }
     }
 
-    /// Nodes came back at the front.
-    pub fn insert_front(&mut self, count: usize) {
-        self.points
-            .splice(0..0, std::iter::repeat_n(FRESH, 2 * count));
+    /// What the two points of node `i` (its own and the middle of the edge after it) remember.
+    pub fn memory(&self, i: usize) -> Memory {
+        Memory([self.points[2 * i], self.points[2 * i + 1]])
+    }
+
+    /// Nodes came back at the front with what their points remembered, clamp first.
+    pub fn insert_front(&mut self, nodes: impl DoubleEndedIterator<Item = Memory>) {
+        let mut count = 0;
+        for Memory(points) in nodes.rev() {
+            self.points.splice(0..0, points);
+            count += 1;
+        }
+        if let Some(b) = &mut self.between {
+            b.insert_front(count);
+        }
     }
 
     /// Node `i` was taken out.
@@ -192,6 +207,9 @@ impl LineContact {
         // its own point becomes the middle of the joined edge
         self.points.remove(2 * i + 1);
         self.points.remove(2 * i - 1);
+        if let Some(b) = &mut self.between {
+            b.merge(i);
+        }
     }
 
     /// Depth of the deepest touch of node `i` and the halves of its edges, m; 0: none.

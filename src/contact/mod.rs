@@ -11,7 +11,7 @@ mod live;
 
 pub use between::{Between, Cross, PairPush, add_cross, point_weights};
 pub use law::{ContactLaw, TouchForce, damping_for_restitution};
-pub use line::{LineContact, Push, own_wire};
+pub use line::{LineContact, Memory, Push, own_wire};
 pub use live::{LiveContact, Wire};
 
 use crate::core_shape::{Surface, Touch};

@@ -2,8 +2,8 @@
 //!
 //! The paper asks for a small velocity relative to the core and a place inside a region round
 //! it. A threshold on the instantaneous speed passes at every turning point of a vibration, so
-//! rest is judged here by the displacement in the core frame over a window of core angle. The
-//! region is every place whose wire surface is within `margin` of the core. Nodes leave in
+//! rest is judged here by the displacement in the core frame over a window of core angle, or of
+//! time while the spindle stands. The region is every place whose wire surface is within `margin` of the core. Nodes leave in
 //! order from the clamp, and not before they are a bending length behind lift-off.
 
 use crate::math::V3;
@@ -13,6 +13,8 @@ use crate::math::V3;
 pub struct FreezePolicy {
     /// window of core angle, rad
     pub window: f64,
+    /// window of time where the spindle stands, s
+    pub time: f64,
     /// largest displacement over the window, m
     pub displacement: f64,
     /// length behind lift-off that stays live, m
@@ -24,6 +26,10 @@ pub struct FreezePolicy {
 /// Looks a window is split into; a check takes place at each.
 const LOOKS: usize = 4;
 
+/// Share of the window that the core turns by between two looks at most while it counts as standing.
+/// Chosen: wire that creeps on with the core at the limit's rate would move by 9 nm.
+const STANDING: f64 = 1e-3;
+
 /// Remembers where each live node was, look by look.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Watch {
@@ -33,15 +39,18 @@ pub struct Watch {
     count: Vec<usize>,
     /// core angle of the last look, rad
     last: f64,
+    /// time of the last look, s
+    last_time: f64,
 }
 
 impl Watch {
-    /// Watch over `nodes` live nodes from a core angle on.
+    /// Watch over `nodes` live nodes from a core angle on, at time 0.
     pub fn new(nodes: usize, angle: f64) -> Self {
         Self {
             seen: vec![[V3::zeros(); LOOKS]; nodes],
             count: vec![0; nodes],
             last: angle,
+            last_time: 0.0,
         }
     }
 
@@ -51,15 +60,31 @@ impl Watch {
         self.count.insert(at, 0);
     }
 
+    /// `n` nodes came back at the front; they have to be seen at rest anew.
+    pub fn insert_front(&mut self, n: usize) {
+        let fresh = std::iter::repeat_n([V3::zeros(); LOOKS], n);
+        self.seen.splice(0..0, fresh);
+        self.count.splice(0..0, std::iter::repeat_n(0, n));
+    }
+
+    /// Node `i` was taken out.
+    pub fn remove(&mut self, i: usize) {
+        self.seen.remove(i);
+        self.count.remove(i);
+    }
+
     /// The first `n` nodes left.
     pub fn remove_front(&mut self, n: usize) {
         self.seen.drain(..n);
         self.count.drain(..n);
     }
 
-    /// Whether the next look is due.
-    pub fn due(&self, policy: &FreezePolicy, angle: f64) -> bool {
-        (angle - self.last).abs() >= policy.window / LOOKS as f64
+    /// Whether the next look is due: by core angle, or by time where the spindle stands.
+    pub fn due(&self, policy: &FreezePolicy, angle: f64, time: f64) -> bool {
+        let turned = (angle - self.last).abs();
+        let standing = turned <= STANDING * policy.window;
+        turned >= policy.window / LOOKS as f64
+            || (standing && time - self.last_time >= policy.time / LOOKS as f64)
     }
 
     /// Takes a look; returns how many nodes from the clamp on have stayed in place over the window.
@@ -69,9 +94,11 @@ impl Watch {
         &mut self,
         policy: &FreezePolicy,
         angle: f64,
+        time: f64,
         position: impl Fn(usize) -> V3,
     ) -> usize {
         self.last = angle;
+        self.last_time = time;
         let mut still = 0;
         let mut in_order = true;
         for i in 0..self.seen.len() {
@@ -102,6 +129,7 @@ mod tests {
     fn policy() -> FreezePolicy {
         FreezePolicy {
             window: 0.4,
+            time: 1.0,
             displacement: 1e-6,
             keep_length: 0.0,
             margin: 1e-3,
@@ -115,8 +143,8 @@ mod tests {
         let mut still = 0;
         for k in 1..=40 {
             let angle = 0.1 * k as f64;
-            assert!(w.due(&p, angle + 1e-9));
-            still = w.look(&p, angle, |i| {
+            assert!(w.due(&p, angle + 1e-9, 0.0));
+            still = w.look(&p, angle, 0.0, |i| {
                 V3::x()
                     * if i == 0 {
                         0.0
@@ -132,12 +160,31 @@ mod tests {
     }
 
     #[test]
+    fn a_standing_spindle_is_judged_by_time() {
+        let p = policy();
+        let mut w = Watch::new(1, 0.0);
+        for k in 1..=5 {
+            let time = 0.25 * f64::from(k);
+            assert!(!w.due(&p, 0.05, time), "a turning core is judged by angle");
+            assert!(!w.due(&p, 0.0, time - 0.01) && w.due(&p, 0.0, time));
+            let still = w.look(&p, 0.0, time, |_| V3::x());
+            assert_eq!(still, usize::from(k == 5));
+        }
+        w.insert_front(2);
+        assert_eq!(
+            w.look(&p, 0.0, 1.5, |_| V3::x()),
+            0,
+            "unseen wire is not at rest"
+        );
+    }
+
+    #[test]
     fn nodes_leave_in_order() {
         let p = policy();
         let mut w = Watch::new(3, 0.0);
         let mut still = 9;
         for k in 1..=10 {
-            still = w.look(&p, k as f64, |i| {
+            still = w.look(&p, k as f64, 0.0, |i| {
                 V3::x() * if i == 1 { k as f64 } else { 0.0 }
             });
         }

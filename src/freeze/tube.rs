@@ -140,6 +140,32 @@ impl Tube {
         }
     }
 
+    /// Takes the last node off again; the tube is then as before its push.
+    pub fn pop(&mut self) -> Option<FrozenNode> {
+        let node = FrozenNode {
+            point: self.points.pop()?,
+            frame: self.frames.pop()?,
+            arc: self.arc.pop()?,
+            tension: self.tension.pop()?,
+            plastic_strain: self.plastic_strain.pop()?,
+        };
+        self.mitre.pop();
+        let n = self.points.len();
+        if n > 0 {
+            self.mitre[n - 1] = V3::zeros();
+            // the last segment is gone: its chunk shrinks to what is left of it
+            self.chunks.truncate((n - 1).div_ceil(CHUNK));
+            if let Some(c) = self.chunks.len().checked_sub(1) {
+                let mut bounds = Bounds::empty();
+                for p in &self.points[c * CHUNK..] {
+                    bounds.grow(*p, 2.0 * self.radius);
+                }
+                self.chunks[c] = bounds;
+            }
+        }
+        Some(node)
+    }
+
     /// The mesh of segment `s`, ready to give vertices.
     fn prism(&self, s: usize) -> Prism<'_> {
         let frame = &self.frames[s];
@@ -426,6 +452,18 @@ mod tests {
             } else if d > 1.005 * R {
                 prop_assert!(touches.is_empty());
             }
+        }
+    }
+
+    #[test]
+    fn pop_undoes_push() {
+        let whole = arc_tube(2.35e-3, 0.2e-3, 70);
+        for kept in [0, 1, 2, 31, 32, 33, 34, 64, 65, 66, 69] {
+            let mut tube = whole.clone();
+            for _ in kept..70 {
+                tube.pop().expect("a node");
+            }
+            assert_eq!(tube, arc_tube(2.35e-3, 0.2e-3, kept), "{kept}");
         }
     }
 

@@ -1,9 +1,31 @@
-//! Changes of the wire between steps: halving an edge, letting settled wire go.
+//! Changes of the wire between steps: halving and joining edges, letting settled wire go and taking
+//! it back.
 
 use super::support::{Support, turn_about_y};
 use super::system::System;
-use crate::math::{Spin, V3, spin_velocity};
-use crate::rod::align;
+use crate::contact::{Memory, NodeContact};
+use crate::math::{Quat, Spin, V3, spin_velocity};
+use crate::rod::{Bend, Scalar, align};
+
+/// A frozen node with the edge after it: all it takes to let them move again where they lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dormant {
+    /// place, core frame, m
+    place: V3,
+    /// frame of the edge, core frame
+    frame: Quat,
+    /// frame that a clamp at this node has, core frame
+    clamp: Quat,
+    /// unstretched length from the clamp to the node, m
+    arc: f64,
+    /// unstretched length of the edge, m
+    rest: f64,
+    spin: f64,
+    stretch: Scalar,
+    bend: Bend,
+    twist: Scalar,
+    memory: Memory,
+}
 
 impl System {
     /// Splits edge `j` in two halves at the same stretch.
@@ -111,13 +133,8 @@ impl System {
             let v = spin_velocity(self.spindle.speed, self.rod.x[i]);
             handed += 0.5 * self.rod.mass(&self.section, i) * v.norm_squared();
         }
-        let joint = crate::rod::Joint::between(&self.rod.frame[count - 1], &self.rod.frame[count]);
-        let share = self.rod.rest[count] / (self.rod.rest[count - 1] + self.rod.rest[count]);
-        let rel = crate::rod::relative(
-            [joint.bend[0] * share, joint.bend[1] * share],
-            joint.twist * share,
-        );
-        let frame = self.rod.frame[count] * rel.conjugate();
+        let frame = self.frame_to_clamp(count);
+        self.lay_to_rest(count);
         self.support[0] = Support {
             hold: [true; 3],
             point: spin.to_core(self.rod.x[count]),
@@ -150,5 +167,168 @@ impl System {
         self.place_supports();
         self.books.frozen_kinetic += handed;
         self.books.frozen_stored += stored - self.stored();
+    }
+
+    /// Frame of a clamp at an inner node that leaves curvature and moment there what they are.
+    fn frame_to_clamp(&self, node: usize) -> Quat {
+        let rod = &self.rod;
+        let joint = crate::rod::Joint::between(&rod.frame[node - 1], &rod.frame[node]);
+        let share = rod.rest[node] / (rod.rest[node - 1] + rod.rest[node]);
+        let rel = crate::rod::relative(
+            [joint.bend[0] * share, joint.bend[1] * share],
+            joint.twist * share,
+        );
+        rod.frame[node] * rel.conjugate()
+    }
+
+    /// Puts the first `count` nodes on record for [`Self::thaw_front`].
+    fn lay_to_rest(&mut self, count: usize) {
+        let Some(line) = &self.line else { return };
+        let spin = Spin::new(self.spindle.angle);
+        let back = turn_about_y(-self.spindle.angle);
+        let mut arc = self.arc0;
+        for i in 0..count {
+            let clamp = match self.support[0].frame {
+                Some(frame) if i == 0 => frame,
+                _ if i == 0 => back * self.rod.frame[0],
+                _ => back * self.frame_to_clamp(i),
+            };
+            let rod = &self.rod;
+            self.dormant.push(Dormant {
+                place: spin.to_core(rod.x[i]),
+                frame: back * rod.frame[i],
+                clamp,
+                arc,
+                rest: rod.rest[i],
+                spin: rod.spin[i],
+                stretch: rod.stretch[i],
+                bend: rod.bend[i],
+                twist: rod.twist[i],
+                memory: line.memory(i),
+            });
+            arc += rod.rest[i];
+        }
+    }
+
+    /// Unstretched lengths of the frozen edges, the last to freeze first, m.
+    pub fn dormant_lengths(&self) -> impl Iterator<Item = f64> {
+        self.dormant.iter().rev().map(|d| d.rest)
+    }
+
+    /// Takes the last `count` frozen nodes back into the computation, the reverse of
+    /// [`Self::freeze_front`]: at rest on the core, with the plastic state, stress and friction anchors
+    /// they froze with. The first of them becomes the clamp. Only wire of the implicit method is kept
+    /// for this; returns how many nodes came back.
+    pub fn thaw_front(&mut self, count: usize) -> usize {
+        let count = count.min(self.dormant.len());
+        if count == 0 {
+            return 0;
+        }
+        let back = self.dormant.split_off(self.dormant.len() - count);
+        let stored = self.stored();
+        let spin = Spin::new(self.spindle.angle);
+        let turn = turn_about_y(self.spindle.angle);
+        self.support[0] = Support {
+            hold: [true; 3],
+            point: back[0].place,
+            velocity: V3::zeros(),
+            frame: Some(back[0].clamp),
+            turning: true,
+        };
+        self.arc0 = back[0].arc;
+        let places: Vec<V3> = back.iter().map(|d| d.place).collect();
+        let lab = places.iter().map(|p| spin.to_lab(*p));
+        let speed = self.spindle.speed;
+        let rod = &mut self.rod;
+        rod.v
+            .splice(0..0, lab.clone().map(|x| spin_velocity(speed, x)));
+        rod.x.splice(0..0, lab);
+        rod.rest.splice(0..0, back.iter().map(|d| d.rest));
+        rod.frame.splice(0..0, back.iter().map(|d| turn * d.frame));
+        rod.spin.splice(0..0, back.iter().map(|d| d.spin));
+        rod.stretch.splice(0..0, back.iter().map(|d| d.stretch));
+        rod.bend.splice(0..0, back.iter().map(|d| d.bend));
+        rod.twist.splice(0..0, back.iter().map(|d| d.twist));
+        self.roll.splice(0..0, std::iter::repeat_n(0.0, count));
+        if let Some(c) = &mut self.contacts {
+            let fresh = std::iter::repeat_with(NodeContact::new).take(count);
+            c.nodes.splice(0..0, fresh);
+        }
+        if let Some(l) = &mut self.line {
+            l.insert_front(back.iter().map(|d| d.memory));
+        }
+        let before = self.spindle.before(self.past.h[0]);
+        self.past
+            .insert_front(&places, Spin::new(before.angle), before.speed);
+        self.place_supports();
+        for i in 1..=count {
+            let m = self.rod.mass(&self.section, i);
+            self.books.frozen_kinetic -= 0.5 * m * self.rod.v[i].norm_squared();
+        }
+        self.books.frozen_stored += stored - self.stored();
+        count
+    }
+
+    /// Takes inner node `i` out and joins its edges; plastic state is shared out by length.
+    ///
+    /// The joined edge is as stretched as the two were on average: the chord is shorter than they
+    /// were. At the nozzle the difference counts as wire that went back through it.
+    pub fn merge(&mut self, i: usize) {
+        let nodes = self.rod.nodes();
+        debug_assert!(i > 0 && i + 1 < nodes, "an inner node");
+        let at_nozzle = i + 2 == nodes && self.feed.is_some();
+        let kinetic = if at_nozzle { self.kinetic() } else { 0.0 };
+        let rod = &mut self.rod;
+        let [a, b] = [rod.rest[i - 1], rod.rest[i]];
+        let length = (rod.x[i] - rod.x[i - 1]).norm() + (rod.x[i + 1] - rod.x[i]).norm();
+        let chord = rod.x[i + 1] - rod.x[i - 1];
+        let joined = (a + b) * chord.norm() / length;
+        for (end, gain) in [(i - 1, 0.5 * b), (i + 1, 0.5 * a)] {
+            let own = rod.voronoi(end);
+            let mix = |x: f64, y: f64| (x * own + y * gain) / (own + gain);
+            let (gone, gone_twist) = (rod.bend[i], rod.twist[i]);
+            let (bend, twist) = (&mut rod.bend[end], &mut rod.twist[end]);
+            for k in 0..2 {
+                bend.curvature[k] = mix(bend.curvature[k], gone.curvature[k]);
+            }
+            bend.rise = mix(bend.rise, gone.rise);
+            twist.strain = mix(twist.strain, gone_twist.strain);
+            twist.rise = mix(twist.rise, gone_twist.rise);
+        }
+        let share = |x: f64, y: f64| (x * a + y * b) / (a + b);
+        rod.stretch[i - 1] = Scalar {
+            strain: share(rod.stretch[i - 1].strain, rod.stretch[i].strain),
+            rise: share(rod.stretch[i - 1].rise, rod.stretch[i].rise),
+        };
+        rod.spin[i - 1] = share(rod.spin[i - 1], rod.spin[i]);
+        rod.rest[i - 1] = joined;
+        rod.frame[i - 1] = align(&rod.frame[i - 1], &chord.normalize(), 0.0);
+        rod.x.remove(i);
+        rod.v.remove(i);
+        rod.bend.remove(i);
+        rod.twist.remove(i);
+        rod.rest.remove(i);
+        rod.frame.remove(i);
+        rod.spin.remove(i);
+        rod.stretch.remove(i);
+        self.roll.remove(i);
+        if let Some(c) = &mut self.contacts {
+            c.nodes.remove(i);
+        }
+        if let Some(l) = &mut self.line {
+            l.merge(i);
+        }
+        self.past.merge(i);
+        if at_nozzle {
+            let lost = joined - a - b;
+            if let Some((_, f)) = &mut self.feed {
+                // wire and tensioner shift alike, so that the line between them pulls as before
+                f.fed += lost;
+                f.paid += lost;
+            }
+            self.past.fed.iter_mut().for_each(|fed| *fed += lost);
+            self.past.paid += lost;
+            self.books.inflow += self.kinetic() - kinetic;
+        }
     }
 }

@@ -47,6 +47,8 @@ pub struct System {
     /// accepted instants before this one, for the implicit method
     pub past: Past,
     pub(super) wire: Wire,
+    /// frozen wire of the implicit method, oldest node first
+    pub(super) dormant: Vec<super::change::Dormant>,
     /// feed at the last node
     pub feed: Option<(FeedSpec, Feed)>,
     /// set pull of the tensioner, N
@@ -90,6 +92,7 @@ impl System {
             line: None,
             past: Past::default(),
             wire: Wire::default(),
+            dormant: Vec::new(),
             feed: None,
             set_tension: 0.0,
             twist: true,

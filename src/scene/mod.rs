@@ -216,6 +216,8 @@ pub struct Freeze {
     pub enabled: bool,
     /// window of core angle over which motion is judged, rad
     pub window: f64,
+    /// window of time instead, while the spindle stands, s
+    pub time: f64,
     /// largest motion in the core frame per core angle, m/rad
     pub creep: f64,
     /// settled wire kept live behind lift-off, m; 0: 1.75 sqrt(EI/T)

@@ -167,6 +167,8 @@ impl Default for SceneSettings {
             freeze: super::Freeze {
                 enabled: true,
                 window: 1.5,
+                // ten periods of the free span's slowest ringing (60 mm of 0.7 mm wire at 15 N: 1.8 ms)
+                time: 0.02,
                 creep: 6e-6,
                 keep_length: 0.0,
                 margin: 5e-3,

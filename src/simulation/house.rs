@@ -6,11 +6,20 @@ use crate::integrate::turn_about_y;
 use crate::math::{Spin, V3};
 use crate::measure::{polar_angle, wrap_to_pi};
 
+/// The live wire never gets shorter than this many nodes: clamp, nozzle and two between.
+const FEWEST_NODES: usize = 4;
+/// Cosine of the angle between edges that may be joined: 10 mrad, at which the chord of two equal edges is
+/// 1.3e-5 shorter than they are.
+const STRAIGHT: f64 = 0.99995;
+
 impl Simulation {
     pub(super) fn keep_house(&mut self, dt: f64) -> Result<(), SimError> {
         let look = self.implicit.is_some() || self.steps.is_multiple_of(HOUSE_STEPS);
         if look {
             self.check_health()?;
+        }
+        if self.implicit.is_some() {
+            self.take_back();
         }
         let insert = self.nozzle_edge_is_long();
         let refine = if look {
@@ -18,7 +27,9 @@ impl Simulation {
         } else {
             Vec::new()
         };
-        let due = self.watch.due(&self.policy, self.sys.spindle.angle);
+        let due = self
+            .watch
+            .due(&self.policy, self.sys.spindle.angle, self.sys.time);
         let freeze = if due { self.nodes_to_freeze() } else { 0 };
         if !insert && refine.is_empty() && freeze == 0 {
             return Ok(());
@@ -88,7 +99,9 @@ impl Simulation {
         let angle = self.sys.spindle.angle;
         let spin = Spin::new(angle);
         let x = &self.sys.rod.x;
-        let still = self.watch.look(&self.policy, angle, |i| spin.to_core(x[i]));
+        let still = self
+            .watch
+            .look(&self.policy, angle, self.sys.time, |i| spin.to_core(x[i]));
         self.watch_live_wire();
         if !self.scene.freeze.enabled {
             return 0;
@@ -163,6 +176,106 @@ impl Simulation {
         if let Some(c) = &mut self.sys.contacts {
             c.forget_surroundings();
         }
+        if let Some(l) = &mut self.sys.line {
+            l.forget_surroundings();
+        }
+    }
+
+    /// Wire that comes off the core again: frozen wire thaws near lift-off, and what goes back into the
+    /// nozzle takes its nodes along.
+    fn take_back(&mut self) {
+        let thaw = self.nodes_to_thaw();
+        let returning = self.sys.feed.is_some_and(|(_, f)| f.rate < 0.0);
+        let join = if returning {
+            self.nodes_to_join()
+        } else {
+            Vec::new()
+        };
+        let short = self.nozzle_edge_is_short();
+        if thaw == 0 && join.is_empty() && !short {
+            return;
+        }
+        let unexplained = self.sys.energy_residual(None);
+        for i in join.into_iter().rev() {
+            self.join(i);
+        }
+        while self.nozzle_edge_is_short() {
+            self.join(self.sys.rod.nodes() - 2);
+        }
+        if thaw > 0 {
+            self.thaw(thaw);
+        }
+        self.sys.refresh();
+        self.sys.books.numerical += self.sys.energy_residual(None) - unexplained;
+    }
+
+    fn join(&mut self, node: usize) {
+        self.sys.merge(node);
+        self.watch.remove(node);
+    }
+
+    /// The edge at the nozzle has shrunk below half a spacing, and there is wire to join it to.
+    fn nozzle_edge_is_short(&self) -> bool {
+        let rod = &self.sys.rod;
+        rod.nodes() > FEWEST_NODES
+            && rod.rest[rod.edges() - 1] < 0.5 * self.scene.solver.spacing_free
+    }
+
+    /// Nodes of the free span that lie close together far from the core, no two of them neighbours.
+    fn nodes_to_join(&self) -> Vec<usize> {
+        let solver = self.scene.solver;
+        let spin = Spin::new(self.sys.spindle.angle);
+        // twice the distance at which edges are split, or it would go to and fro
+        let reach = 2.0 * solver.refine_distance + self.scene.wire.radius();
+        let rod = &self.sys.rod;
+        let mut nodes = Vec::new();
+        let mut i = self.lift_off() + 2;
+        while i + 2 < rod.nodes() && rod.nodes() - nodes.len() > FEWEST_NODES {
+            let both = rod.rest[i - 1] + rod.rest[i];
+            // a kink stays: the joined edge would hide it
+            if both < 1.2 * solver.spacing_free
+                && rod.tangent(i - 1).dot(&rod.tangent(i)) > STRAIGHT
+                && self.distance_to_coil(spin.to_core(rod.x[i])) > reach
+            {
+                nodes.push(i);
+                i += 1;
+            }
+            i += 1;
+        }
+        nodes
+    }
+
+    /// How many frozen nodes come back: once less than half of the keep length is left live behind
+    /// lift-off, as many as restore it. Half, so that wire does not freeze and thaw in turns.
+    fn nodes_to_thaw(&self) -> usize {
+        let left: f64 = self.sys.rod.rest[..self.lift_off()].iter().sum();
+        if left >= 0.5 * self.policy.keep_length {
+            return 0;
+        }
+        let mut missing = self.policy.keep_length - left;
+        self.sys
+            .dormant_lengths()
+            .take_while(|length| {
+                let more = missing > 0.0;
+                missing -= length;
+                more
+            })
+            .count()
+    }
+
+    /// The last `count` frozen nodes come back to life.
+    fn thaw(&mut self, count: usize) {
+        let count = self.sys.thaw_front(count);
+        for _ in 0..count {
+            if let Some(l) = &mut self.sys.line {
+                l.tube.pop();
+            }
+            if let Some(c) = &mut self.sys.contacts {
+                c.tube.pop();
+            }
+        }
+        self.coil.unsettle(count);
+        self.watch.insert_front(count);
         if let Some(l) = &mut self.sys.line {
             l.forget_surroundings();
         }

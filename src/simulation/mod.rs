@@ -97,6 +97,7 @@ impl Simulation {
         sys.books.initial = sys.stored() + sys.kinetic();
         let policy = FreezePolicy {
             window: scene.freeze.window,
+            time: scene.freeze.time,
             displacement: scene.freeze.creep * scene.freeze.window,
             keep_length: if scene.freeze.keep_length > 0.0 {
                 scene.freeze.keep_length
@@ -183,7 +184,11 @@ impl Simulation {
     /// Goes through `dt` in steps that the method finds fit. The nozzle follows the spindle where
     /// `per_angle` is not 0, m/rad; else it keeps its velocity.
     fn through(&mut self, dt: f64, per_angle: f64) -> Result<(), SimError> {
-        if self.implicit.is_none() || self.broken {
+        if self.broken {
+            self.turn_on(dt, per_angle);
+            return Ok(());
+        }
+        if self.implicit.is_none() {
             let (count, step) = self.divide(dt);
             for _ in 0..count {
                 self.guide_nozzle(step, per_angle);
@@ -196,10 +201,33 @@ impl Simulation {
             // the nozzle's path over the step is straight: an error of second order in the ramp
             let next = self.implicit.as_ref().map_or(left, |m| m.next);
             self.guide_nozzle(left.min(next), per_angle);
-            let taken = self.implicit_step(left)?;
+            let taken = self.implicit_step(left.min(self.longest_return()))?;
             left = if taken >= left { 0.0 } else { left - taken };
+            if self.broken {
+                self.turn_on(left, per_angle);
+                break;
+            }
         }
         Ok(())
+    }
+
+    /// Longest step in which wire that goes back takes no more than a quarter of the nozzle's edge, s.
+    fn longest_return(&self) -> f64 {
+        match (&self.sys.feed, self.sys.rod.rest.last()) {
+            (Some((_, f)), Some(rest)) if f.rate < 0.0 => 0.25 * rest / -f.rate,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The wire has parted: spindle and nozzle go on, all else stays as it was.
+    fn turn_on(&mut self, dt: f64, per_angle: f64) {
+        if dt > 0.0 {
+            self.guide_nozzle(dt, per_angle);
+        }
+        self.sys.time += dt;
+        self.sys.spindle = self.sys.spindle.after(dt);
+        let support = &mut self.sys.support[1];
+        support.point += support.velocity * dt;
     }
 
     fn guide_nozzle(&mut self, step: f64, per_angle: f64) {
@@ -214,10 +242,16 @@ impl Simulation {
         let Some(method) = &mut self.implicit else {
             return Ok(most);
         };
+        let fixed = method.fixed;
         let taken = method.step(&mut self.sys, most).map_err(|e| SimError {
             time: self.sys.time,
             node: Some(e.node),
-            reason: e.to_string(),
+            reason: match fixed {
+                Some(step) => format!(
+                    "{e}; solver.step = {step:.4e} s allows no shorter one, 0 leaves it to the error"
+                ),
+                None => e.to_string(),
+            },
         })?;
         self.last_step = taken;
         self.steps += 1;
@@ -235,9 +269,7 @@ impl Simulation {
 
     fn step(&mut self, dt: f64) -> Result<(), SimError> {
         if self.broken {
-            // the wire has parted: the core turns on, the rest stays as it was
-            self.sys.time += dt;
-            self.sys.spindle = self.sys.spindle.after(dt);
+            self.turn_on(dt, 0.0);
             return Ok(());
         }
         match self.scene.solver.integrator {
@@ -391,7 +423,17 @@ impl Simulation {
             .unwrap_or(0)
     }
 
+    /// Outputs of parted wire: it neither pulls nor moves on; measures stay those of the moment it broke.
+    fn update_broken(&mut self) {
+        let o = &mut self.outputs;
+        o.spindle_angle = self.sys.spindle.angle - self.angle0;
+        (o.wire_tension, o.spindle_torque, o.feed_speed) = (0.0, 0.0, 0.0);
+    }
+
     fn update_outputs(&mut self) {
+        if self.broken && self.outputs.defect_break {
+            return self.update_broken();
+        }
         let spin = Spin::new(self.sys.spindle.angle);
         let lift = self.lift_off();
         let rod = &self.sys.rod;

@@ -6,7 +6,7 @@
 //! which it obeys Newton's law without fictitious forces; guesses are extrapolated in the core frame,
 //! in which settled wire is exactly at rest.
 
-use crate::math::{Spin, V3};
+use crate::math::{Spin, V3, spin_velocity};
 
 /// What a step of the wire needs to know of the time before it.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -83,6 +83,23 @@ impl Past {
         if self.roll.len() > i {
             self.roll.remove(i);
             self.spin.remove(i);
+        }
+    }
+
+    /// Nodes came back at the front that had been at rest in the core at `q`; `spin` is the core's pose and
+    /// `speed` its speed one instant back.
+    pub(in crate::integrate) fn insert_front(&mut self, q: &[V3], spin: Spin, speed: f64) {
+        let nodes = self.q[0].len();
+        for (k, kept) in self.q.iter_mut().enumerate() {
+            if k == 0 || kept.len() == nodes {
+                kept.splice(0..0, q.iter().copied());
+            }
+        }
+        if self.x.len() == nodes {
+            let back: Vec<V3> = q.iter().map(|q| spin.to_lab(*q)).collect();
+            self.v
+                .splice(0..0, back.iter().map(|x| spin_velocity(speed, *x)));
+            self.x.splice(0..0, back);
         }
     }
 
