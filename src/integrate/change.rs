@@ -80,6 +80,14 @@ impl System {
         bend.rise = 0.5 * (rod.bend[j].rise + rod.bend[j + 1].rise);
         twist.strain = 0.5 * (rod.twist[j].strain + rod.twist[j + 1].strain);
         twist.rise = 0.5 * (rod.twist[j].rise + rod.twist[j + 1].rise);
+        if at_nozzle {
+            // new wire is straight: what set the node before has stays its own
+            let own = rod.voronoi(j);
+            let scale = (own + 0.5 * half) / own;
+            rod.bend[j].curvature = rod.bend[j].curvature.map(|k| k * scale);
+            rod.twist[j].strain *= scale;
+            (bend, twist) = (Bend::default(), Scalar::default());
+        }
         rod.bend.insert(j + 1, bend);
         rod.twist.insert(j + 1, twist);
         if let Some(c) = &mut self.contacts {
@@ -284,6 +292,10 @@ impl System {
         let chord = rod.x[i + 1] - rod.x[i - 1];
         let joined = (a + b) * chord.norm() / length;
         for (end, gain) in [(i - 1, 0.5 * b), (i + 1, 0.5 * a)] {
+            if at_nozzle && end == i + 1 {
+                // set that has gone into the nozzle is forgotten: what comes out again is straight
+                continue;
+            }
             let own = rod.voronoi(end);
             let mix = |x: f64, y: f64| (x * own + y * gain) / (own + gain);
             let (gone, gone_twist) = (rod.bend[i], rod.twist[i]);
@@ -330,5 +342,30 @@ impl System {
             self.past.paid += lost;
             self.books.inflow += self.kinetic() - kinetic;
         }
+    }
+
+    /// The edge at the nozzle has grown by `grown`: it is straight wire that came or went, so the set
+    /// at the node before stays, spread over the node's new length.
+    pub(super) fn keep_set_at_nozzle(&mut self, grown: f64) {
+        let rod = &mut self.rod;
+        let i = rod.nodes() - 2;
+        let own = rod.voronoi(i);
+        let scale = (own - 0.5 * grown) / own;
+        rod.bend[i].curvature = rod.bend[i].curvature.map(|k| k * scale);
+        rod.twist[i].strain *= scale;
+    }
+
+    /// Elastic bending energy per length at the node before the nozzle, J/m.
+    pub(super) fn bent_at_nozzle(&self) -> f64 {
+        let rod = &self.rod;
+        let i = rod.nodes() - 2;
+        let joint = crate::rod::Joint::between(&rod.frame[i - 1], &rod.frame[i]);
+        let own = rod.voronoi(i);
+        (0..2)
+            .map(|k| {
+                0.5 * self.laws.bend.modulus
+                    * (joint.bend[k] / own - rod.bend[i].curvature[k]).powi(2)
+            })
+            .sum()
     }
 }

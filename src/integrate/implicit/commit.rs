@@ -61,6 +61,7 @@ impl Implicit {
             *feed = f;
             let last = sys.rod.edges() - 1;
             sys.rod.rest[last] += grown;
+            sys.keep_set_at_nozzle(grown);
             // the node before the nozzle gains mass that moves as it does
             sys.books.inflow += 0.5 * inflow * sys.rod.v[last].norm_squared();
         }
@@ -70,6 +71,8 @@ impl Implicit {
         sys.books.spindle -= 0.5 * (sys.torque_on_core + before.1) * turned;
         if feeds {
             let last = sys.rod.edges() - 1;
+            // a moment at the node before, spread over more or less wire: the grid's doing
+            sys.books.numerical += 0.5 * sys.bent_at_nozzle() * grown;
             let plastic = sys.rod.stretch[last].strain;
             let now = sys.load.tension[last];
             let tension = 0.5 * (now + before.2.unwrap_or(now));
