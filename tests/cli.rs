@@ -104,7 +104,25 @@ fn bad_input_exits_with_two() {
             &["run", "fig8", "--inputs", "x.csv", "--step", "0"],
             "a number above 0",
         ),
-        (&["run", "fig8", "--set", "solver.step=1e-3"], "solver.step"),
+        (
+            &[
+                "run",
+                "fig8",
+                "--set",
+                "solver.step=1e-3",
+                "--set",
+                "solver.integrator=verlet",
+            ],
+            "solver.step",
+        ),
+        (
+            &["run", "fig8", "--set", "solver.tolerance=0.1"],
+            "1e-9 to 0.001 m",
+        ),
+        (
+            &["run", "fig8", "--set", "solver.spacing_near_mm=100"],
+            "0 to 0.05 m",
+        ),
         (&["wind"], "unrecognized subcommand"),
     ] {
         let said = complaint(arguments, 2);

@@ -80,11 +80,11 @@ impl Watch {
     }
 
     /// Whether the next look is due: by core angle, or by time where the spindle stands.
-    pub fn due(&self, policy: &FreezePolicy, angle: f64, time: f64) -> bool {
+    pub fn due(&self, policy: &FreezePolicy, angle: f64, speed: f64, time: f64) -> bool {
         let turned = (angle - self.last).abs();
-        let standing = turned <= STANDING * policy.window;
-        turned >= policy.window / LOOKS as f64
-            || (standing && time - self.last_time >= policy.time / LOOKS as f64)
+        let apart = policy.time / LOOKS as f64;
+        let standing = speed.abs() * apart <= STANDING * policy.window;
+        turned >= policy.window / LOOKS as f64 || (standing && time - self.last_time >= apart)
     }
 
     /// Takes a look; returns how many nodes from the clamp on have stayed in place over the window.
@@ -143,7 +143,7 @@ mod tests {
         let mut still = 0;
         for k in 1..=40 {
             let angle = 0.1 * k as f64;
-            assert!(w.due(&p, angle + 1e-9, 0.0));
+            assert!(w.due(&p, angle + 1e-9, 1.0, 0.0));
             still = w.look(&p, angle, 0.0, |i| {
                 V3::x()
                     * if i == 0 {
@@ -165,8 +165,8 @@ mod tests {
         let mut w = Watch::new(1, 0.0);
         for k in 1..=5 {
             let time = 0.25 * f64::from(k);
-            assert!(!w.due(&p, 0.05, time), "a turning core is judged by angle");
-            assert!(!w.due(&p, 0.0, time - 0.01) && w.due(&p, 0.0, time));
+            assert!(!w.due(&p, 0.05, 0.2, time), "a turning core is judged by angle");
+            assert!(!w.due(&p, 0.0, 0.0, time - 0.01) && w.due(&p, 0.0, 0.0, time));
             let still = w.look(&p, 0.0, time, |_| V3::x());
             assert_eq!(still, usize::from(k == 5));
         }

@@ -27,9 +27,10 @@ impl Simulation {
         } else {
             Vec::new()
         };
+        let s = self.sys.spindle;
         let due = self
             .watch
-            .due(&self.policy, self.sys.spindle.angle, self.sys.time);
+            .due(&self.policy, s.angle, s.speed, self.sys.time);
         let freeze = if due { self.nodes_to_freeze() } else { 0 };
         if !insert && refine.is_empty() && freeze == 0 {
             return Ok(());

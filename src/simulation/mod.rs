@@ -24,6 +24,13 @@ use crate::math::{Spin, V3};
 use crate::measure::{Coil, SettledNode, polar_angle, wrap_to_pi};
 use crate::scene::{Integrator, Scene};
 
+/// Wire slower than this, m/s, on a standing core counts as quiet: in a second it would move by less than
+/// the error that one step may have.
+const QUIET: f64 = 1e-6;
+
+/// Tension below which wire is slack, N: chosen as the weight of 3 cm of 0.7 mm wire, half a free span.
+const SLACK: f64 = 1e-3;
+
 /// Steps between looks for edges to refine and values that are not finite.
 const HOUSE_STEPS: u64 = 32;
 
@@ -50,6 +57,8 @@ pub struct Simulation {
     rest_depth: f64,
     broken: bool,
     was_slack: bool,
+    /// how long core, nozzle, tensioner and wire have been still, s
+    quiet: f64,
     /// farthest nozzle position of this pass, m, and its direction along y
     pass: (f64, f64),
 }
@@ -125,6 +134,7 @@ impl Simulation {
             rest_depth: 0.0,
             broken: false,
             was_slack: false,
+            quiet: 0.0,
             pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
         };
         sim.sys.spindle.speed = inputs.spindle_speed;
@@ -157,6 +167,12 @@ impl Simulation {
         let travel = target - self.sys.support[1].point.y;
         self.sys.spindle.speed = inputs.spindle_speed;
         self.sys.spindle.acceleration = 0.0;
+        if inputs.spindle_speed != 0.0
+            || travel != 0.0
+            || inputs.tension_setpoint != self.sys.set_tension
+        {
+            self.quiet = 0.0;
+        }
         self.sys.set_tension = inputs.tension_setpoint;
         self.reset_extremes();
         self.sys.place_supports();
@@ -171,6 +187,7 @@ impl Simulation {
     /// Advances by `dt` along the scene's own spindle ramp and traverse, which are continuous.
     pub fn advance_programme(&mut self, dt: f64) -> Result<(), SimError> {
         self.reset_extremes();
+        self.quiet = 0.0;
         let end = self.time + dt;
         for piece in self.programme.pieces(self.time, end) {
             self.sys.spindle.speed = piece.speed;
@@ -186,6 +203,10 @@ impl Simulation {
     fn through(&mut self, dt: f64, per_angle: f64) -> Result<(), SimError> {
         if self.broken {
             self.turn_on(dt, per_angle);
+            return Ok(());
+        }
+        if self.asleep() {
+            self.sys.time += dt;
             return Ok(());
         }
         if self.implicit.is_none() {
@@ -209,6 +230,13 @@ impl Simulation {
             }
         }
         Ok(())
+    }
+
+    /// Nothing has moved for long enough that all wire which may freeze has frozen (two windows: a
+    /// vibration's turning point is over in a fraction of one), and no input has changed since: the
+    /// state stays as it is until one does.
+    fn asleep(&self) -> bool {
+        self.implicit.is_some() && self.quiet >= 2.0 * self.policy.time
     }
 
     /// Longest step in which wire that goes back takes no more than a quarter of the nozzle's edge, s.
@@ -257,6 +285,9 @@ impl Simulation {
         self.steps += 1;
         self.watch_tension();
         self.keep_house(taken)?;
+        let still =
+            self.sys.spindle.speed == 0.0 && self.sys.rod.v.iter().all(|v| v.amax() < QUIET);
+        self.quiet = if still { self.quiet + taken } else { 0.0 };
         Ok(taken)
     }
 
@@ -287,7 +318,7 @@ impl Simulation {
         let t = self.wire_tension();
         self.outputs.wire_tension_min = self.outputs.wire_tension_min.min(t);
         self.outputs.wire_tension_max = self.outputs.wire_tension_max.max(t);
-        let slack = t <= 0.0;
+        let slack = t < SLACK;
         if slack && !self.was_slack {
             self.report(EventKind::Slack, "the wire went slack at the nozzle".into());
         }

@@ -214,13 +214,15 @@ impl Implicit {
                         self.commit(sys, &step, spindle, &support, nozzle);
                         self.effort.steps += 1;
                         // a step cut short by the end of the interval says nothing against a longer one
-                        let grown =
-                            (h * factor.clamp(0.3, GROWTH)).clamp(self.shortest, self.longest);
-                        self.next = if h < self.next && factor > 1.0 {
-                            grown.max(self.next)
+                        let allowed = h * factor;
+                        self.next = if h < self.next && allowed > self.next {
+                            allowed.min(GROWTH * self.next)
+                        } else if h < self.next && factor > 1.0 {
+                            self.next
                         } else {
-                            grown
-                        };
+                            h * factor.clamp(0.3, GROWTH)
+                        }
+                        .clamp(self.shortest, self.longest);
                         return Ok(h);
                     }
                     self.effort.rejects += 1;
