@@ -184,7 +184,10 @@ fn two_turns_balance_their_energy_and_stay_out_of_the_core() {
 
 #[test]
 fn runge_kutta_and_verlet_agree() {
-    let a = wind(&fig8(&[("spindle.speed", "500")]), 0.4);
+    let a = wind(
+        &fig8(&[("spindle.speed", "500"), ("solver.integrator", "verlet")]),
+        0.4,
+    );
     let b = wind(
         &fig8(&[("spindle.speed", "500"), ("solver.integrator", "rk4")]),
         0.4,
@@ -257,7 +260,7 @@ fn tension_above_strength_breaks_the_wire() {
 
 #[test]
 fn bad_input_is_refused_with_a_reason() {
-    let scene = fig8(&[("solver.step", "1e-5")]);
+    let scene = fig8(&[("solver.step", "1e-5"), ("solver.integrator", "verlet")]);
     let error = Simulation::new(&scene).expect_err("unstable").to_string();
     assert!(
         error.contains("solver.step") && error.contains("limit"),

@@ -165,7 +165,10 @@ mod tests {
         let mut w = Watch::new(1, 0.0);
         for k in 1..=5 {
             let time = 0.25 * f64::from(k);
-            assert!(!w.due(&p, 0.05, 0.2, time), "a turning core is judged by angle");
+            assert!(
+                !w.due(&p, 0.05, 0.2, time),
+                "a turning core is judged by angle"
+            );
             assert!(!w.due(&p, 0.0, 0.0, time - 0.01) && w.due(&p, 0.0, 0.0, time));
             let still = w.look(&p, 0.0, time, |_| V3::x());
             assert_eq!(still, usize::from(k == 5));

@@ -217,11 +217,11 @@ impl Simulation {
             }
             return Ok(());
         }
+        let start = (self.sys.support[1].point.y, self.sys.spindle.angle);
         let mut left = dt;
         while left > 0.0 {
-            // the nozzle's path over the step is straight: an error of second order in the ramp
             let next = self.implicit.as_ref().map_or(left, |m| m.next);
-            self.guide_nozzle(left.min(next), per_angle);
+            self.steer_nozzle(left.min(next), per_angle, start);
             let taken = self.implicit_step(left.min(self.longest_return()))?;
             left = if taken >= left { 0.0 } else { left - taken };
             if self.broken {
@@ -229,7 +229,21 @@ impl Simulation {
                 break;
             }
         }
+        if per_angle != 0.0 {
+            self.sys.support[1].point.y = start.0 + per_angle * (self.sys.spindle.angle - start.1);
+        }
         Ok(())
+    }
+
+    /// Sends the nozzle to where it has to be once the spindle has turned on for `step`, by the law that
+    /// `start` (nozzle and angle) lies on. The method may take another step than the one foreseen; what
+    /// that leaves, of second order in the ramp, is made up for in the next.
+    fn steer_nozzle(&mut self, step: f64, per_angle: f64, start: (f64, f64)) {
+        if per_angle != 0.0 {
+            let next = start.0 + per_angle * (self.sys.spindle.after(step).angle - start.1);
+            let nozzle = &mut self.sys.support[1];
+            nozzle.velocity = V3::new(0.0, (next - nozzle.point.y) / step, 0.0);
+        }
     }
 
     /// Nothing has moved for long enough that all wire which may freeze has frozen (two windows: a

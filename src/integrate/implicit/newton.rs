@@ -57,6 +57,7 @@ pub(super) fn solve(
         return Ok(0);
     }
     let mut last_update = f64::INFINITY;
+    let mut worst = (0, f64::INFINITY);
     for step in 1..=MOST_STEPS {
         work.solves += 1;
         if let Err(node) = solve_linear(model, work) {
@@ -121,10 +122,11 @@ pub(super) fn solve(
             share *= 0.5;
         }
         last_update = if share == 1.0 { update } else { f64::INFINITY };
+        worst = (node, update);
     }
     Err(Stuck {
-        node: 0,
-        update: last_update,
+        node: worst.0,
+        update: worst.1,
         steps: MOST_STEPS,
     })
 }
