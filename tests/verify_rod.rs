@@ -20,11 +20,14 @@ fn all_right(kind: &str, preset: &str) {
     assert_eq!(right, Ok(true), "\n{table}");
 }
 
+/// By the production method and by the forces of the explicit steps.
 macro_rules! kinds {
     ($($kind:ident),* $(,)?) => {
         $(#[test]
         fn $kind() {
-            all_right(stringify!($kind), "default");
+            for preset in ["default", "paper"] {
+                all_right(stringify!($kind), preset);
+            }
         })*
     };
 }
@@ -43,11 +46,6 @@ kinds!(
     corner_edge,
     square_loop,
 );
-
-#[test]
-fn the_papers_integrator_carries_waves_as_fast() {
-    all_right("axial_wave", "paper");
-}
 
 fn packed(kind: &str) -> CaseFile {
     let files = CaseFile::packed().expect("packed files are well formed");

@@ -42,6 +42,8 @@ struct Touch {
     fresh: f64,
     normal: V3,
     depth: f64,
+    /// depth at the last accepted instant, 0: none, m
+    before: f64,
 }
 
 const NONE: Touch = Touch {
@@ -52,6 +54,7 @@ const NONE: Touch = Touch {
     fresh: 0.0,
     normal: V3::new(0.0, 0.0, 0.0),
     depth: 0.0,
+    before: 0.0,
 };
 
 /// A contact point of the wire.
@@ -107,6 +110,9 @@ pub struct LineContact {
     pub law: ContactLaw,
     /// depth over which the normal force sets in, m
     pub onset: f64,
+    /// line load per rate of depth, N s/m^2, and as much of it along the surface as of the stiffness; it
+    /// never pulls. 0: what the method itself takes out of a blow
+    pub damping: f64,
     /// wire radius, m
     pub radius: f64,
     /// totals of what was lost
@@ -149,6 +155,7 @@ impl LineContact {
             tube: SplineTube::new(radius),
             law,
             onset: ONSET,
+            damping: 0.0,
             radius,
             loss: ContactLoss::default(),
             hold_limits: false,
@@ -310,6 +317,7 @@ impl LineContact {
             shape,
             law,
             onset,
+            damping,
             radius,
             hold_limits,
             near,
@@ -349,10 +357,17 @@ impl LineContact {
                 continue;
             }
             any = true;
-            let (e, f, s) = onset_law(depth, *onset);
+            let brake = *damping / (law.stiffness * step);
+            let (e, f, s) = if brake > 0.0 {
+                damped_law(depth, *onset, brake, touch.before)
+            } else {
+                onset_law(depth, *onset)
+            };
             let force = k_n * f;
             (row.share, row.force) = (s, force);
-            near.push(row);
+            if brake == 0.0 {
+                near.push(row);
+            }
             sum.energy += k_n * e;
             sum.energy_lagged += k_n * e;
             sum.gradient -= normal * force;
@@ -365,10 +380,7 @@ impl LineContact {
                 } else {
                     law.mu(slide) * force
                 };
-                let anchor = if touch.held { touch.anchor } else { last };
-                let b = p - anchor;
-                let b = b - normal * b.dot(&normal);
-                let k_t = k_n * TANGENTIAL_SHARE;
+                let (b, k_t) = bristle(touch, p, last, k_n * TANGENTIAL_SHARE, brake);
                 let size = b.norm();
                 sum.energy_lagged += huber(k_t, touch.lag, size);
                 sum.energy += huber(k_t, touch.fresh, size);
@@ -461,23 +473,44 @@ impl LineContact {
             t.lag = t.fresh;
             if t.depth <= 0.0 {
                 t.held = false;
+                t.before = 0.0;
                 continue;
             }
+            let brake = self.damping / (self.law.stiffness * step);
+            if brake > 0.0 {
+                let way = t.depth - t.before;
+                let spring = onset_law(t.depth, self.onset).1;
+                let all = damped_law(t.depth, self.onset, brake, t.before).1;
+                self.loss.damping += self.law.stiffness * length * (all - spring) * way;
+            }
+            t.before = t.depth;
             self.deepest = self.deepest.max(t.depth);
-            let anchor = if t.held { t.anchor } else { last };
-            let b = p - anchor;
-            let b = b - t.normal * b.dot(&t.normal);
-            let size = b.norm();
+            let (b, _) = bristle(t, p, last, k_t, 0.0);
+            let (braked, k_braked) = bristle(t, p, last, k_t, brake);
+            let (size, pull) = (b.norm(), k_braked * braked.norm());
             t.held = true;
             t.anchor = p - b;
-            if k_t * size > t.fresh {
-                let kept = t.fresh / k_t;
-                t.anchor = p - b * (kept / size);
+            if pull > t.fresh {
+                // the spring's part of it, which a dashpot may have kept from stretching so far
+                let kept = (t.fresh / k_t).min(size);
+                let dir = braked * (k_braked / pull);
+                t.anchor = p - dir * kept;
                 self.loss.friction += t.fresh * (size - kept);
             }
         }
         point.last = p;
         force
+    }
+
+    /// Normal force of each touch of point `k` standing for `length` where it was last seen, core frame,
+    /// N: the core's first, then those of frozen wire.
+    pub fn normal_forces(&self, k: usize, length: f64) -> impl Iterator<Item = V3> + '_ {
+        let k_n = self.law.stiffness * length;
+        let point = &self.points[k];
+        point.touch[..=point.passages]
+            .iter()
+            .filter(|t| t.depth > 0.0)
+            .map(move |t| t.normal * (k_n * onset_law(t.depth, self.onset).1))
     }
 
     /// Energy stored in the touches of point `k` standing for `length`, J.
@@ -495,6 +528,21 @@ impl LineContact {
             })
             .sum()
     }
+}
+
+/// Stretch of a touch's bristle and its stiffness, with a dashpot of `brake` times the stiffness `k`
+/// against the way from `last`: together a stiffer bristle from a place in between.
+#[inline]
+fn bristle(touch: &Touch, p: V3, last: V3, k: f64, brake: f64) -> (V3, f64) {
+    let anchor = if touch.held { touch.anchor } else { last };
+    let anchor = if brake > 0.0 {
+        (anchor + last * brake) / (1.0 + brake)
+    } else {
+        anchor
+    };
+    let b = p - anchor;
+    let b = b - touch.normal * b.dot(&touch.normal);
+    (b, k * (1.0 + brake))
 }
 
 /// Wire this far back along itself is the point's own neighbourhood.
@@ -524,6 +572,33 @@ fn add_identity(m: &mut Block, c: f64) {
     }
 }
 
+/// The same with a dashpot of `brake` times the stiffness against the way in from the depth `before`.
+///
+/// A dashpot alone would pull on what leaves faster than the spring can push. Here the sum ends where
+/// it is 0, so that the potential stays convex and without a kink.
+#[inline]
+fn damped_law(depth: f64, onset: f64, brake: f64, before: f64) -> (f64, f64, f64) {
+    let sum = |depth: f64| {
+        let (e, f, s) = onset_law(depth, onset);
+        let way = depth - before;
+        (e + 0.5 * brake * way * way, f + brake * way, s + brake)
+    };
+    if before == 0.0 {
+        return sum(depth);
+    }
+    let linear = (brake * before + 0.5 * onset) / (1.0 + brake);
+    let end = if linear >= onset {
+        linear
+    } else {
+        2.0 * brake * before / (brake + (brake * (brake + 2.0 * before / onset)).sqrt())
+    };
+    if depth <= end || brake == 0.0 && depth <= 0.0 {
+        return (0.0, 0.0, 0.0);
+    }
+    let (e, f, s) = sum(depth);
+    (e - sum(end).0, f, s)
+}
+
 /// Potential of a bristle of stiffness `k` that gives way at `limit`.
 #[inline]
 pub(super) fn huber(k: f64, limit: f64, size: f64) -> f64 {
@@ -531,5 +606,34 @@ pub(super) fn huber(k: f64, limit: f64, size: f64) -> f64 {
         0.5 * k * size * size
     } else {
         limit * (size - 0.5 * limit / k)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Force and stiffness are the derivatives of energy and force, and the force never pulls.
+    #[test]
+    fn normal_law_is_a_family() {
+        let onset = 1e-6;
+        for brake in [0.0, 0.3, 20.0] {
+            for before in [0.0, 4e-7, 2e-6, 1e-5] {
+                for i in 1..400 {
+                    let depth = 1.37e-8 * f64::from(i) * (1.0 + 0.01 * f64::from(i));
+                    let law = |d: f64| damped_law(d, onset, brake, before);
+                    let h = 1e-12;
+                    let (e, f, s) = law(depth);
+                    let (a, b) = (law(depth - h), law(depth + h));
+                    assert!(e >= 0.0 && f >= 0.0 && s >= 0.0);
+                    let scale = onset * (1.0 + brake);
+                    assert!(((b.0 - a.0) / (2.0 * h) - f).abs() < 1e-4 * scale);
+                    // the stiffness jumps where the push ends
+                    if a.1 > 0.0 || b.1 == 0.0 {
+                        assert!(((b.1 - a.1) / (2.0 * h) - s).abs() < 1e-4 * (1.0 + brake));
+                    }
+                }
+            }
+        }
     }
 }

@@ -1,11 +1,11 @@
 //! Axial waves, modes and stretch of a straight wire.
 
+use super::equilibrium::{follow, no_answer};
 use super::modes::{Motion, lowest};
 use super::wire::{clamp_along_x, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::integrate::{
-    Implicit, Limits, RK4_LIMIT, Scheme, Support, System, VERLET_LIMIT, highest_frequency, ramp,
-    rk4, verlet,
+    Implicit, RK4_LIMIT, Scheme, Support, System, VERLET_LIMIT, highest_frequency, rk4, verlet,
 };
 use crate::math::V3;
 use crate::scene::Integrator;
@@ -30,12 +30,12 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let n = ctx.edges(length, length / EDGES)?;
     let mut sys = straight(ctx.elastic(), &vec![length / n as f64; n]);
     sys.support[0] = clamp_along_x(V3::zeros());
-    let one = lowest(&mut sys, Motion::Along(0), 2)?;
+    let one = lowest(ctx, &mut sys, Motion::Along(0), 2)?;
     sys.support[1] = clamp_along_x(V3::x() * length);
-    let both = lowest(&mut sys, Motion::Along(0), 1)?;
+    let both = lowest(ctx, &mut sys, Motion::Along(0), 1)?;
 
     sys.support[1] = Support::free();
-    ramp(&mut sys, &Limits::default(), |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.loads.nodal = vec![(n, V3::x() * (force * share))];
     })?;
     Ok(vec![
@@ -77,9 +77,7 @@ fn wave_speed(ctx: &Context, length: f64) -> Result<f64, VerifyError> {
             Integrator::Rk4 => rk4::step(sys, dt),
             Integrator::Verlet => verlet::step(sys, dt),
             Integrator::Implicit => {
-                method
-                    .step(sys, dt)
-                    .map_err(|e| VerifyError::NoAnswer(e.to_string()))?;
+                method.step(sys, dt).map_err(no_answer)?;
             }
         }
         Ok(())

@@ -1,13 +1,17 @@
 //! Pieces that several contact checks share: straight frozen wires, a piece of wire over them,
 //! the step, and averages.
 
-use super::VerifyError;
-use crate::contact::{ContactLaw, Contacts};
-use crate::core_shape::{Surface, Touch, TriMesh, generate};
+use super::equilibrium::no_answer;
+use super::{Context, VerifyError};
+use crate::contact::{ContactLaw, Contacts, LineContact};
+use crate::core_shape::{Shape, Surface, Touch, TriMesh, generate};
 use crate::freeze::{FrozenNode, SIDES, Tube};
-use crate::integrate::{Support, System, VERLET_LIMIT, highest_frequency, verlet};
+use crate::integrate::{
+    Implicit, Scheme, Support, System, VERLET_LIMIT, highest_frequency, verlet,
+};
 use crate::math::V3;
 use crate::rod::{Rod, Section, align, frame_along};
+use crate::scene::Integrator;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -30,8 +34,64 @@ const ROLL: f64 = 7.0;
 /// Step as a share of the stability limit.
 const SHARE: f64 = 0.7;
 
+/// Local error that a step of the production method may have and its longest step, in wire radii and
+/// units of time.
+const TOLERANCE: f64 = 1e-6;
+const LONGEST: f64 = 0.05;
+
+/// Shortest step of the production method, s: that of a winding run.
+const SHORTEST: f64 = 1e-9;
+
+/// Units of time over which the load rises, and the steady loads that the production method sees then.
+const RISE: f64 = 0.3;
+const RISE_PARTS: usize = 30;
+
 /// Mean depth under the load as a share of the wire radius: 5 nm, 30 nm under the touching nodes.
 const DEPTH: f64 = 1.5e-5;
+
+/// How steps are taken.
+pub(super) enum Stepper {
+    /// steps of a given length
+    Explicit(fn(&mut System, f64)),
+    /// the production method, with its own choice of step
+    Implicit(Box<Implicit>),
+}
+
+impl Stepper {
+    /// The production method with the `tolerance`, m, in steps of at most `longest`, s.
+    pub(super) fn implicit(tolerance: f64, longest: f64) -> Self {
+        Self::Implicit(Box::new(Implicit::new(
+            Scheme::Bdf2,
+            tolerance,
+            SHORTEST,
+            longest,
+        )))
+    }
+
+    /// Goes through `time`, in steps of `dt` where they are explicit.
+    pub(super) fn through(
+        &mut self,
+        sys: &mut System,
+        time: f64,
+        dt: f64,
+    ) -> Result<(), VerifyError> {
+        match self {
+            Self::Explicit(step) => {
+                for _ in 0..(time / dt).ceil() as usize {
+                    step(sys, dt);
+                }
+            }
+            Self::Implicit(method) => {
+                let mut left = time;
+                while left > 0.0 {
+                    let taken = method.step(sys, left).map_err(no_answer)?;
+                    left = if taken >= left { 0.0 } else { left - taken };
+                }
+            }
+        }
+        Ok(())
+    }
+}
 
 /// A piece of straight wire along x under a line load, over straight frozen wire along x.
 ///
@@ -47,8 +107,8 @@ pub(super) struct Bench {
     pub(super) unit: f64,
     /// step, s
     pub(super) dt: f64,
-    /// how to take it: Verlet's unless told otherwise
-    pub(super) step: fn(&mut System, f64),
+    /// how to take it
+    pub(super) step: Stepper,
     full: V3,
 }
 
@@ -57,18 +117,18 @@ impl Bench {
     /// which lie at the places `neighbours` along y. A load `q` acts down and `sideways q` along y,
     /// none of it yet. The frozen wires lie on the flat top of a box.
     pub(super) fn new(
-        section: &Section,
+        ctx: &Context,
         neighbours: &[f64],
         offset: f64,
         above: f64,
         sideways: f64,
         law: ContactLaw,
     ) -> Result<Self, VerifyError> {
+        let section = &ctx.elastic();
         let r = section.radius();
         let spacing = SPACING * section.diameter;
         let length = EDGES as f64 * spacing;
         let (half_height, reach) = (10.0 * r, 1000.0 * r);
-        let floor = box_mesh(4.0 * length, 2.0 * half_height, 2.0 * reach)?;
         let height = half_height + r;
         let points: Vec<V3> = (0..=EDGES)
             .map(|i| {
@@ -79,8 +139,30 @@ impl Bench {
         let mut sys = System::new(section.clone(), Rod::through(&points, None));
         // the section does not turn: nothing in these checks rolls
         sys.twist = false;
-        let mut contacts = Contacts::new(Arc::new(floor), law, r, section.diameter, points.len());
-        contacts.tube = straight_wires(r, neighbours, height, length);
+        let implicit = ctx.integrator == Integrator::Implicit;
+        if implicit {
+            let floor = Shape::RoundedBox {
+                half_x: 2.0 * length,
+                half_z: half_height,
+                half_y: reach,
+                corner_radius: 0.0,
+            };
+            let mut line = LineContact::new(floor, law, r, points.len());
+            line.damping = line_damping(&law, section);
+            for node in straight_wires(neighbours, height, length) {
+                line.tube.push(node.point, node.arc);
+            }
+            sys.line = Some(line);
+        } else {
+            let floor = box_mesh(4.0 * length, 2.0 * half_height, 2.0 * reach)?;
+            let diameter = section.diameter;
+            let mut contacts = Contacts::new(Arc::new(floor), law, r, diameter, points.len());
+            contacts.tube = Tube::new(r);
+            for node in straight_wires(neighbours, height, length) {
+                contacts.tube.push(node);
+            }
+            sys.contacts = Some(contacts);
+        }
         // guided along itself: ridges of rolled wire are screws
         sys.support[0] = Support {
             hold: [true, false, false],
@@ -89,7 +171,6 @@ impl Bench {
         };
         // far along the wire, so that nothing counts as the piece's own neighbourhood
         sys.arc0 = 100.0 * length;
-        sys.contacts = Some(contacts);
         let load = law.stiffness * DEPTH * r;
         let m = section.mass_per_length();
         let dt = stable_step(section, spacing, law.stiffness, false);
@@ -99,28 +180,38 @@ impl Bench {
             height,
             unit: (m * r / load).sqrt(),
             dt,
-            step: verlet::step,
+            step: if implicit {
+                Stepper::implicit(TOLERANCE * r, LONGEST * (m * r / load).sqrt())
+            } else {
+                Stepper::Explicit(verlet::step)
+            },
             full: V3::new(0.0, sideways * load, -load) / m,
         };
-        bench.sys.evaluate(Some(0.0));
+        bench.sys.refresh();
         Ok(bench)
     }
 
     /// Raises the load smoothly from nothing, over many periods of the contact spring.
-    pub(super) fn apply_load(&mut self) {
-        let steps = (0.3 * self.unit / self.dt).ceil() as usize;
+    pub(super) fn apply_load(&mut self) -> Result<(), VerifyError> {
+        let steps = match self.step {
+            Stepper::Explicit(_) => (RISE * self.unit / self.dt).ceil() as usize,
+            Stepper::Implicit(_) => RISE_PARTS,
+        };
+        let dt = match self.step {
+            Stepper::Explicit(_) => self.dt,
+            Stepper::Implicit(_) => RISE * self.unit / steps as f64,
+        };
         for i in 0..steps {
             let s = (i as f64 + 1.0) / steps as f64;
             self.sys.loads.gravity = self.full * (0.5 - 0.5 * libm::cos(PI * s));
-            (self.step)(&mut self.sys, self.dt);
+            self.step.through(&mut self.sys, dt, dt)?;
         }
+        Ok(())
     }
 
     /// Goes on for `units` of time.
-    pub(super) fn run(&mut self, units: f64) {
-        for _ in 0..(units * self.unit / self.dt).ceil() as usize {
-            (self.step)(&mut self.sys, self.dt);
-        }
+    pub(super) fn run(&mut self, units: f64) -> Result<(), VerifyError> {
+        self.step.through(&mut self.sys, units * self.unit, self.dt)
     }
 
     /// Centre of mass.
@@ -147,10 +238,10 @@ impl Bench {
     }
 }
 
-/// Frozen wires of radius `r` along x at the places `y` and height `z`, one chain that turns back
+/// Frozen wires along x at the places `y` and height `z`, one chain that turns back
 /// beyond the ends of a piece of `length` about the origin.
-fn straight_wires(r: f64, y: &[f64], z: f64, length: f64) -> Tube {
-    let mut tube = Tube::new(r);
+fn straight_wires(y: &[f64], z: f64, length: f64) -> Vec<FrozenNode> {
+    let mut nodes = Vec::new();
     let rings = 2 * EDGES;
     let step = length / rings as f64;
     let beyond = 16;
@@ -162,7 +253,7 @@ fn straight_wires(r: f64, y: &[f64], z: f64, length: f64) -> Tube {
         for k in 0..=rings + 2 * beyond {
             let along = k as f64 * step - beyond as f64 * step - 0.5 * length;
             let roll = ROLL * TAU / SIDES as f64 * along / length;
-            tube.push(FrozenNode {
+            nodes.push(FrozenNode {
                 point: V3::new(if forth { along } else { -along }, *y, z),
                 frame: align(&base, &direction, roll),
                 arc,
@@ -172,7 +263,7 @@ fn straight_wires(r: f64, y: &[f64], z: f64, length: f64) -> Tube {
             arc += step;
         }
     }
-    tube
+    nodes
 }
 
 /// A law with one friction coefficient.
@@ -184,6 +275,11 @@ pub(super) fn law(stiffness: f64, damping_ratio: f64, mu: f64) -> ContactLaw {
         mu_kinetic: mu,
         slip_speed: 1.0,
     }
+}
+
+/// The dashpot of a law for smooth contact: that of a free piece of wire of any length, N s/m^2.
+pub(super) fn line_damping(law: &ContactLaw, section: &Section) -> f64 {
+    2.0 * law.damping_ratio * (law.stiffness * section.mass_per_length()).sqrt()
 }
 
 /// Box with sharp edges.
@@ -206,6 +302,18 @@ pub(super) fn stable_step(section: &Section, h: f64, stiffness: f64, twist: bool
 
 /// Force of each touch of node `i` at rest, from the law that moves the wire, N.
 pub(super) fn touch_forces(sys: &System, i: usize) -> Vec<V3> {
+    if let Some(line) = &sys.line {
+        // the node's own point and the middle of the edge after it
+        let rod = &sys.rod;
+        let mut forces = Vec::new();
+        if i > 0 && i < rod.edges() {
+            forces.extend(line.normal_forces(2 * i, 0.5 * rod.voronoi(i)));
+        }
+        if i < rod.edges() {
+            forces.extend(line.normal_forces(2 * i + 1, 0.5 * rod.rest[i]));
+        }
+        return forces;
+    }
     let Some(contacts) = &sys.contacts else {
         return Vec::new();
     };

@@ -1,9 +1,10 @@
 //! Bending frequencies of a straight wire under tension, for three ways to hold it.
 
+use super::equilibrium::follow;
 use super::modes::{Motion, lowest};
 use super::wire::{heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, Support, System, ramp};
+use crate::integrate::{Support, System};
 use crate::math::V3;
 
 /// Edges over the wire's length, at least and at most.
@@ -12,7 +13,7 @@ const EDGES: [f64; 2] = [200.0, 400.0];
 /// The three lowest frequencies.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let mut sys = stretched(ctx)?;
-    let f = lowest(&mut sys, Motion::Along(1), 3)?;
+    let f = lowest(ctx, &mut sys, Motion::Along(1), 3)?;
     Ok(vec![
         ("f1_Hz", Answer::Number(f[0])),
         ("f2_Hz", Answer::Number(f[1])),
@@ -57,7 +58,7 @@ fn stretched(ctx: &Context) -> Result<System, VerifyError> {
             ..Support::free()
         },
     ];
-    ramp(&mut sys, &Limits::default(), |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.loads.nodal = vec![(n, V3::x() * (tension * share))];
     })?;
     Ok(sys)

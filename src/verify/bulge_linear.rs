@@ -4,9 +4,10 @@
 //! the linear beam-column, so the answer is the wire's response to a small share of the couple,
 //! scaled up: under the whole couple the slope squared would enter.
 
+use super::equilibrium::follow;
 use super::wire::{angle, curvature, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, Support, ramp};
+use crate::integrate::Support;
 use crate::math::V3;
 
 /// Slope of the small response, rad: its square is the departure from the linear answer.
@@ -37,11 +38,10 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     ];
     // the pinned ends leave the wire free to roll about its axis
     sys.twist = false;
-    let limits = Limits::default();
-    ramp(&mut sys, &limits, |sys, s| {
+    follow(ctx, &mut sys, |sys, s| {
         sys.loads.nodal = vec![(n, V3::x() * (pull * s))];
     })?;
-    ramp(&mut sys, &limits, |sys, s| {
+    follow(ctx, &mut sys, |sys, s| {
         let m = V3::z() * (couple * share * s);
         sys.loads.moments = vec![(0, m), (n - 1, -m)];
     })?;

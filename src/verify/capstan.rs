@@ -4,13 +4,15 @@
 //! free across it, so both far-field directions are exact whatever the legs do, and the wrap is
 //! the angle between them. Ends carry no moment; legs are several bending lengths long.
 
-use super::bench::{SmoothMean, law, mesh, stable_step};
+use super::bench::{SmoothMean, Stepper, law, line_damping, mesh, stable_step};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::contact::Contacts;
+use crate::contact::{Contacts, LineContact};
+use crate::core_shape::Shape;
 use crate::core_shape::generate::cylinder;
 use crate::integrate::{Support, System, verlet};
 use crate::math::V3;
 use crate::rod::{Rod, Section};
+use crate::scene::Integrator;
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -26,6 +28,11 @@ const DEPTH: f64 = 1e-5;
 /// Facets of the cylinder.
 const FACETS: usize = 4096;
 
+/// Local error of a step of the production method as a share of the bend radius, and the parts of a
+/// time that it is told to stop at.
+const TOLERANCE: f64 = 1e-6;
+const PARTS: usize = 200;
+
 /// Drawing speed as a share of the speed of transverse waves on the slack side.
 const SPEED: f64 = 1e-2;
 
@@ -39,9 +46,9 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let (mu, wrap) = (ctx.number("mu")?, ctx.number("wrap_rad")?);
     let (radius, hold) = (ctx.number("R_m")?, ctx.number("F0_N")?);
     let section = ctx.elastic();
-    let mut capstan = Capstan::new(&section, mu, wrap, radius, hold)?;
-    capstan.settle();
-    let mut ratios = capstan.draw();
+    let mut capstan = Capstan::new(ctx, &section, mu, wrap, radius, hold)?;
+    capstan.settle()?;
+    let mut ratios = capstan.draw()?;
     let (first, second) = (ratios.remove(0), ratios.remove(0));
     let drift = (first / second - 1.0).abs();
     if drift.is_nan() || drift >= 0.01 {
@@ -57,6 +64,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
 
 struct Capstan {
     sys: System,
+    step: Stepper,
     dt: f64,
     hold: f64,
     bend: f64,
@@ -68,6 +76,7 @@ struct Capstan {
 impl Capstan {
     /// Wire on the path of a string, stretched by the holding force.
     fn new(
+        ctx: &Context,
         section: &Section,
         mu: f64,
         wrap: f64,
@@ -105,15 +114,23 @@ impl Capstan {
         sys.twist = false;
         let stiffness = hold / (bend * bend * DEPTH);
         let law = law(stiffness, 1.0, mu);
-        let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
-        let count = points.len();
-        sys.contacts = Some(Contacts::new(
-            core,
-            law,
-            section.radius(),
-            section.diameter,
-            count,
-        ));
+        let (count, r) = (points.len(), section.radius());
+        let wave = (hold / section.mass_per_length()).sqrt();
+        let step;
+        if ctx.integrator == Integrator::Implicit {
+            let core = Shape::Cylinder {
+                radius,
+                half_y: 10.0 * section.diameter,
+            };
+            let mut line = LineContact::new(core, law, r, count);
+            line.damping = line_damping(&law, section);
+            sys.line = Some(line);
+            step = Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave));
+        } else {
+            let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
+            sys.contacts = Some(Contacts::new(core, law, r, section.diameter, count));
+            step = Stepper::Explicit(verlet::step);
+        }
         let start = FRAC_PI_2 + wrap;
         let out = V3::new(-libm::sin(start), 0.0, libm::cos(start));
         sys.loads.nodal = vec![(0, out * hold)];
@@ -122,10 +139,11 @@ impl Capstan {
             point: points[edges],
             ..Support::free()
         };
-        sys.evaluate(Some(0.0));
+        sys.refresh();
         Ok(Self {
+            step,
             dt: stable_step(section, h, stiffness, false),
-            wave: (hold / section.mass_per_length()).sqrt(),
+            wave,
             sys,
             hold,
             bend,
@@ -135,38 +153,45 @@ impl Capstan {
     }
 
     /// Lets the legs find their shape under drag.
-    fn settle(&mut self) {
+    fn settle(&mut self) -> Result<(), VerifyError> {
         let transit = self.leg / self.wave;
         self.sys.loads.drag = 4.0 / transit;
-        for _ in 0..(4.0 * transit / self.dt) as usize {
-            verlet::step(&mut self.sys, self.dt);
-        }
+        self.step.through(&mut self.sys, 4.0 * transit, self.dt)
     }
 
     /// Draws the wire at constant speed; mean force ratios over two stretches one after the other.
-    fn draw(&mut self) -> Vec<f64> {
+    fn draw(&mut self) -> Result<Vec<f64>, VerifyError> {
         let speed = SPEED * self.wave;
         let last = self.sys.rod.nodes() - 1;
         let run_in = RUN_IN * self.bend / speed;
-        let steps = (run_in / self.dt) as usize;
+        let (steps, dt) = self.parts(run_in);
         for i in 0..steps {
             // a sudden start would be a blow; drag fades out to where it takes nothing off
             let s = (i as f64 + 1.0) / steps as f64;
             self.sys.support[1].velocity.x = speed * (10.0 * s).min(1.0);
             self.sys.loads.drag = (1.0 - s) * self.wave / self.leg;
-            verlet::step(&mut self.sys, self.dt);
+            self.step.through(&mut self.sys, dt, dt)?;
         }
         self.sys.loads.drag = 0.0;
-        let steps = (MEAN_EDGES * self.edge / speed / self.dt) as usize;
+        let (steps, dt) = self.parts(MEAN_EDGES * self.edge / speed);
         (0..2)
             .map(|_| {
                 let mut mean = SmoothMean::over(steps);
                 for _ in 0..steps {
-                    verlet::step(&mut self.sys, self.dt);
+                    self.step.through(&mut self.sys, dt, dt)?;
                     mean.add(-self.sys.load.force[last].x / self.hold);
                 }
-                mean.value()
+                Ok(mean.value())
             })
             .collect()
+    }
+
+    /// Parts of a time after which loads change and readings are taken: explicit steps, or enough for
+    /// the production method to choose its own in between.
+    fn parts(&self, time: f64) -> (usize, f64) {
+        match self.step {
+            Stepper::Explicit(_) => ((time / self.dt) as usize, self.dt),
+            Stepper::Implicit(_) => (PARTS, time / PARTS as f64),
+        }
     }
 }

@@ -16,7 +16,7 @@ pub struct VerifyArgs {
     /// Case file to run; the packed reference cases if none is given
     #[arg(long = "file", value_name = "CASES.json")]
     pub files: Vec<PathBuf>,
-    /// Solver set-up where a case steps in time: default (Verlet) or paper (RK4)
+    /// Method: default (the implicit one that winding uses) or paper (explicit, RK4)
     #[arg(long, value_name = "paper|default", default_value = "default", value_parser = ["paper", "default"])]
     pub preset: String,
     /// Solver setting: solver.spacing_near (finest node spacing, m) or solver.integrator
@@ -32,7 +32,7 @@ pub struct VerifyArgs {
 pub struct Manner {
     /// whose checks count
     pub preset: Preset,
-    /// where a case steps in time
+    /// the method: implicit for statics as well, or explicit forces with steps of this kind
     pub integrator: Integrator,
     /// node spacing where it is finest, m; `None`: each kind's own
     pub spacing: Option<f64>,

@@ -4,9 +4,10 @@
 //! pull at the far end turns from +x to half the turn below. The wire passes through the edge and
 //! does not stretch plastically, as in the reference.
 
+use super::equilibrium::follow;
 use super::wire::{clamp_along_x, curvature, graded, moment, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, System, ramp};
+use crate::integrate::System;
 use crate::math::V3;
 use crate::rod::Section;
 
@@ -56,11 +57,10 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         let psi = 0.5 * turn * share;
         V3::new(libm::cos(psi), -libm::sin(psi), 0.0)
     };
-    let limits = Limits::default();
-    ramp(&mut sys, &limits, |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.loads.nodal = vec![(n, V3::x() * (pull * share))];
     })?;
-    ramp(&mut sys, &limits, |sys: &mut System, share| {
+    follow(ctx, &mut sys, |sys: &mut System, share| {
         sys.loads.nodal = vec![(n, leg(share) * pull)];
     })?;
     let standoff = sys.rod.x[n].cross(&leg(1.0)).z;

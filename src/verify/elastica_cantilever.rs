@@ -2,9 +2,9 @@
 //!
 //! Clamped along +x at the origin, the force along +y. No yield: the curvatures pass its limit.
 
+use super::equilibrium::follow;
 use super::wire::{angle, clamp_along_x, curvature, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, ramp};
 use crate::math::V3;
 
 /// Tip, its angle and the moment in the clamp.
@@ -16,7 +16,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let n = ctx.edges(length, length / (150.0 * alpha.abs().sqrt().max(1.0)))?;
     let mut sys = straight(section, &vec![length / n as f64; n]);
     sys.support[0] = clamp_along_x(V3::zeros());
-    ramp(&mut sys, &Limits::default(), |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.loads.nodal = vec![(n, V3::new(0.0, force * share, 0.0))];
     })?;
     let tip = sys.rod.x[n];

@@ -1,8 +1,8 @@
 //! A cantilever rolled up by a couple at its end.
 
+use super::equilibrium::follow_in_plane;
 use super::wire::{angle, clamp_along_x, curvature, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, ramp};
 use crate::math::V3;
 use std::f64::consts::TAU;
 
@@ -18,7 +18,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let n = ctx.edges(length, length / (turn / TURN_PER_EDGE).max(50.0))?;
     let mut sys = straight(section, &vec![length / n as f64; n]);
     sys.support[0] = clamp_along_x(V3::zeros());
-    ramp(&mut sys, &Limits::default(), |sys, share| {
+    follow_in_plane(ctx, &mut sys, |sys, share| {
         sys.loads.moments = vec![(n - 1, couple * share)];
     })?;
     let mean = (1..n).map(|i| curvature(&sys, i)).sum::<f64>() / (n - 1) as f64;

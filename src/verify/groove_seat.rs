@@ -15,7 +15,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let places = [-0.5 * pitch, 0.5 * pitch];
     // from a diameter above the neighbours' axes, clear of both; positive lam pushes left, to -y
     let mut bench = Bench::new(
-        &section,
+        ctx,
         &places,
         0.0,
         section.diameter,
@@ -23,8 +23,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         law(1e10, 1.0, 0.0),
     )?;
     bench.sys.loads.drag = DRAG / bench.unit;
-    bench.apply_load();
-    bench.run(SETTLE);
+    bench.apply_load()?;
+    bench.run(SETTLE)?;
     let (mut left, mut right) = (V3::zeros(), V3::zeros());
     for i in 0..bench.sys.rod.nodes() {
         for f in touch_forces(&bench.sys, i) {

@@ -2,9 +2,9 @@
 //!
 //! It starts straight, gets its weight, and then one clamp comes in until the span is right.
 
+use super::equilibrium::follow;
 use super::wire::{clamp_along_x, moment, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, ramp};
 use crate::math::V3;
 
 /// Standard gravity, m/s^2.
@@ -27,11 +27,10 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let n = ctx.edges(length, (length / 200.0).min(layer / 15.0))?;
     let mut sys = straight(section, &vec![length / n as f64; n]);
     sys.support = [clamp_along_x(V3::zeros()), clamp_along_x(V3::x() * length)];
-    let limits = Limits::default();
-    ramp(&mut sys, &limits, |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.loads.gravity = V3::new(0.0, -GRAVITY * share, 0.0);
     })?;
-    ramp(&mut sys, &limits, |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.support[1].point.x = length + share * (span - length);
     })?;
     let mid = sys.rod.x[n / 2];

@@ -3,9 +3,10 @@
 //! A short wire, clamped at one end; the other end's direction is turned until the wire has the
 //! mandrel's curvature all along, then let go.
 
+use super::equilibrium::{follow, settle};
 use super::wire::{clamp_along_x, curvature, heading, moment, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, Support, ramp, relax};
+use crate::integrate::Support;
 use crate::math::V3;
 
 /// Edges of the piece and turn of each, rad.
@@ -19,8 +20,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let turn = EDGES as f64 * edge / radius;
     let mut sys = straight(ctx.section.clone(), &[edge; EDGES]);
     sys.support[0] = clamp_along_x(V3::zeros());
-    let limits = Limits::default();
-    ramp(&mut sys, &limits, |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.support[1] = Support {
             frame: Some(heading(turn * share)),
             ..Support::free()
@@ -28,7 +28,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     })?;
     let loaded = moment(&sys, EDGES / 2);
     sys.support[1] = Support::free();
-    relax(&mut sys, &limits)?;
+    settle(ctx, &mut sys)?;
     Ok(vec![
         ("moment_loaded_Nm", Answer::Number(loaded)),
         (

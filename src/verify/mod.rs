@@ -13,6 +13,7 @@ mod corner_edge;
 mod cyclic_bending;
 mod elastica_cantilever;
 mod end_couple;
+mod equilibrium;
 mod file;
 mod groove_seat;
 mod hanging_wire;
@@ -75,7 +76,7 @@ pub struct Context<'a> {
     pub inputs: &'a serde_json::Map<String, serde_json::Value>,
     /// folder of the case file, for paths in it
     pub folder: &'a Path,
-    /// how a case that steps in time does so
+    /// the method; explicit ones only where a case steps in time, statics then use their forces
     pub integrator: Integrator,
     /// node spacing where it is finest, m; `None`: what the kind finds fit
     pub spacing: Option<f64>,

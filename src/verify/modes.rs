@@ -2,9 +2,12 @@
 //!
 //! The stiffness is the central difference of the forces that time steps use, the mass is theirs.
 
-use super::VerifyError;
+use super::equilibrium::method;
+use super::{Context, VerifyError};
 use crate::integrate::System;
+use crate::math::V3;
 use crate::rod::align;
+use crate::scene::Integrator;
 use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 
@@ -13,6 +16,9 @@ const NUDGE: f64 = 1e-5;
 
 /// Largest dense eigenvalue problem.
 const MOST_PARTS: usize = 1000;
+
+/// Forces, or torques, of a state on every part.
+type Forces = Box<dyn FnMut(&mut System) -> Vec<f64>>;
 
 /// What moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,6 +31,7 @@ pub(super) enum Motion {
 
 /// The `count` lowest frequencies of a motion, Hz, ascending.
 pub(super) fn lowest(
+    ctx: &Context,
     sys: &mut System,
     motion: Motion,
     count: usize,
@@ -46,11 +53,26 @@ pub(super) fn lowest(
             Motion::Roll => sys.section.spin_inertia_per_length() * sys.rod.rest[i],
         })
         .collect();
+    // twist is not the production method's yet
+    let mut forces: Forces = match motion {
+        Motion::Along(a) if ctx.integrator == Integrator::Implicit => {
+            let mut method = method(sys);
+            Box::new(move |sys| along(&method.forces(sys), a))
+        }
+        Motion::Along(a) => Box::new(move |sys| {
+            sys.evaluate(None);
+            along(&sys.load.force, a)
+        }),
+        Motion::Roll => Box::new(|sys| {
+            sys.evaluate(None);
+            sys.load.torque.clone()
+        }),
+    };
     let mut scaled = DMatrix::zeros(parts.len(), parts.len());
     for (column, &i) in parts.iter().enumerate() {
-        let (ahead, behind, width) = nudged(sys, motion, i);
+        let (ahead, behind, width) = nudged(sys, motion, i, &mut forces);
         for (row, &k) in parts.iter().enumerate() {
-            let stiffness = (pick(&behind, motion, k) - pick(&ahead, motion, k)) / width;
+            let stiffness = (behind[k] - ahead[k]) / width;
             scaled[(row, column)] = stiffness / (inertia[row] * inertia[column]).sqrt();
         }
     }
@@ -76,36 +98,35 @@ fn free(sys: &System, i: usize, a: usize) -> bool {
     !(i == 0 && sys.support[0].hold[a] || i == last && sys.support[1].hold[a])
 }
 
-/// Forces with part `i` a little ahead and a little behind, and the distance between the two.
-fn nudged(sys: &mut System, motion: Motion, i: usize) -> (crate::rod::Load, crate::rod::Load, f64) {
-    let mut loads = [crate::rod::Load::default(), crate::rod::Load::default()];
-    let mut width = 2.0 * NUDGE;
-    for (load, sign) in loads.iter_mut().zip([1.0, -1.0]) {
-        match motion {
-            Motion::Along(a) => {
-                let before = sys.rod.x[i];
-                let step = NUDGE * sys.rod.rest[i.min(sys.rod.edges() - 1)];
-                width = 2.0 * step;
-                sys.rod.x[i][a] += sign * step;
-                sys.evaluate(None);
-                sys.rod.x[i] = before;
-            }
-            Motion::Roll => {
-                let before = sys.rod.frame[i];
-                sys.rod.frame[i] = align(&before, &sys.rod.tangent(i), sign * NUDGE);
-                sys.evaluate(None);
-                sys.rod.frame[i] = before;
-            }
-        }
-        load.clone_from(&sys.load);
-    }
-    let [ahead, behind] = loads;
-    (ahead, behind, width)
+fn along(forces: &[V3], a: usize) -> Vec<f64> {
+    forces.iter().map(|f| f[a]).collect()
 }
 
-fn pick(load: &crate::rod::Load, motion: Motion, i: usize) -> f64 {
-    match motion {
-        Motion::Along(a) => load.force[i][a],
-        Motion::Roll => load.torque[i],
-    }
+/// Forces with part `i` a little ahead and a little behind, and the distance between the two.
+fn nudged(
+    sys: &mut System,
+    motion: Motion,
+    i: usize,
+    forces: &mut Forces,
+) -> (Vec<f64>, Vec<f64>, f64) {
+    let mut width = 2.0 * NUDGE;
+    let [ahead, behind] = [1.0, -1.0].map(|sign| match motion {
+        Motion::Along(a) => {
+            let before = sys.rod.x[i];
+            let step = NUDGE * sys.rod.rest[i.min(sys.rod.edges() - 1)];
+            width = 2.0 * step;
+            sys.rod.x[i][a] += sign * step;
+            let forces = forces(sys);
+            sys.rod.x[i] = before;
+            forces
+        }
+        Motion::Roll => {
+            let before = sys.rod.frame[i];
+            sys.rod.frame[i] = align(&before, &sys.rod.tangent(i), sign * NUDGE);
+            let forces = forces(sys);
+            sys.rod.frame[i] = before;
+            forces
+        }
+    });
+    (ahead, behind, width)
 }

@@ -2,6 +2,9 @@
 //!
 //! Two nodes of the given mass, joined by an edge that stays unstressed, fly on a box's flat top.
 //! The law is per length of wire, so its stiffness is the given one over the length of a node.
+//!
+//! It is the paper's law, whose dashpot may pull, in the paper's steps, whatever the preset; the checks
+//! count for that preset only. The smooth contact of the production method never pulls.
 
 use super::bench::{box_mesh, law};
 use super::{Answer, Answers, Context, VerifyError};

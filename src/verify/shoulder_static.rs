@@ -36,21 +36,13 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
 
 /// Whether the piece let go at this offset moves away from its neighbour.
 fn slides_down(ctx: &Context, offset: f64, mu: f64, sideways: f64) -> Result<bool, VerifyError> {
-    let section = ctx.elastic();
-    let r = section.radius();
+    let r = ctx.section.radius();
     let above = (4.0 * r * r - offset * offset).sqrt();
-    let mut bench = Bench::new(
-        &section,
-        &[0.0],
-        offset,
-        above,
-        sideways,
-        law(1e10, 1.0, mu),
-    )?;
-    bench.apply_load();
+    let mut bench = Bench::new(ctx, &[0.0], offset, above, sideways, law(1e10, 1.0, mu))?;
+    bench.apply_load()?;
     let mut left = PATIENCE;
     while left > 0.0 {
-        bench.run(0.25);
+        bench.run(0.25)?;
         left -= 0.25;
         let moved = bench.centre().y - offset;
         if moved.abs() > SLIDES * r {

@@ -6,9 +6,10 @@
 //! half side comes out right (the wire slides over its edges, so the length is not given).
 
 use super::corner_edge::{GROWTH, SHARPEST_TURN, bending_only, sharpest, yielded_layer};
+use super::equilibrium::follow;
 use super::wire::{clamp_along_x, curvature, graded, heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, Support, System, ramp};
+use crate::integrate::{Support, System};
 use crate::math::V3;
 use std::f64::consts::FRAC_PI_4;
 
@@ -77,11 +78,10 @@ fn drawn(ctx: &Context, pull: f64, length: f64) -> Result<(System, f64), VerifyE
             ..clamp_along_x(V3::zeros())
         },
     ];
-    let limits = Limits::default();
-    ramp(&mut sys, &limits, |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.loads.nodal = vec![(n, V3::x() * (pull * share))];
     })?;
-    ramp(&mut sys, &limits, |sys, share| {
+    follow(ctx, &mut sys, |sys, share| {
         sys.support[0].frame = Some(heading(FRAC_PI_4 * share));
     })?;
     let reach = sys.rod.x[n].x;

@@ -16,9 +16,9 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let mut sys = straight(ctx.elastic(), &vec![length / n as f64; n]);
     sys.support[0] = clamp_along_x(V3::zeros());
     sys.evaluate(None);
-    let one = lowest(&mut sys, Motion::Roll, 2)?;
+    let one = lowest(ctx, &mut sys, Motion::Roll, 2)?;
     sys.support[1] = clamp_along_x(V3::x() * length);
-    let both = lowest(&mut sys, Motion::Roll, 1)?;
+    let both = lowest(ctx, &mut sys, Motion::Roll, 1)?;
 
     sys.support[1] = Support::free();
     ramp(&mut sys, &Limits::default(), |sys, share| {

@@ -9,6 +9,7 @@ mod conjugate;
 mod model;
 mod newton;
 mod scheme;
+mod settle;
 mod tensioner;
 
 pub(in crate::integrate) use model::{point_length, spline_point};
@@ -44,6 +45,9 @@ pub struct Implicit {
     pub fixed: Option<f64>,
     /// which scheme
     pub scheme: Scheme,
+    /// static solves keep every node where it is along the core's z: without twist, a plane wire under
+    /// a dead couple has nothing to hold it there
+    pub flat: bool,
     /// what it took so far
     pub effort: Effort,
     work: Work,
@@ -126,6 +130,21 @@ pub struct Stopped {
     pub cause: &'static str,
 }
 
+impl Stopped {
+    fn at(step: f64, stuck: &newton::Stuck) -> Self {
+        Self {
+            step,
+            node: stuck.node,
+            update: stuck.update,
+            cause: if stuck.update.is_finite() {
+                "Newton's method does not settle"
+            } else {
+                "a value is not finite"
+            },
+        }
+    }
+}
+
 impl Implicit {
     /// `tolerance` in m; steps between `shortest` and `longest`, s.
     pub fn new(scheme: Scheme, tolerance: f64, shortest: f64, longest: f64) -> Self {
@@ -136,6 +155,7 @@ impl Implicit {
             next: (1e-5f64).clamp(shortest, longest),
             fixed: None,
             scheme,
+            flat: false,
             effort: Effort::default(),
             work: Work {
                 q: Vec::new(),
@@ -196,12 +216,16 @@ impl Implicit {
                 arc0: sys.arc0,
                 back,
                 held: [support[0].hold, support[1].hold],
+                flat: false,
             };
             let solved = newton::solve(
                 &mut model,
                 &mut self.work,
                 CLOSE * self.tolerance,
-                self.scheme == Scheme::Bdf2,
+                newton::Reach {
+                    damped: self.scheme == Scheme::Bdf2,
+                    ..newton::Reach::STEP
+                },
             );
             self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
             self.effort.solves += std::mem::take(&mut self.work.solves);
@@ -231,16 +255,7 @@ impl Implicit {
                 Err(stuck) => {
                     self.effort.stalls += 1;
                     if h <= self.shortest || self.fixed.is_some() {
-                        return Err(Stopped {
-                            step: h,
-                            node: stuck.node,
-                            update: stuck.update,
-                            cause: if stuck.update.is_finite() {
-                                "Newton's method does not settle"
-                            } else {
-                                "a value is not finite"
-                            },
-                        });
+                        return Err(Stopped::at(h, &stuck));
                     }
                     0.4 * h
                 }

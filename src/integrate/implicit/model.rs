@@ -5,7 +5,7 @@ use super::{Axial, Work};
 use crate::contact::{LineContact, own_wire};
 use crate::integrate::Loads;
 use crate::math::V3;
-use crate::rod::{Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched};
+use crate::rod::{Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched, turning};
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {
@@ -29,6 +29,8 @@ pub(super) struct Model<'a> {
     pub(super) back: crate::math::Spin,
     /// nodes and coordinates that do not move
     pub(super) held: [[bool; 3]; 2],
+    /// no node moves along z
+    pub(super) flat: bool,
 }
 
 /// Value of the potential, J.
@@ -73,6 +75,12 @@ impl Model<'_> {
                 }
             }
         }
+        if self.flat {
+            for i in 0..nodes {
+                work.matrix.pin(i, 2);
+                work.gradient[i].z = 0.0;
+            }
+        }
         value
     }
 
@@ -87,10 +95,34 @@ impl Model<'_> {
             energy += 0.5 * k * d.norm_squared() - m * gravity.dot(&work.q[i]);
             work.gradient[i] += d * k - gravity * m;
         }
+        if self.loads.drag > 0.0 {
+            // against the lab-frame velocity (x - x*) / gamma
+            for i in 0..work.q.len() {
+                let d = work.q[i] - self.back.to_core(work.star[0][i]);
+                let k = work.mass[i] * self.loads.drag / self.gamma;
+                energy += 0.5 * k * d.norm_squared();
+                work.gradient[i] += d * k;
+                for a in 0..3 {
+                    work.matrix.add_to_entry(i, a, k);
+                }
+            }
+        }
         for (i, f) in &self.loads.nodal {
             let f = self.back.to_core(*f);
             energy -= f.dot(&work.q[*i]);
             work.gradient[*i] -= f;
+        }
+        for (j, m) in &self.loads.moments {
+            // only what turns the edge: twist is not carried. The work is that of turning from the
+            // guess, exact in a plane; in space a dead moment has no potential
+            let m = self.back.to_core(*m);
+            let d = work.q[j + 1] - work.q[*j];
+            let (length, from) = (d.norm(), work.guess[j + 1] - work.guess[*j]);
+            let t = d / length;
+            energy -= m.dot(&turning([&(from / from.norm()), &t]));
+            let couple = m.cross(&t) / length;
+            work.gradient[j + 1] -= couple;
+            work.gradient[*j] += couple;
         }
         energy
     }

@@ -6,8 +6,6 @@ use crate::contact::point_weights;
 use crate::math::V3;
 use crate::rod::add_outer;
 
-/// Newton steps before a time step counts as failed.
-const MOST_STEPS: usize = 12;
 /// Newton steps that renew the friction limits; from then on they stay, so that the rest converges
 /// quadratically. What is left of the lag is its last change.
 const LIMIT_STEPS: usize = 5;
@@ -15,10 +13,44 @@ const LIMIT_STEPS: usize = 5;
 const LOOKS_AHEAD: usize = 4;
 /// Halvings of one Newton step.
 const MOST_CUTS: usize = 12;
-/// Largest move of a node in one Newton step, m.
-const LONGEST_MOVE: f64 = 0.5e-3;
 /// Rounding noise of the potential as a share of its size.
 const NOISE: f64 = 1e-13;
+
+/// How far a solve may go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Reach {
+    /// Newton steps before the solve counts as failed
+    pub(super) steps: usize,
+    /// largest move of a node in one Newton step, m
+    pub(super) longest: f64,
+    /// largest move of an edge's end against its start, over its length
+    pub(super) turn: f64,
+    /// the scheme forgets a small error: a guess that is good enough may stand
+    pub(super) damped: bool,
+}
+
+impl Reach {
+    /// That of a time step, whose guess is close.
+    pub(super) const STEP: Self = Self {
+        steps: 12,
+        longest: 0.5e-3,
+        turn: f64::INFINITY,
+        damped: true,
+    };
+
+    /// Share of an update that is within reach, at most 1.
+    fn share(&self, work: &Work, update: f64) -> f64 {
+        let mut share = (self.longest / update).min(1.0);
+        if self.turn.is_finite() {
+            for j in 0..work.q.len() - 1 {
+                let u = &work.update[3 * j..3 * j + 6];
+                let change = V3::new(u[3] - u[0], u[4] - u[1], u[5] - u[2]);
+                share = share.min(self.turn * work.axial[j].length / change.norm());
+            }
+        }
+        share
+    }
+}
 
 /// Why a solve gave up.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,14 +63,13 @@ pub(super) struct Stuck {
     pub(super) steps: usize,
 }
 
-/// Moves `work.q` to the minimum; `close` is the update below which it is there, m. `damped` tells whether
-/// the scheme forgets a small error.
+/// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
 #[inline(never)]
 pub(super) fn solve(
     model: &mut Model,
     work: &mut Work,
     close: f64,
-    damped: bool,
+    reach: Reach,
 ) -> Result<usize, Stuck> {
     expect_nothing(model, work);
     hold_limits(model, true);
@@ -53,12 +84,12 @@ pub(super) fn solve(
         .map(|(g, m)| g.amax() * weight / m)
         .fold(0.0, f64::max);
     // (the midpoint rule keeps what is wrong with a guess for ever)
-    if bound < close && damped {
+    if bound < close && reach.damped {
         return Ok(0);
     }
     let mut last_update = f64::INFINITY;
     let mut worst = (0, f64::INFINITY);
-    for step in 1..=MOST_STEPS {
+    for step in 1..=reach.steps {
         work.solves += 1;
         if let Err(node) = solve_linear(model, work) {
             return Err(Stuck {
@@ -84,7 +115,7 @@ pub(super) fn solve(
                 steps: step,
             });
         }
-        let mut share = (LONGEST_MOVE / update).min(1.0);
+        let mut share = reach.share(work, update);
         work.start.clone_from(&work.q);
         work.base.clone_from(&work.axial);
         // near the end each step shrinks the update by the same factor or better
@@ -127,7 +158,7 @@ pub(super) fn solve(
     Err(Stuck {
         node: worst.0,
         update: worst.1,
-        steps: MOST_STEPS,
+        steps: reach.steps,
     })
 }
 
@@ -209,7 +240,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
 }
 
 /// At the start tensions are expected to stay what they were at the last accepted instant.
-fn expect_nothing(model: &Model, work: &mut Work) {
+pub(super) fn expect_nothing(model: &Model, work: &mut Work) {
     work.expected.clear();
     for j in 0..model.rod.edges() {
         let tension = model.tension.get(j).copied().unwrap_or(0.0);

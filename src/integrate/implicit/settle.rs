@@ -1,0 +1,247 @@
+//! Equilibrium by the same incremental potential without inertia, and along a ramp of loads.
+//!
+//! A step so long that inertia is below rounding, from rest, is a static solve: rod, loads and contact
+//! are those of a time step. Plastic state, frames and anchors move on only where an increment has
+//! converged.
+
+use super::model::Model;
+use super::newton::{self, Reach};
+use super::scheme::Step;
+use super::{CLOSE, Implicit, Stopped, clamp_directions};
+use crate::integrate::System;
+use crate::math::{Spin, V3};
+
+/// Time over which forces act in a static solve, s: inertia is then 1e-10 of the softest wire's stiffness.
+const LONG: f64 = 1e3;
+/// Solves of one increment: the last ones turn plastic curvature along with what the first one found.
+const PASSES: usize = 3;
+/// Share of a ramp in its first increment, at most, and at least.
+const SHARES: [f64; 3] = [0.1, 0.25, 1e-5];
+/// Solver steps up to which an increment was quick, and what happens to the next one.
+const QUICK: usize = 8;
+const GROWTH: f64 = 1.4;
+const SHRINK: f64 = 0.5;
+
+impl Implicit {
+    /// Moves `sys` to equilibrium under its present loads and supports, and commits it.
+    ///
+    /// The nozzle holds the wire: nothing is fed. Velocities become zero.
+    pub fn settle(&mut self, sys: &mut System) -> Result<(), Stopped> {
+        self.equilibrium(sys, &[], 0.0).map(|_| ())
+    }
+
+    /// Follows equilibrium while `apply` brings loads and supports from share 0 to share 1 of what
+    /// they shall be, in increments that shrink where the solve fails and grow where it is quick.
+    pub fn follow(
+        &mut self,
+        sys: &mut System,
+        mut apply: impl FnMut(&mut System, f64),
+    ) -> Result<(), Stopped> {
+        let [mut step, largest, smallest] = SHARES;
+        let mut at = 0.0;
+        // how the wire moved in the last increment, and the share of the load that did it
+        let mut trend: (Vec<V3>, f64) = (Vec::new(), 1.0);
+        while at < 1.0 {
+            let to = if at + step > 1.0 - 1e-9 {
+                1.0
+            } else {
+                at + step
+            };
+            let before = sys.clone();
+            apply(sys, to);
+            match self.equilibrium(sys, &trend.0, (to - at) / trend.1) {
+                Ok(taken) => {
+                    let moved = sys.rod.x.iter().zip(&before.rod.x).map(|(x, b)| x - b);
+                    trend = (moved.collect(), to - at);
+                    at = to;
+                    if taken <= QUICK {
+                        step = (GROWTH * step).min(largest);
+                    }
+                }
+                Err(error) => {
+                    *sys = before;
+                    // an increment that led astray is no guide for the next one
+                    trend.0.clear();
+                    step *= SHRINK;
+                    if step < smallest {
+                        return Err(error);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Forces on the nodes at the present state as the method sees them, lab frame, N; held
+    /// coordinates count as free.
+    pub fn forces(&mut self, sys: &mut System) -> Vec<V3> {
+        let step = still(sys);
+        self.prepare(sys, &step, &sys.spindle.clone(), &sys.support.clone());
+        let mut model = model_at_rest(sys);
+        model.held = [[false; 3]; 2];
+        newton::expect_nothing(&model, &mut self.work);
+        // the tensions that are there are no surprise
+        for (j, e) in self.work.expected.iter_mut().enumerate() {
+            e.length = (self.work.q[j + 1] - self.work.q[j]).norm();
+        }
+        model.evaluate(&mut self.work);
+        let spin = Spin::new(sys.spindle.angle);
+        let forces = self.work.gradient.iter().map(|g| -spin.to_lab(*g));
+        forces.collect()
+    }
+
+    /// Returns the solver's steps.
+    fn equilibrium(
+        &mut self,
+        sys: &mut System,
+        moved: &[V3],
+        share: f64,
+    ) -> Result<usize, Stopped> {
+        let step = still(sys);
+        let (spindle, support) = (sys.spindle, sys.support);
+        self.prepare(sys, &step, &spindle, &support);
+        let spin = Spin::new(spindle.angle);
+        let last = sys.rod.nodes() - 1;
+        for (i, d) in moved.iter().enumerate() {
+            let d = spin.to_core(d * share);
+            for a in 0..3 {
+                let held = i == 0 && support[0].hold[a] || i == last && support[1].hold[a];
+                if !held {
+                    self.work.guess[i][a] += d[a];
+                }
+            }
+        }
+        let reach = Reach {
+            steps: 40,
+            longest: f64::INFINITY,
+            turn: 0.4,
+            damped: true,
+        };
+        let mut taken = 0;
+        for _ in 0..PASSES {
+            self.work.q.clone_from(&self.work.guess);
+            self.turn_plastic_curvature(sys, &spindle, &support);
+            let mut model = model_at_rest(sys);
+            model.flat = self.flat;
+            let solved = newton::solve(&mut model, &mut self.work, CLOSE * self.tolerance, reach);
+            let steps = solved.map_err(|stuck| {
+                self.effort.stalls += 1;
+                Stopped::at(LONG, &stuck)
+            })?;
+            taken = taken.max(steps);
+            self.work.guess.clone_from(&self.work.q);
+        }
+        self.effort.steps += 1;
+        self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
+        self.effort.solves += std::mem::take(&mut self.work.solves);
+        self.effort.cuts += std::mem::take(&mut self.work.cuts);
+        for (x, q) in sys.rod.x.iter_mut().zip(&self.work.q) {
+            *x = spin.to_lab(*q);
+        }
+        sys.place_supports();
+        sys.settle_forces(f64::INFINITY, true);
+        sys.past.forget();
+        Ok(taken)
+    }
+}
+
+/// Brings everything to rest; the step that a static solve is.
+fn still(sys: &mut System) -> Step {
+    sys.rod.v.fill(V3::zeros());
+    sys.past.forget();
+    sys.begin_past();
+    Step {
+        h: LONG,
+        gamma: LONG,
+        share: 1.0,
+        weight: [1.0, 0.0],
+        error: 0.0,
+    }
+}
+
+fn model_at_rest(sys: &mut System) -> Model<'_> {
+    let held = [sys.support[0].hold, sys.support[1].hold];
+    Model {
+        last: &sys.past.q[0],
+        rod: &sys.rod,
+        laws: &sys.laws,
+        line: sys.line.as_mut(),
+        loads: &sys.loads,
+        tension: &sys.load.tension,
+        clamp: clamp_directions(&sys.support, &sys.spindle),
+        nozzle: None,
+        gamma: LONG,
+        elapsed: f64::INFINITY,
+        diameter: sys.section.diameter,
+        arc0: sys.arc0,
+        back: Spin::new(sys.spindle.angle),
+        held,
+        flat: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::{Limits, Scheme, Support, ramp};
+    use crate::rod::{Rod, Section, frame_along};
+
+    /// A clamped wire that runs askew to all axes; it carries no twist.
+    fn cantilever() -> System {
+        let open = f64::INFINITY;
+        let section = Section {
+            diameter: 0.7e-3,
+            density: 8960.0,
+            ea: 48900.0,
+            ea_p: 1100.0,
+            ei: 3.06e-3,
+            ei_p: 1.13e-4,
+            gj: 4.32e-3,
+            gj_p: 9e-5,
+            n_y: 38.5,
+            m_y: 5.72e-3,
+            t_y: open,
+            moment_cap: open,
+            strength: open,
+        };
+        let along = V3::new(0.8, 0.36, 0.48);
+        let points: Vec<V3> = (0..=30).map(|i| along * (1e-3 * f64::from(i))).collect();
+        let mut sys = System::new(section, Rod::through(&points, None));
+        sys.support[0] = Support::clamped(points[0], frame_along(&along, None));
+        sys.twist = false;
+        sys
+    }
+
+    fn load(sys: &mut System, share: f64) {
+        sys.loads.nodal = vec![(30, V3::new(-0.3, 0.5, 0.2) * share)];
+        sys.loads.gravity = V3::new(0.0, 0.0, -50.0 * share);
+    }
+
+    #[test]
+    fn agrees_with_equilibrium_of_the_joint_forces() {
+        let (mut a, mut b) = (cantilever(), cantilever());
+        let mut method = Implicit::new(Scheme::Bdf2, 1e-11, 1e-9, 1.0);
+        method.follow(&mut a, load).expect("an equilibrium");
+        ramp(&mut b, &Limits::default(), load).expect("an equilibrium");
+        let yielded = b.rod.bend.iter().filter(|k| k.curvature != [0.0; 2]);
+        assert!(yielded.count() > 3, "the load shall leave a bend behind");
+        let off = a.rod.x.iter().zip(&b.rod.x).map(|(x, y)| (x - y).norm());
+        assert!(off.fold(0.0, f64::max) < 1e-7);
+    }
+
+    #[test]
+    fn forces_are_those_of_the_joints() {
+        let mut sys = cantilever();
+        for (i, x) in sys.rod.x.iter_mut().enumerate().skip(1) {
+            let s = i as f64;
+            *x += V3::new(0.0, 1e-4 * libm::sin(s), 4e-6 * s * s);
+        }
+        load(&mut sys, 1.0);
+        sys.evaluate(Some(0.0));
+        let forces = Implicit::new(Scheme::Bdf2, 1e-11, 1e-9, 1.0).forces(&mut sys);
+        let largest = sys.load.force.iter().map(V3::norm).fold(0.0, f64::max);
+        for (a, b) in forces.iter().zip(&sys.load.force) {
+            assert!((a - b).norm() < 1e-6 * largest, "{a:?} {b:?}");
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Static equilibrium: by the production method, or by the forces of the explicit steps.
+
+use super::{Context, VerifyError};
+use crate::integrate::{self, Implicit, Limits, Scheme, System};
+use crate::scene::Integrator;
+
+/// Ten times the update over the wire's length at which a static solve is done; what is left after it
+/// is smaller still.
+const TOLERANCE: f64 = 1e-10;
+
+/// Follows equilibrium while `apply` brings loads and supports from share 0 to share 1.
+pub(super) fn follow(
+    ctx: &Context,
+    sys: &mut System,
+    apply: impl FnMut(&mut System, f64),
+) -> Result<(), VerifyError> {
+    if ctx.integrator == Integrator::Implicit {
+        // the vector form of the rod carries no twist
+        sys.twist = false;
+        return method(sys).follow(sys, apply).map_err(no_answer);
+    }
+    integrate::ramp(sys, &Limits::default(), apply)?;
+    Ok(())
+}
+
+/// The same for a wire in the x-y plane that dead couples roll up: the vector form carries no twist,
+/// which holds a real wire in that plane.
+pub(super) fn follow_in_plane(
+    ctx: &Context,
+    sys: &mut System,
+    apply: impl FnMut(&mut System, f64),
+) -> Result<(), VerifyError> {
+    if ctx.integrator != Integrator::Implicit {
+        return follow(ctx, sys, apply);
+    }
+    sys.twist = false;
+    let mut method = method(sys);
+    method.flat = true;
+    method.follow(sys, apply).map_err(no_answer)
+}
+
+/// Moves to equilibrium under the present loads and supports.
+pub(super) fn settle(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
+    if ctx.integrator == Integrator::Implicit {
+        sys.twist = false;
+        return method(sys).settle(sys).map_err(no_answer);
+    }
+    integrate::relax(sys, &Limits::default())?;
+    Ok(())
+}
+
+/// The production method as static solves use it.
+pub(super) fn method(sys: &System) -> Implicit {
+    let length: f64 = sys.rod.rest.iter().sum();
+    // bounds of the step mean nothing here
+    Implicit::new(Scheme::Bdf2, TOLERANCE * length, 1e-9, 1.0)
+}
+
+/// A step or solve that gave up.
+pub(super) fn no_answer(e: integrate::Stopped) -> VerifyError {
+    VerifyError::NoAnswer(e.to_string())
+}
