@@ -583,7 +583,7 @@ fn damped_law(depth: f64, onset: f64, brake: f64, before: f64) -> (f64, f64, f64
         let way = depth - before;
         (e + 0.5 * brake * way * way, f + brake * way, s + brake)
     };
-    if before == 0.0 {
+    if before == 0.0 || brake == 0.0 {
         return sum(depth);
     }
     let linear = (brake * before + 0.5 * onset) / (1.0 + brake);
@@ -592,11 +592,11 @@ fn damped_law(depth: f64, onset: f64, brake: f64, before: f64) -> (f64, f64, f64
     } else {
         2.0 * brake * before / (brake + (brake * (brake + 2.0 * before / onset)).sqrt())
     };
-    if depth <= end || brake == 0.0 && depth <= 0.0 {
+    if depth <= end {
         return (0.0, 0.0, 0.0);
     }
     let (e, f, s) = sum(depth);
-    (e - sum(end).0, f, s)
+    ((e - sum(end).0).max(0.0), f, s)
 }
 
 /// Potential of a bristle of stiffness `k` that gives way at `limit`.

@@ -103,9 +103,9 @@ pub(super) fn solve(
         }
         let (mut update, mut node) = (0.0, 0);
         for (k, u) in work.update.iter().enumerate() {
-            if !(u.abs() <= update) {
-                update = u.abs();
-                node = k / 3;
+            let size = if u.is_nan() { f64::INFINITY } else { u.abs() };
+            if size > update {
+                (update, node) = (size, k / 3);
             }
         }
         if !update.is_finite() {
