@@ -15,9 +15,10 @@ use crate::measure::{polar_angle, wrap_to_pi};
 use crate::rod::{Block, add_outer};
 use std::f64::consts::TAU;
 
-/// Pairs are listed when nearer than this beyond touching, in wire diameters: farther than a point
-/// moves in a step.
-const SKIN: f64 = 1.0;
+/// Pairs are listed when nearer than this beyond touching, in wire diameters ...
+const SKIN: f64 = 0.25;
+/// ... and this much of the way the step's guess moves the point.
+const FOLLOW: f64 = 1.5;
 /// How far from one turn back along the wire a partner may lie, rad.
 const WINDOW: f64 = 0.6;
 
@@ -29,6 +30,8 @@ pub(super) struct Pair {
     held: bool,
     bristle: V3,
     lag: f64,
+    /// the same at the last accepted instant
+    kept: f64,
     fresh: f64,
     depth: f64,
     /// where the foot was in the last evaluation
@@ -66,6 +69,8 @@ pub struct Between {
     old: Vec<Pair>,
     angle: Vec<f64>,
     arc: Vec<f64>,
+    /// how far each point may move before a pair may be missing, m
+    room: Vec<f64>,
     /// room for the wire in the core frame
     pub scratch: Vec<V3>,
     /// couplings of the last evaluation
@@ -128,11 +133,13 @@ impl Between {
         }
     }
 
-    /// Lists the pairs for a step that starts at `q` (core frame); `rest` are its edges' unstretched lengths.
+    /// Lists the pairs for a step from `q` that is expected to lead to `guess` (core frame); `rest` are the
+    /// edges' unstretched lengths.
     #[inline(never)]
-    pub fn list(&mut self, q: &[V3], rest: &[f64], diameter: f64) {
+    pub fn list(&mut self, q: &[V3], guess: &[V3], rest: &[f64], diameter: f64) {
         self.angle.clear();
         self.arc.clear();
+        self.room.clear();
         let mut last = (0.0, polar_angle(q[0]));
         let mut arc = 0.0;
         for (i, p) in q.iter().enumerate() {
@@ -150,7 +157,10 @@ impl Between {
         std::mem::swap(&mut self.pairs, &mut self.old);
         self.pairs.clear();
         let last_point = 2 * (q.len() - 1);
+        // both lists run along the wire
+        let (mut known, mut near) = (0, 0);
         for point in 1..last_point {
+            self.room.push(f64::INFINITY);
             let i = point / 2;
             let back = self.angle[i] - TAU;
             if back < -WINDOW {
@@ -158,39 +168,62 @@ impl Between {
             }
             let weights = point_weights(point);
             let p = place(q, &weights);
+            let way = (place(guess, &weights) - p).norm();
+            let reach = SKIN * diameter + FOLLOW * way;
             let own = arc[i] - OWN_WIRE * diameter;
-            let from = self.angle[..i].partition_point(|a| *a < back - WINDOW);
-            let mut best: Option<(f64, usize)> = None;
-            for k in from..i {
-                if self.angle[k] > back + WINDOW || arc[k + 1] > own {
-                    break;
-                }
-                let d = (q[k] - p).norm_squared();
-                if best.is_none_or(|(least, _)| d < least) {
-                    best = Some((d, k));
-                }
-            }
-            let Some((_, k)) = best else { continue };
-            let foot = Curve(q).foot(p, k as u32);
-            if foot.distance > (1.0 + SKIN) * diameter || arc[foot.segment as usize] > own {
+            let end = arc[..i].partition_point(|a| *a <= own);
+            if end < 2 {
                 continue;
             }
-            let known = self
+            // one turn back along the wire, and downhill from there
+            while near + 1 < end - 1 && self.angle[near] < back {
+                near += 1;
+            }
+            while near > 0 && self.angle[near - 1] >= back {
+                near -= 1;
+            }
+            let foot = Curve(q).foot(p, near as u32);
+            let gap = foot.distance - diameter;
+            let other = foot.segment as usize;
+            if arc[other] > own || (self.angle[other] - back).abs() > WINDOW {
+                continue;
+            }
+            if gap > reach {
+                self.room[point - 1] = gap;
+                continue;
+            }
+            while known < self.old.len() && self.old[known].point < point as u32 {
+                known += 1;
+            }
+            let before = self
                 .old
-                .iter()
-                .find(|o| o.point == point as u32 && o.segment.abs_diff(foot.segment) < 6);
+                .get(known)
+                .filter(|o| o.point == point as u32 && o.segment.abs_diff(foot.segment) < 6);
             self.pairs.push(Pair {
                 point: point as u32,
                 segment: foot.segment,
-                held: known.is_some_and(|o| o.held),
-                bristle: known.map_or(V3::zeros(), |o| o.bristle),
-                lag: known.map_or(0.0, |o| o.lag),
+                held: before.is_some_and(|o| o.held),
+                bristle: before.map_or(V3::zeros(), |o| o.bristle),
+                lag: before.map_or(0.0, |o| o.kept),
+                kept: before.map_or(0.0, |o| o.kept),
                 fresh: 0.0,
-                depth: known.map_or(0.0, |o| o.depth),
+                depth: before.map_or(0.0, |o| o.depth),
                 share: foot.share,
                 normal: foot.normal,
             });
         }
+    }
+
+    /// First node next to wire that may have moved from `q` to `now` past wire it is not paired with.
+    pub fn missed(&self, q: &[V3], now: &[V3]) -> Option<usize> {
+        self.room.iter().enumerate().find_map(|(k, room)| {
+            if room.is_infinite() {
+                return None;
+            }
+            let weights = point_weights(k + 1);
+            let way = place(now, &weights) - place(q, &weights);
+            (way.norm_squared() > room * room).then_some((k + 1) / 2)
+        })
     }
 
     /// Number of pairs near each other.
@@ -297,7 +330,7 @@ impl Between {
     ) {
         let curve = Curve(q);
         for pair in &mut self.pairs {
-            pair.lag = pair.fresh;
+            (pair.lag, pair.kept) = (pair.fresh, pair.fresh);
             if pair.depth <= 0.0 {
                 pair.held = false;
                 pair.bristle = V3::zeros();

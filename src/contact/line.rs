@@ -38,6 +38,8 @@ struct Touch {
     anchor: V3,
     /// largest friction force by the normal force of the last iterate, N
     lag: f64,
+    /// the same at the last accepted instant, N
+    kept: f64,
     /// the same by the iterate in hand, N
     fresh: f64,
     normal: V3,
@@ -51,6 +53,7 @@ const NONE: Touch = Touch {
     held: false,
     anchor: V3::new(0.0, 0.0, 0.0),
     lag: 0.0,
+    kept: 0.0,
     fresh: 0.0,
     normal: V3::new(0.0, 0.0, 0.0),
     depth: 0.0,
@@ -127,6 +130,8 @@ pub struct LineContact {
     /// every surface near a point at the last evaluation
     near: Vec<Near>,
     points: Vec<Point>,
+    /// points whose surroundings this attempt at a step looked up, as they were
+    undo: Vec<(u32, Point)>,
     found: Vec<u32>,
 }
 
@@ -163,6 +168,7 @@ impl LineContact {
             between: None,
             near: Vec::new(),
             points: vec![FRESH; 2 * nodes],
+            undo: Vec::with_capacity(256),
             found: Vec::with_capacity(64),
         }
     }
@@ -243,9 +249,29 @@ impl LineContact {
         }
     }
 
+    /// An attempt at a step begins.
+    pub fn begin_attempt(&mut self) {
+        self.undo.clear();
+    }
+
+    /// The attempt failed: everything it changed becomes what it was.
+    pub fn undo_attempt(&mut self) {
+        for (k, point) in self.undo.drain(..).rev() {
+            self.points[k as usize] = point;
+        }
+        for p in &mut self.points {
+            if p.core_near || p.passages > 0 {
+                for t in &mut p.touch[..=p.passages] {
+                    t.lag = t.kept;
+                }
+            }
+        }
+    }
+
     fn look_up(&mut self, k: usize, p: V3, own: f64) {
         let skin = SKIN * 2.0 * self.tube.radius();
         let point = &mut self.points[k];
+        self.undo.push((k as u32, *point));
         point.centre = p;
         let core = self.shape.lower_bound(p);
         let core = if core > skin + self.radius {
@@ -470,7 +496,7 @@ impl LineContact {
         let point = &mut self.points[k];
         let last = point.last;
         for t in &mut point.touch[..=point.passages] {
-            t.lag = t.fresh;
+            (t.lag, t.kept) = (t.fresh, t.fresh);
             if t.depth <= 0.0 {
                 t.held = false;
                 t.before = 0.0;

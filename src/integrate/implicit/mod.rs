@@ -185,9 +185,6 @@ impl Implicit {
     /// Takes one step of at most `most` seconds; returns its length.
     pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, Stopped> {
         sys.begin_past();
-        if let Some(b) = sys.line.as_mut().and_then(|l| l.between.as_mut()) {
-            b.list(&sys.past.q[0], &sys.rod.rest, sys.section.diameter);
-        }
         let mut h = self.fixed.unwrap_or(self.next).min(self.longest);
         if h >= most {
             h = most;
@@ -200,6 +197,13 @@ impl Implicit {
             let spindle = sys.spindle.after(step.share * h);
             let support = moved(&sys.support, step.share * h);
             let nozzle = self.prepare(sys, &step, &spindle, &support);
+            if let Some(line) = &mut sys.line {
+                line.begin_attempt();
+                if let Some(b) = &mut line.between {
+                    let guess = &self.work.guess;
+                    b.list(&sys.past.q[0], guess, &sys.rod.rest, sys.section.diameter);
+                }
+            }
             let back = Spin::new(spindle.angle);
             let mut model = Model {
                 rod: &sys.rod,
@@ -230,7 +234,16 @@ impl Implicit {
             self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
             self.effort.solves += std::mem::take(&mut self.work.solves);
             self.effort.cuts += std::mem::take(&mut self.work.cuts);
+            let missed = sys.line.as_ref().and_then(|l| {
+                let between = l.between.as_ref()?;
+                between.missed(&sys.past.q[0], &self.work.q)
+            });
             let retry = match solved {
+                // farther than the pairs of wire were looked for
+                Ok(_) if missed.is_some() && h > self.shortest && self.fixed.is_none() => {
+                    self.effort.rejects += 1;
+                    0.5 * h
+                }
                 Ok(_) => {
                     let error = step.error * self.difference();
                     let factor = (AIM * self.tolerance / error.max(1e-30)).cbrt();
@@ -262,6 +275,9 @@ impl Implicit {
             };
             h = retry.max(self.shortest);
             self.next = h;
+            if let Some(line) = &mut sys.line {
+                line.undo_attempt();
+            }
         }
     }
 
