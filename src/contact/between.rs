@@ -7,7 +7,7 @@
 //! linear system is solved by conjugate gradients with the banded part as preconditioner.
 
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
-use super::line::{huber, onset_law};
+use super::line::{ALONG_SLIDE, FORESIGHT, huber, less, onset_law, times};
 use super::{ContactLoss, OWN_WIRE};
 use crate::freeze::Curve;
 use crate::math::V3;
@@ -43,12 +43,32 @@ pub(super) struct Pair {
 #[derive(Clone, Copy, Debug)]
 pub struct Cross {
     /// nodes of the younger wire and their weights
-    pub young: ([usize; 3], [f64; 3]),
+    pub young: Triple,
     /// nodes of the older wire and their weights, negative
-    pub old: ([usize; 3], [f64; 3]),
+    pub old: Triple,
     /// Hessian with respect to the distance vector, N/m
     pub block: Block,
 }
+
+/// A listed pair as the linear system sees it.
+#[derive(Clone, Copy, Debug)]
+struct NearPair {
+    pair: u32,
+    young: Triple,
+    old: Triple,
+    /// contact stiffness of what the point stands for, N/m
+    stiffness: f64,
+    /// gradient at the iterate, N, and Hessian, N/m, by the distance vector
+    gradient: V3,
+    hessian: Block,
+    /// direction of the slide in it; 0: the bristle holds
+    slide: V3,
+    /// its coupling, if it has one
+    cross: Option<u32>,
+}
+
+/// Three nodes and their weights.
+pub type Triple = ([usize; 3], [f64; 3]);
 
 /// What a pair adds to the step's potential.
 #[derive(Clone, Copy, Debug, Default)]
@@ -59,6 +79,61 @@ pub struct PairPush {
     pub energy: f64,
     /// gradient with respect to the young point, N; its negative acts on the foot
     pub gradient: V3,
+    /// friction limit, N
+    pub limit: f64,
+    /// direction of the slide; 0: the bristle holds
+    pub slide: V3,
+}
+
+impl Pair {
+    /// What a touching pair adds that has slid `way` since the last accepted instant; `limit` gives the friction
+    /// limit for a normal force. A slide against `before` is not taken at once, see `Touch::push`.
+    fn push(
+        &self,
+        law: &ContactLaw,
+        onset: f64,
+        stiffness: f64,
+        way: V3,
+        before: V3,
+        limit: impl Fn(f64) -> f64,
+    ) -> (PairPush, Block) {
+        let (e, f, s) = onset_law(self.depth, onset);
+        let n = self.normal;
+        let mut push = PairPush {
+            energy_lagged: stiffness * e,
+            energy: stiffness * e,
+            gradient: n * (-stiffness * f),
+            limit: 0.0,
+            slide: V3::zeros(),
+        };
+        let mut block = Block::default();
+        let mut along = stiffness * s;
+        if law.mu_static > 0.0 {
+            push.limit = limit(stiffness * f);
+            let b = self.bristle + way;
+            let b = b - n * b.dot(&n);
+            let k_t = stiffness * TANGENTIAL_SHARE;
+            let size = b.norm();
+            push.energy_lagged += huber(k_t, self.lag, size);
+            push.energy += huber(k_t, push.limit, size);
+            let dir = b / size;
+            let h = if k_t * size <= push.limit || dir.dot(&before) < 0.0 {
+                k_t
+            } else {
+                push.slide = dir;
+                let h = push.limit / size;
+                add_outer(&mut block, &(dir * (-ALONG_SLIDE * h)), &dir);
+                h
+            };
+            push.gradient += b * h;
+            for (k, row) in block.iter_mut().enumerate() {
+                row[k] += h;
+            }
+            along -= h;
+        }
+        add_outer(&mut block, &(n * along), &n);
+        (push, block)
+    }
 }
 
 /// Pairs of live wire and what their friction remembers.
@@ -75,13 +150,14 @@ pub struct Between {
     pub scratch: Vec<V3>,
     /// couplings of the last evaluation
     pub cross: Vec<Cross>,
+    near: Vec<NearPair>,
     /// totals of what was lost
     pub loss: ContactLoss,
 }
 
 /// Nodes and weights of contact point `point`: `2 i` the spline at node i, `2 j + 1` the middle of
 /// edge j.
-pub fn point_weights(point: usize) -> ([usize; 3], [f64; 3]) {
+pub fn point_weights(point: usize) -> Triple {
     let i = point / 2;
     if point.is_multiple_of(2) {
         ([i - 1, i, i + 1], [0.125, 0.75, 0.125])
@@ -91,7 +167,7 @@ pub fn point_weights(point: usize) -> ([usize; 3], [f64; 3]) {
 }
 
 /// The weighted place.
-fn place(q: &[V3], (nodes, weights): &([usize; 3], [f64; 3])) -> V3 {
+fn place(q: &[V3], (nodes, weights): &Triple) -> V3 {
     q[nodes[0]] * weights[0] + q[nodes[1]] * weights[1] + q[nodes[2]] * weights[2]
 }
 
@@ -262,6 +338,7 @@ impl Between {
         mut take: impl FnMut(&Cross, &PairPush),
     ) {
         self.cross.clear();
+        self.near.clear();
         let curve = Curve(q);
         for pair in &mut self.pairs {
             let young = point_weights(pair.point as usize);
@@ -270,55 +347,97 @@ impl Between {
             pair.segment = foot.segment;
             (pair.share, pair.normal) = (foot.share, foot.normal);
             pair.depth = diameter - foot.distance;
+            let old = curve.weights(foot.segment as usize, foot.share);
+            let minus = (old.0, old.1.map(|w| -w));
+            let stiffness = law.stiffness * length(pair.point as usize);
+            let mut near = NearPair {
+                pair: self.near.len() as u32,
+                young,
+                old: minus,
+                stiffness,
+                gradient: V3::zeros(),
+                hessian: Block::default(),
+                slide: V3::zeros(),
+                cross: None,
+            };
             if pair.depth <= 0.0 {
                 pair.fresh = 0.0;
+                self.near.push(near);
                 continue;
             }
-            let old = curve.weights(foot.segment as usize, foot.share);
-            let k_n = law.stiffness * length(pair.point as usize);
-            let (e, f, s) = onset_law(pair.depth, onset);
+            let way = (p - place(last, &young)) - (foot.point - place(last, &old));
             let n = foot.normal;
-            let mut push = PairPush {
-                energy_lagged: k_n * e,
-                energy: k_n * e,
-                gradient: n * (-k_n * f),
-            };
-            let mut block = Block::default();
-            let mut along = k_n * s;
-            if law.mu_static > 0.0 {
-                let way = (p - place(last, &young)) - (foot.point - place(last, &old));
-                let way = way - n * way.dot(&n);
-                pair.fresh = if hold_limits {
+            let (push, hessian) = pair.push(law, onset, stiffness, way, V3::zeros(), |force| {
+                if hold_limits {
                     pair.lag
                 } else {
-                    law.mu(way.norm() / step) * k_n * f
-                };
-                let b = pair.bristle + way;
-                let b = b - n * b.dot(&n);
-                let k_t = k_n * TANGENTIAL_SHARE;
-                let size = b.norm();
-                push.energy_lagged += huber(k_t, pair.lag, size);
-                push.energy += huber(k_t, pair.fresh, size);
-                let h = if k_t * size <= pair.fresh {
-                    k_t
-                } else {
-                    pair.fresh / size
-                };
-                push.gradient += b * h;
-                for (k, row) in block.iter_mut().enumerate() {
-                    row[k] += h;
+                    law.mu((way - n * way.dot(&n)).norm() / step) * force
                 }
-                along -= h;
-            }
-            add_outer(&mut block, &(n * along), &n);
+            });
+            pair.fresh = push.limit;
+            near.cross = Some(self.cross.len() as u32);
+            (near.gradient, near.hessian) = (push.gradient, hessian);
+            near.slide = push.slide;
+            self.near.push(near);
             let cross = Cross {
                 young,
-                old: (old.0, old.1.map(|w| -w)),
-                block,
+                old: minus,
+                block: hessian,
             };
             take(&cross, &push);
             self.cross.push(cross);
         }
+    }
+
+    /// As [`LineContact::foresee`](super::LineContact::foresee), for pairs, with the wire at `there`;
+    /// `correct` gets both triples.
+    pub fn foresee(
+        &mut self,
+        (law, onset, diameter): (&ContactLaw, f64, f64),
+        (q, last, there): (&[V3], &[V3], &[V3]),
+        mut correct: impl FnMut(&Triple, &Triple, &Block, &V3),
+    ) -> bool {
+        let mut any = false;
+        for near in &mut self.near {
+            let now = self.pairs[near.pair as usize];
+            let p = place(there, &near.young);
+            let foot = Curve(there).foot(p, now.segment);
+            let pair = Pair {
+                depth: diameter - foot.distance,
+                normal: foot.normal,
+                ..now
+            };
+            let relative = |q: &[V3]| place(q, &near.young) + place(q, &near.old);
+            let way = relative(there) - relative(q);
+            let (mut gradient, mut hessian) = (V3::zeros(), Block::default());
+            if pair.depth > 0.0 {
+                let slid = relative(there) - relative(last);
+                let push;
+                let limit = |_| now.fresh;
+                (push, hessian) = pair.push(law, onset, near.stiffness, slid, near.slide, limit);
+                gradient = push.gradient;
+                near.slide = push.slide;
+            }
+            let off = gradient - near.gradient - times(&near.hessian, &way);
+            if off.amax() <= FORESIGHT * near.stiffness * onset {
+                continue;
+            }
+            any = true;
+            gradient -= times(&hessian, &way);
+            let more = less(&hessian, &near.hessian);
+            correct(&near.young, &near.old, &more, &(gradient - near.gradient));
+            let at = *near.cross.get_or_insert_with(|| {
+                self.cross.push(Cross {
+                    young: near.young,
+                    old: near.old,
+                    block: Block::default(),
+                });
+                self.cross.len() as u32 - 1
+            });
+            self.cross[at as usize].block = hessian;
+            (near.gradient, near.hessian) = (gradient, hessian);
+        }
+        any
     }
 
     /// Takes the wire at `q` over as accepted: bristles move on, slip is booked.
@@ -377,13 +496,7 @@ pub fn add_cross(cross: &[Cross], x: &[f64], y: &mut [f64]) {
     }
 }
 
-fn one_way(
-    block: &Block,
-    from: &([usize; 3], [f64; 3]),
-    to: &([usize; 3], [f64; 3]),
-    x: &[f64],
-    y: &mut [f64],
-) {
+fn one_way(block: &Block, from: &Triple, to: &Triple, x: &[f64], y: &mut [f64]) {
     let mut s = [0.0; 3];
     for (n, w) in from.0.iter().zip(from.1) {
         for a in 0..3 {

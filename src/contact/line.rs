@@ -20,13 +20,13 @@ const PASSAGES: usize = 4;
 /// A point's surroundings are looked up again after this way, in wire diameters.
 const SKIN: f64 = 0.15;
 /// Error of a contact force that an update may promise, over the force of one onset depth.
-const FORESIGHT: f64 = 0.01;
+pub(super) const FORESIGHT: f64 = 0.01;
 /// Depth over which the normal force sets in, m: contact of a 15 N corner is 1 um deep.
 const ONSET: f64 = 1e-5;
 
 /// Share of the zero stiffness of a sliding bristle along its slide that the Hessian takes over. With
 /// all of it updates overshoot to the far side of the anchor, with none they crawl.
-const ALONG_SLIDE: f64 = 0.9;
+pub(super) const ALONG_SLIDE: f64 = 0.9;
 /// One possible touch of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Touch {
@@ -42,6 +42,8 @@ struct Touch {
     kept: f64,
     /// the same by the iterate in hand, N
     fresh: f64,
+    /// direction of the slide as the linear system has it; 0: the bristle holds
+    slide: V3,
     normal: V3,
     depth: f64,
     /// depth at the last accepted instant, 0: none, m
@@ -55,10 +57,63 @@ const NONE: Touch = Touch {
     lag: 0.0,
     kept: 0.0,
     fresh: 0.0,
+    slide: V3::new(0.0, 0.0, 0.0),
     normal: V3::new(0.0, 0.0, 0.0),
     depth: 0.0,
     before: 0.0,
 };
+
+impl Touch {
+    /// Adds the push of a touch with `depth` and `normal` at `p`; returns its own friction limit, N, and the
+    /// direction of its slide.
+    #[inline]
+    fn push(&self, p: V3, c: &Circumstances, sum: &mut Push) -> (f64, V3) {
+        let (e, f, s) = if c.brake > 0.0 {
+            damped_law(self.depth, c.onset, c.brake, self.before)
+        } else {
+            onset_law(self.depth, c.onset)
+        };
+        let n = self.normal;
+        let force = c.stiffness * f;
+        sum.energy += c.stiffness * e;
+        sum.energy_lagged += c.stiffness * e;
+        sum.gradient -= n * force;
+        let mut along = c.stiffness * s;
+        let (mut limit, mut slide) = (0.0, V3::zeros());
+        if c.law.mu_static > 0.0 {
+            limit = match c.limit {
+                Limit::Lagged => self.lag,
+                Limit::Latest => self.fresh,
+                Limit::Own => {
+                    let way = p - c.last;
+                    let slide = (way - n * way.dot(&n)).norm() / c.step;
+                    c.law.mu(slide) * force
+                }
+            };
+            let (b, k_t) = bristle(self, p, c.last, c.stiffness * TANGENTIAL_SHARE, c.brake);
+            let size = b.norm();
+            sum.energy_lagged += huber(k_t, self.lag, size);
+            sum.energy += huber(k_t, limit, size);
+            let dir = b / size;
+            // from sliding to sliding the other way: it would be thrown to and fro
+            let turns = c.limit == Limit::Latest && dir.dot(&self.slide) < 0.0;
+            if k_t * size <= limit || turns {
+                sum.gradient += b * k_t;
+                add_identity(&mut sum.hessian, k_t);
+                along -= k_t;
+            } else {
+                slide = dir;
+                sum.gradient += dir * limit;
+                let h = limit / size;
+                add_identity(&mut sum.hessian, h);
+                add_outer(&mut sum.hessian, &(dir * (-ALONG_SLIDE * h)), &dir);
+                along -= h;
+            }
+        }
+        add_outer(&mut sum.hessian, &(n * along), &n);
+        (limit, slide)
+    }
+}
 
 /// A contact point of the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,21 +190,43 @@ pub struct LineContact {
     found: Vec<u32>,
 }
 
-/// A surface near a contact point: what an update needs to know of it in advance.
+/// A point with surfaces near it: how the linear system sees their push.
 #[derive(Clone, Copy, Debug)]
-pub struct Near {
-    /// the point
-    pub point: u32,
-    /// outward normal of the surface
-    pub normal: V3,
-    /// depth, negative for a gap, m
-    pub depth: f64,
-    /// contact stiffness of what the point stands for, N/m
-    pub stiffness: f64,
-    /// share of it that the Hessian holds
-    pub share: f64,
-    /// force at which that tangent leaves the depth of the iterate, N
-    pub force: f64,
+struct Near {
+    point: u32,
+    /// length of wire it stands for, m
+    length: f64,
+    /// where the iterate has it
+    place: V3,
+    /// gradient there, N, and Hessian, N/m
+    gradient: V3,
+    hessian: Block,
+}
+
+/// Which friction limit a push takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Limit {
+    /// that of the iterate before
+    Lagged,
+    /// by its own normal force
+    Own,
+    /// that of the last evaluation
+    Latest,
+}
+
+/// What a push depends on besides the touch.
+#[derive(Clone, Copy, Debug)]
+struct Circumstances<'a> {
+    law: &'a ContactLaw,
+    onset: f64,
+    /// stiffness of what the point stands for, N/m
+    stiffness: f64,
+    /// dashpot over stiffness, for this step
+    brake: f64,
+    step: f64,
+    /// place at the last accepted instant, m
+    last: V3,
+    limit: Limit,
 }
 
 impl LineContact {
@@ -350,6 +427,19 @@ impl LineContact {
             ..
         } = self;
         let point = &mut points[k];
+        let around = Circumstances {
+            law,
+            onset: *onset,
+            stiffness: law.stiffness * length,
+            brake: *damping / (law.stiffness * step),
+            step,
+            last: point.last,
+            limit: if *hold_limits {
+                Limit::Lagged
+            } else {
+                Limit::Own
+            },
+        };
         let mut sum = Push::default();
         let mut any = false;
         for slot in 0..=point.passages {
@@ -364,68 +454,61 @@ impl LineContact {
                 point.touch[slot].start = foot.segment;
                 (*radius + tube.radius() - foot.distance, foot.normal)
             };
-            let last = point.last;
             let touch = &mut point.touch[slot];
             touch.depth = depth;
             touch.normal = normal;
-            let k_n = law.stiffness * length;
-            let mut row = Near {
-                point: k as u32,
-                normal,
-                depth,
-                stiffness: k_n,
-                share: 0.0,
-                force: 0.0,
-            };
             if depth <= 0.0 {
                 touch.fresh = 0.0;
-                near.push(row);
                 continue;
             }
             any = true;
-            let brake = *damping / (law.stiffness * step);
-            let (e, f, s) = if brake > 0.0 {
-                damped_law(depth, *onset, brake, touch.before)
-            } else {
-                onset_law(depth, *onset)
-            };
-            let force = k_n * f;
-            (row.share, row.force) = (s, force);
-            if brake == 0.0 {
-                near.push(row);
-            }
-            sum.energy += k_n * e;
-            sum.energy_lagged += k_n * e;
-            sum.gradient -= normal * force;
-            let mut along = k_n * s;
-            if law.mu_static > 0.0 {
-                let way = p - last;
-                let slide = (way - normal * way.dot(&normal)).norm() / step;
-                touch.fresh = if *hold_limits {
-                    touch.lag
-                } else {
-                    law.mu(slide) * force
-                };
-                let (b, k_t) = bristle(touch, p, last, k_n * TANGENTIAL_SHARE, brake);
-                let size = b.norm();
-                sum.energy_lagged += huber(k_t, touch.lag, size);
-                sum.energy += huber(k_t, touch.fresh, size);
-                if k_t * size <= touch.fresh {
-                    sum.gradient += b * k_t;
-                    add_identity(&mut sum.hessian, k_t);
-                    along -= k_t;
-                } else {
-                    let dir = b / size;
-                    sum.gradient += dir * touch.fresh;
-                    let h = touch.fresh / size;
-                    add_identity(&mut sum.hessian, h);
-                    add_outer(&mut sum.hessian, &(dir * (-ALONG_SLIDE * h)), &dir);
-                    along -= h;
-                }
-            }
-            add_outer(&mut sum.hessian, &(normal * along), &normal);
+            (touch.fresh, touch.slide) = touch.push(p, &around, &mut sum);
         }
+        near.push(Near {
+            point: k as u32,
+            length,
+            place: p,
+            gradient: sum.gradient,
+            hessian: sum.hessian,
+        });
         any.then_some(sum)
+    }
+
+    /// The push on point `k` at a place that an update leads to, as far as its surroundings are known.
+    fn push_there(&mut self, k: usize, p: V3, length: f64, step: f64) -> Push {
+        let point = &mut self.points[k];
+        let around = Circumstances {
+            law: &self.law,
+            onset: self.onset,
+            stiffness: self.law.stiffness * length,
+            brake: self.damping / (self.law.stiffness * step),
+            step,
+            last: point.last,
+            limit: Limit::Latest,
+        };
+        let mut sum = Push::default();
+        for (slot, touch) in point.touch[..=point.passages].iter_mut().enumerate() {
+            let (depth, normal) = if slot == 0 {
+                if !point.core_near {
+                    continue;
+                }
+                let n = self.shape.nearness(p);
+                (self.radius - n.distance, n.normal)
+            } else {
+                let foot = self.tube.foot(p, touch.start);
+                let wire = self.radius + self.tube.radius();
+                (wire - foot.distance, foot.normal)
+            };
+            if depth > 0.0 {
+                let there = Touch {
+                    depth,
+                    normal,
+                    ..*touch
+                };
+                touch.slide = there.push(p, &around, &mut sum).1;
+            }
+        }
+        sum
     }
 
     /// Forgets what was near before a new evaluation.
@@ -433,42 +516,39 @@ impl LineContact {
         self.near.clear();
     }
 
-    /// Looks where the update `move_of(point)` leads every point, and corrects the tangents that would be
-    /// wrong there: `correct(point, change of Hessian along normal, change of force, normal)`. Whether any was.
+    /// Evaluates the pushes where the update `move_of(point)` leads every point, and puts their tangents
+    /// there in the place of those that promised something else: `correct(point, change of Hessian, change
+    /// of gradient at the iterate)`. Whether any did.
     ///
     /// A point on its way through a surface that the Hessian does not hold yet would otherwise be
-    /// thrown back and forth, with all its neighbours on a flat.
+    /// thrown back and forth, with all its neighbours on a flat; so would one that slides round a corner,
+    /// or whose bristle comes to hold.
     #[inline(never)]
     pub fn foresee(
         &mut self,
+        step: f64,
         move_of: impl Fn(usize) -> V3,
-        mut correct: impl FnMut(usize, f64, f64, V3),
+        mut correct: impl FnMut(usize, &Block, &V3),
     ) -> bool {
         let mut any = false;
-        for near in &mut self.near {
-            let away = near.normal.dot(&move_of(near.point as usize));
-            let (_, f, s) = if near.depth > away {
-                onset_law(near.depth - away, self.onset)
-            } else {
-                (0.0, 0.0, 0.0)
-            };
-            let force = near.stiffness * f;
-            let promised = near.force - near.stiffness * near.share * away;
-            if (force - promised).abs() <= FORESIGHT * near.stiffness * self.onset {
+        let mut near = std::mem::take(&mut self.near);
+        for n in &mut near {
+            let way = move_of(n.point as usize);
+            let there = self.push_there(n.point as usize, n.place + way, n.length, step);
+            let off = there.gradient - n.gradient - times(&n.hessian, &way);
+            if off.amax() <= FORESIGHT * self.law.stiffness * n.length * self.onset {
                 continue;
             }
             any = true;
-            // the tangent at the place the update leads to, brought back to the iterate
-            let there = force + near.stiffness * s * away;
+            let gradient = there.gradient - times(&there.hessian, &way);
             correct(
-                near.point as usize,
-                near.stiffness * (s - near.share),
-                there - near.force,
-                near.normal,
+                n.point as usize,
+                &less(&there.hessian, &n.hessian),
+                &(gradient - n.gradient),
             );
-            near.share = s;
-            near.force = there;
+            (n.gradient, n.hessian) = (gradient, there.hessian);
         }
+        self.near = near;
         any
     }
 
@@ -590,6 +670,20 @@ pub(super) fn onset_law(depth: f64, onset: f64) -> (f64, f64, f64) {
             1.0,
         )
     }
+}
+
+/// Product of a symmetric block with a vector.
+pub(super) fn times(m: &Block, v: &V3) -> V3 {
+    V3::new(
+        m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z,
+        m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+        m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z,
+    )
+}
+
+/// Difference of two blocks.
+pub(super) fn less(a: &Block, b: &Block) -> Block {
+    std::array::from_fn(|r| std::array::from_fn(|c| a[r][c] - b[r][c]))
 }
 
 fn add_identity(m: &mut Block, c: f64) {

@@ -17,7 +17,7 @@ pub use scheme::{Past, Scheme};
 
 use super::{Banded, Spindle, Support, System, turn_about_y};
 use crate::math::{Quat, Spin, V3};
-use crate::rod::{Joint, align, rotate};
+use crate::rod::{Joint, Knee, align, rotate};
 use model::Model;
 use scheme::{Step, extrapolation};
 use tensioner::NozzleEdge;
@@ -68,6 +68,8 @@ pub struct Effort {
     pub evaluations: u64,
     /// halvings of a Newton step
     pub cuts: u64,
+    /// rounds of conjugate gradients
+    pub rounds: u64,
 }
 
 /// Scratch arrays of a step, core frame.
@@ -87,6 +89,8 @@ struct Work {
     base: Vec<Axial>,
     /// stretch of each edge as the update promises it
     expected: Vec<Axial>,
+    /// joints that may change between yielding and not
+    knees: Vec<(u32, Knee)>,
     gradient: Vec<V3>,
     update: Vec<f64>,
     load: Vec<f64>,
@@ -168,6 +172,7 @@ impl Implicit {
                 axial: Vec::new(),
                 base: Vec::new(),
                 expected: Vec::new(),
+                knees: Vec::new(),
                 gradient: Vec::new(),
                 update: Vec::new(),
                 load: Vec::new(),
@@ -234,6 +239,7 @@ impl Implicit {
             self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
             self.effort.solves += std::mem::take(&mut self.work.solves);
             self.effort.cuts += std::mem::take(&mut self.work.cuts);
+            self.effort.rounds += std::mem::take(&mut self.work.gradients.rounds);
             let missed = sys.line.as_ref().and_then(|l| {
                 let between = l.between.as_ref()?;
                 between.missed(&sys.past.q[0], &self.work.q)

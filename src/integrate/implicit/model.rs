@@ -49,6 +49,7 @@ const NO_JOINT: Bent = Bent {
     after: V3::new(0.0, 0.0, 0.0),
     own: [[0.0; 6]; 2],
     cross: [[0.0; 3]; 3],
+    knee: None,
 };
 
 impl Model<'_> {
@@ -130,6 +131,7 @@ impl Model<'_> {
     /// Energy of bending, and of stretch.
     fn rod_forces(&self, work: &mut Work) -> (f64, Value) {
         let edges = work.q.len() - 1;
+        work.knees.clear();
         let mut energy = 0.0;
         let mut axial = Value::default();
         // edge in hand, the joint at its start, the cross block there
@@ -159,6 +161,9 @@ impl Model<'_> {
                     [before.1, after.1],
                 );
                 energy += joint.energy;
+                if let Some(knee) = joint.knee {
+                    work.knees.push((j as u32, knee));
+                }
             }
             if j > 0 {
                 // edge j - 1 is complete

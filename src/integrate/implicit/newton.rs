@@ -2,15 +2,15 @@
 
 use super::model::{Model, add_block};
 use super::{Work, conjugate};
-use crate::contact::point_weights;
+use crate::contact::{Triple, point_weights};
 use crate::math::V3;
-use crate::rod::add_outer;
+use crate::rod::{Block, Law, add_outer};
 
 /// Newton steps that renew the friction limits; from then on they stay, so that the rest converges
 /// quadratically. What is left of the lag is its last change.
 const LIMIT_STEPS: usize = 5;
-/// Times that an update is solved again for contact it meets on its way.
-const LOOKS_AHEAD: usize = 4;
+/// Times that an update is solved again for contact and yielding it meets on its way.
+const LOOKS_AHEAD: usize = 8;
 /// Halvings of one Newton step.
 const MOST_CUTS: usize = 12;
 /// Rounding noise of the potential as a share of its size.
@@ -134,6 +134,15 @@ pub(super) fn solve(
             take(work, share);
             expect_tension(work, share);
             let trial = model.evaluate(work);
+            if std::env::var("DBG").is_ok() {
+                eprintln!(
+                    "  step {step} node {node}/{} update {update:.2e} share {share:.3} cut {cuts} slope {:.3e} dmerit {:.3e} dnow {:.3e}",
+                    work.q.len(),
+                    slope(work),
+                    trial.merit - value,
+                    trial.now - value
+                );
+            }
             if trial.merit <= value + NOISE * value.abs() || share * update < close {
                 value = trial.now;
                 if let Some(line) = model.line.as_deref_mut() {
@@ -192,51 +201,150 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
         if look == 0 {
             work.plain.clone_from(&work.update);
         }
-        let Some(line) = model.line.as_deref_mut().filter(|_| look < LOOKS_AHEAD) else {
+        if look == LOOKS_AHEAD {
             break;
+        }
+        // held nodes keep their unit rows
+        let held = model.held;
+        let loose = |i: usize| {
+            !((i == 0 && held[0] == [true; 3]) || (i == nodes - 1 && held[1] == [true; 3]))
         };
+        let mut any = foresee_knees(&model.laws.bend, work, loose);
+        if std::env::var("NOK").is_ok() {
+            any = false;
+        }
+        let knees_any = any;
         let Work {
+            q,
             update,
             load,
             matrix,
+            force: there,
             ..
         } = work;
-        let move_of = |point: usize| {
-            let (at, weight) = point_weights(point);
+        let move_of = |(at, weight): &Triple| {
             let mut d = V3::zeros();
             for (i, w) in at.iter().zip(weight) {
-                d += V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]) * w;
+                d += V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]) * *w;
             }
             d
         };
-        let any = line.foresee(move_of, |point, stiffness, force, n| {
-            let (at, mut weight) = point_weights(point);
-            for (w, i) in weight.iter_mut().zip(at) {
-                // held nodes keep their unit rows
-                let end = if i == 0 {
-                    Some(0)
-                } else {
-                    (i == nodes - 1).then_some(1)
-                };
-                if end.is_some_and(|e| model.held[e] == [true; 3]) {
-                    *w = 0.0;
-                }
+        let mut correct = |triple: &Triple, stiffness: &Block, gradient: &V3| {
+            let mut triple = *triple;
+            for (w, i) in triple.1.iter_mut().zip(triple.0) {
+                *w *= f64::from(u8::from(loose(i)));
             }
-            let mut block = crate::rod::Block::default();
-            add_outer(&mut block, &(n * stiffness), &n);
-            add_block(matrix, &(at, weight), &block);
-            for (i, w) in at.iter().zip(weight) {
+            add_block(matrix, &triple, stiffness);
+            for (i, w) in triple.0.iter().zip(triple.1) {
                 for a in 0..3 {
-                    load[3 * i + a] += w * n[a] * force;
+                    load[3 * i + a] -= w * gradient[a];
                 }
             }
-        });
+        };
+        if let Some(line) = model.line.as_deref_mut() {
+            any |= line.foresee(
+                model.elapsed,
+                |point| move_of(&point_weights(point)),
+                |point, stiffness, gradient| correct(&point_weights(point), stiffness, gradient),
+            );
+            if let Some(between) = &mut line.between {
+                there.clear();
+                for (i, p) in q.iter().enumerate() {
+                    there.push(p + V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]));
+                }
+                any |= between.foresee(
+                    (&line.law, line.onset, model.diameter),
+                    (q, model.last, there),
+                    |young, old, stiffness, gradient| {
+                        correct(young, stiffness, gradient);
+                        correct(old, stiffness, gradient);
+                    },
+                );
+            }
+        }
+        if std::env::var("DBG").is_ok() {
+            eprintln!(
+                "    look {look} any {any} knees {knees_any} max update {:.3e}",
+                update.iter().fold(0.0, |a: f64, b| a.max(b.abs()))
+            );
+        }
         if !any {
             break;
         }
         work.solves += 1;
     }
     Ok(())
+}
+
+/// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
+fn foresee_knees(law: &Law, work: &mut Work, loose: impl Fn(usize) -> bool) -> bool {
+    let Work {
+        knees,
+        update,
+        load,
+        matrix,
+        ..
+    } = work;
+    let nodes = update.len() / 3;
+    let mut any = false;
+    let mut corr = Vec::new();
+    for (joint, knee) in knees {
+        let j = *joint as usize;
+        let of = |i: usize| V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]);
+        let mut angle = 0.0;
+        if j > 0 {
+            angle += knee.rows[0].dot(&(of(j) - of(j - 1)));
+        }
+        if j + 1 < nodes {
+            angle += knee.rows[1].dot(&(of(j + 1) - of(j)));
+        }
+        let Some((stiffness, moment)) = knee.foresee(law, angle) else {
+            continue;
+        };
+        any = true;
+        corr.push((
+            j,
+            format!(
+                "{:.2} {:.4} -> {:.4} k {:.3}",
+                knee.trial, angle, knee.moment, knee.stiffness
+            ),
+        ));
+        // derivative of the angle by the nodes
+        let mut rows = [V3::zeros(); 3];
+        if j > 0 {
+            rows[0] -= knee.rows[0];
+            rows[1] += knee.rows[0];
+        }
+        if j + 1 < nodes {
+            rows[1] -= knee.rows[1];
+            rows[2] += knee.rows[1];
+        }
+        for a in 0..3 {
+            if rows[a] == V3::zeros() || !loose(j + a - 1) {
+                continue;
+            }
+            let i = j + a - 1;
+            for k in 0..3 {
+                load[3 * i + k] -= moment * rows[a][k];
+            }
+            for b in a..3 {
+                if rows[b] == V3::zeros() || !loose(j + b - 1) {
+                    continue;
+                }
+                let mut block = Block::default();
+                add_outer(&mut block, &(rows[a] * stiffness), &rows[b]);
+                if a == b {
+                    matrix.add_diagonal(i, &block);
+                } else {
+                    matrix.add(i, b - a, &block);
+                }
+            }
+        }
+    }
+    if std::env::var("DBG").is_ok() {
+        eprintln!("      corrected {corr:?}");
+    }
+    any
 }
 
 /// At the start tensions are expected to stay what they were at the last accepted instant.
