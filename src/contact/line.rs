@@ -277,7 +277,8 @@ impl LineContact {
             // the passage keeps its friction: it is the one whose segment is close by along the wire
             let known = point.touch[1..=point.passages]
                 .iter()
-                .find(|t| t.start.abs_diff(foot.segment) < 6);
+                .filter(|t| t.start.abs_diff(foot.segment) < 6)
+                .min_by_key(|t| t.start.abs_diff(foot.segment));
             next[count] = known.copied().unwrap_or(NONE);
             next[count].start = foot.segment;
             count += 1;
@@ -336,6 +337,11 @@ impl LineContact {
             } else {
                 let foot = tube.foot(p, point.touch[slot].start);
                 point.touch[slot].start = foot.segment;
+                // inside a sharp bend two feet merge as the point moves: that is one touch
+                if point.touch[1..slot].iter().any(|t| t.start == foot.segment) {
+                    (point.touch[slot].depth, point.touch[slot].fresh) = (0.0, 0.0);
+                    continue;
+                }
                 (*radius + tube.radius() - foot.distance, foot.normal)
             };
             let last = point.last;
