@@ -67,11 +67,25 @@ fn coil() -> impl Strategy<Value = Coil> {
         })
 }
 
-/// Where to start along the coil and the ways from there, in units of [`WAY`].
-fn way() -> impl Strategy<Value = (f64, Vec<V3>)> {
+/// Where a way starts.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    /// share of the coil
+    along: f64,
+    /// beside the wire there, and over the core, m
+    aside: f64,
+    height: f64,
+}
+
+/// Where to start and the ways from there, in units of [`WAY`].
+fn way() -> impl Strategy<Value = (Start, Vec<V3>)> {
     let steps = (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64, -3.0..0.0f64);
     (
-        0.0..1.0f64,
+        (0.0..1.0f64, -2e-3..2e-3f64, 0.0..1.5e-3f64).prop_map(|(along, aside, height)| Start {
+            along,
+            aside,
+            height,
+        }),
         proptest::collection::vec(steps, 40).prop_map(|steps| {
             // long and short steps alike
             let scaled = |(x, y, z, size): (f64, f64, f64, f64)| {
@@ -135,12 +149,12 @@ fn normal_law(depth: f64, onset: f64) -> (f64, f64) {
 }
 
 /// The points of a way that a wire could be at: not deeper in anything than a guess may land.
-fn walk(line: &LineContact, start: f64, steps: &[V3]) -> Vec<V3> {
+fn walk(line: &LineContact, start: &Start, steps: &[V3]) -> Vec<V3> {
     let q = line.tube.points();
-    let at = start * (q.len() - 2) as f64 + 0.5;
-    let base = brute::on_wire(q, at);
-    let out = brute::core(&line.shape, base).1;
-    let mut p = base + out * (2.0 * line.radius + 0.02e-3);
+    let at = start.along * (q.len() - 2) as f64 + 0.5;
+    let base = brute::on_wire(q, at) + V3::y() * start.aside;
+    let (distance, out) = brute::core(&line.shape, base);
+    let mut p = base + out * (line.radius + start.height - distance);
     let home = p;
     let deep = |p: V3| {
         let all = surroundings(line, p, f64::INFINITY).all;
@@ -170,7 +184,7 @@ proptest! {
     ) {
         let mut line = contact(&coil, 0.0);
         let own = own.map_or(f64::INFINITY, |s| s * line.tube.arc()[line.tube.len() - 1]);
-        for p in walk(&line, start, &steps) {
+        for p in walk(&line, &start, &steps) {
             let near = surroundings(&line, p, own);
             let push = line.push(0, p, LENGTH, own, STEP);
             if near.crowded(coil.diameter) {
@@ -219,7 +233,7 @@ proptest! {
     ) {
         let (mut warm, mut cold) = (contact(&coil, 0.17), contact(&coil, 0.17));
         let k = STIFFNESS * LENGTH;
-        let way = walk(&warm, start, &steps.iter().map(|s| s * small).collect::<Vec<_>>());
+        let way = walk(&warm, &start, &steps.iter().map(|s| s * small).collect::<Vec<_>>());
         for line in [&mut warm, &mut cold] {
             line.place(0, way.first().copied().unwrap_or_default());
         }
