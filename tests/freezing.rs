@@ -1,7 +1,9 @@
 //! A run in which wire at rest leaves the computation against one in which all of it stays.
 //!
-//! With the settings of the packed scene as they are. A window of 1 rad and 2 um/rad leaves 20 um
-//! at 30 rad/s and 5 um at 300 rad/s, by evenly spaced stations.
+//! With the settings of the packed scene as they are. They hold with `freeze.window` 1 rad and
+//! `freeze.creep` 2e-6 m/rad: 16 um rms at 30 rad/s and 14 um at 300 rad/s, by stations evenly
+//! spaced in polar angle. 1.5 rad and 6e-6 m/rad are too lax: 34 um at 30 rad/s, and another
+//! verdict at 300 rad/s with 9 um.
 
 use coilwind::measure::{Coil, Verdict};
 use coilwind::scene::SceneSettings;
