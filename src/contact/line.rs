@@ -380,7 +380,8 @@ impl LineContact {
             // the passage keeps its friction: it is the one whose segment is close by along the wire
             let known = point.touch[1..=point.passages]
                 .iter()
-                .find(|t| t.start.abs_diff(foot.segment) < 6);
+                .filter(|t| t.start.abs_diff(foot.segment) < 6)
+                .min_by_key(|t| t.start.abs_diff(foot.segment));
             next[count] = known.copied().unwrap_or(NONE);
             next[count].start = foot.segment;
             count += 1;
@@ -452,6 +453,11 @@ impl LineContact {
             } else {
                 let foot = tube.foot(p, point.touch[slot].start);
                 point.touch[slot].start = foot.segment;
+                // inside a sharp bend two feet merge as the point moves: that is one touch
+                if point.touch[1..slot].iter().any(|t| t.start == foot.segment) {
+                    (point.touch[slot].depth, point.touch[slot].fresh) = (0.0, 0.0);
+                    continue;
+                }
                 (*radius + tube.radius() - foot.distance, foot.normal)
             };
             let touch = &mut point.touch[slot];
@@ -487,7 +493,11 @@ impl LineContact {
             limit: Limit::Latest,
         };
         let mut sum = Push::default();
-        for (slot, touch) in point.touch[..=point.passages].iter_mut().enumerate() {
+        for slot in 0..=point.passages {
+            let touch = point.touch[slot];
+            if slot > 0 && point.touch[1..slot].iter().any(|t| t.start == touch.start) {
+                continue;
+            }
             let (depth, normal) = if slot == 0 {
                 if !point.core_near {
                     continue;
@@ -503,9 +513,9 @@ impl LineContact {
                 let there = Touch {
                     depth,
                     normal,
-                    ..*touch
+                    ..touch
                 };
-                touch.slide = there.push(p, &around, &mut sum).1;
+                point.touch[slot].slide = there.push(p, &around, &mut sum).1;
             }
         }
         sum

@@ -202,6 +202,11 @@ impl Implicit {
             let spindle = sys.spindle.after(step.share * h);
             let support = moved(&sys.support, step.share * h);
             let nozzle = self.prepare(sys, &step, &spindle, &support);
+            let share = self.share_of_way(sys);
+            if share < 1.0 && h > self.shortest && self.fixed.is_none() {
+                h = (share * h).max(self.shortest);
+                continue;
+            }
             if let Some(line) = &mut sys.line {
                 line.begin_attempt();
                 if let Some(b) = &mut line.between {
@@ -209,24 +214,7 @@ impl Implicit {
                     b.list(&sys.past.q[0], guess, &sys.rod.rest, sys.section.diameter);
                 }
             }
-            let back = Spin::new(spindle.angle);
-            let mut model = Model {
-                rod: &sys.rod,
-                laws: &sys.laws,
-                line: sys.line.as_mut(),
-                loads: &sys.loads,
-                last: &sys.past.q[0],
-                tension: &sys.load.tension,
-                clamp: clamp_directions(&support, &spindle),
-                nozzle,
-                gamma: step.gamma,
-                elapsed: step.share * h,
-                diameter: sys.section.diameter,
-                arc0: sys.arc0,
-                back,
-                held: [support[0].hold, support[1].hold],
-                flat: false,
-            };
+            let mut model = model_of(sys, &step, &spindle, &support, nozzle);
             let solved = newton::solve(
                 &mut model,
                 &mut self.work,
@@ -285,6 +273,43 @@ impl Implicit {
                 line.undo_attempt();
             }
         }
+    }
+
+    /// Share of the guess's way that no node can take past the core: error estimate and contact search
+    /// both know nothing of a surface that lies between the ends of a step.
+    fn share_of_way(&self, sys: &System) -> f64 {
+        let Some(line) = &sys.line else { return 1.0 };
+        let mut share: f64 = 1.0;
+        for (q, guess) in sys.past.q[0].iter().zip(&self.work.guess) {
+            let way = (guess - q).norm();
+            if way > line.radius {
+                let room = line.shape.lower_bound(*q).max(0.0) + line.radius;
+                share = share.min(room / way);
+            }
+        }
+        // (a little less, so that the second look agrees)
+        if share < 1.0 { 0.9 * share } else { 1.0 }
+    }
+
+    /// Hands `with` the evaluation of potential, gradient and Hessian at the guess of a step of `h`, to
+    /// be measured as often as it likes; nothing is committed.
+    #[doc(hidden)]
+    pub fn evaluating(
+        &mut self,
+        sys: &mut System,
+        h: f64,
+        with: impl FnOnce(&mut dyn FnMut() -> f64),
+    ) {
+        sys.begin_past();
+        let step = Step::new(self.scheme, &sys.past, h);
+        let (spindle, support) = (
+            sys.spindle.after(step.share * h),
+            moved(&sys.support, step.share * h),
+        );
+        let nozzle = self.prepare(sys, &step, &spindle, &support);
+        let mut model = model_of(sys, &step, &spindle, &support, nozzle);
+        newton::expect_nothing(&model, &mut self.work);
+        with(&mut || model.evaluate(&mut self.work).now);
     }
 
     /// Fills guess, inertial target, masses and plastic curvature for a step.
@@ -410,6 +435,33 @@ fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
     let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
     let mid = p * Quat::new(c, 0.0, 0.0, s) * half;
     rotate(&mid, &V3::new(k[0], k[1], 0.0))
+}
+
+/// What a solve of `step` needs besides the iterate.
+fn model_of<'a>(
+    sys: &'a mut System,
+    step: &Step,
+    spindle: &Spindle,
+    support: &[Support; 2],
+    nozzle: Option<NozzleEdge>,
+) -> Model<'a> {
+    Model {
+        rod: &sys.rod,
+        laws: &sys.laws,
+        line: sys.line.as_mut(),
+        loads: &sys.loads,
+        last: &sys.past.q[0],
+        tension: &sys.load.tension,
+        clamp: clamp_directions(support, spindle),
+        nozzle,
+        gamma: step.gamma,
+        elapsed: step.share * step.h,
+        diameter: sys.section.diameter,
+        arc0: sys.arc0,
+        back: Spin::new(spindle.angle),
+        held: [support[0].hold, support[1].hold],
+        flat: false,
+    }
 }
 
 /// The supports `dt` later.

@@ -134,15 +134,6 @@ pub(super) fn solve(
             take(work, share);
             expect_tension(work, share);
             let trial = model.evaluate(work);
-            if std::env::var("DBG").is_ok() {
-                eprintln!(
-                    "  step {step} node {node}/{} update {update:.2e} share {share:.3} cut {cuts} slope {:.3e} dmerit {:.3e} dnow {:.3e}",
-                    work.q.len(),
-                    slope(work),
-                    trial.merit - value,
-                    trial.now - value
-                );
-            }
             if trial.merit <= value + NOISE * value.abs() || share * update < close {
                 value = trial.now;
                 if let Some(line) = model.line.as_deref_mut() {
@@ -210,10 +201,6 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
             !((i == 0 && held[0] == [true; 3]) || (i == nodes - 1 && held[1] == [true; 3]))
         };
         let mut any = foresee_knees(&model.laws.bend, work, loose);
-        if std::env::var("NOK").is_ok() {
-            any = false;
-        }
-        let knees_any = any;
         let Work {
             q,
             update,
@@ -262,12 +249,6 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
                 );
             }
         }
-        if std::env::var("DBG").is_ok() {
-            eprintln!(
-                "    look {look} any {any} knees {knees_any} max update {:.3e}",
-                update.iter().fold(0.0, |a: f64, b| a.max(b.abs()))
-            );
-        }
         if !any {
             break;
         }
@@ -287,7 +268,7 @@ fn foresee_knees(law: &Law, work: &mut Work, loose: impl Fn(usize) -> bool) -> b
     } = work;
     let nodes = update.len() / 3;
     let mut any = false;
-    let mut corr = Vec::new();
+
     for (joint, knee) in knees {
         let j = *joint as usize;
         let of = |i: usize| V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]);
@@ -302,13 +283,6 @@ fn foresee_knees(law: &Law, work: &mut Work, loose: impl Fn(usize) -> bool) -> b
             continue;
         };
         any = true;
-        corr.push((
-            j,
-            format!(
-                "{:.2} {:.4} -> {:.4} k {:.3}",
-                knee.trial, angle, knee.moment, knee.stiffness
-            ),
-        ));
         // derivative of the angle by the nodes
         let mut rows = [V3::zeros(); 3];
         if j > 0 {
@@ -340,9 +314,6 @@ fn foresee_knees(law: &Law, work: &mut Work, loose: impl Fn(usize) -> bool) -> b
                 }
             }
         }
-    }
-    if std::env::var("DBG").is_ok() {
-        eprintln!("      corrected {corr:?}");
     }
     any
 }
