@@ -55,8 +55,6 @@ pub struct System {
     pub set_tension: f64,
     /// carry twist
     pub twist: bool,
-    /// never move the plastic state on (monotonic loading only)
-    pub holonomic: bool,
     /// unstretched length from the clamp to the first live node, m
     pub arc0: f64,
     /// energy books
@@ -96,7 +94,6 @@ impl System {
             feed: None,
             set_tension: 0.0,
             twist: true,
-            holonomic: false,
             arc0: 0.0,
             books: Books::default(),
             deepest: 0.0,
@@ -196,7 +193,6 @@ impl System {
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
         let parts = ForceParts {
             commit,
-            holonomic: self.holonomic,
             twist: self.twist,
         };
         internal_forces(

@@ -68,21 +68,30 @@ impl Model<'_> {
             now: energy + stretch.now,
         };
         self.contact(work, &mut value);
+        let Work {
+            matrix, gradient, ..
+        } = work;
+        self.pinned(nodes, |i, a| {
+            matrix.pin(i, a);
+            gradient[i][a] = 0.0;
+        });
+        value
+    }
+
+    /// Calls `pin` with the node and coordinate of everything that does not move.
+    pub(super) fn pinned(&self, nodes: usize, mut pin: impl FnMut(usize, usize)) {
         for (end, i) in [(0, 0), (1, nodes - 1)] {
             for a in 0..3 {
                 if self.held[end][a] {
-                    work.matrix.pin(i, a);
-                    work.gradient[i][a] = 0.0;
+                    pin(i, a);
                 }
             }
         }
         if self.flat {
             for i in 0..nodes {
-                work.matrix.pin(i, 2);
-                work.gradient[i].z = 0.0;
+                pin(i, 2);
             }
         }
-        value
     }
 
     fn inertia_and_loads(&self, work: &mut Work) -> f64 {

@@ -195,12 +195,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
         if look == LOOKS_AHEAD {
             break;
         }
-        // held nodes keep their unit rows
-        let held = model.held;
-        let loose = |i: usize| {
-            !((i == 0 && held[0] == [true; 3]) || (i == nodes - 1 && held[1] == [true; 3]))
-        };
-        let mut any = foresee_knees(&model.laws.bend, work, loose);
+        let mut any = foresee_knees(&model.laws.bend, work);
         let Work {
             q,
             update,
@@ -217,11 +212,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
             d
         };
         let mut correct = |triple: &Triple, stiffness: &Block, gradient: &V3| {
-            let mut triple = *triple;
-            for (w, i) in triple.1.iter_mut().zip(triple.0) {
-                *w *= f64::from(u8::from(loose(i)));
-            }
-            add_block(matrix, &triple, stiffness);
+            add_block(matrix, triple, stiffness);
             for (i, w) in triple.0.iter().zip(triple.1) {
                 for a in 0..3 {
                     load[3 * i + a] -= w * gradient[a];
@@ -252,13 +243,17 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
         if !any {
             break;
         }
+        model.pinned(nodes, |i, a| {
+            work.matrix.pin(i, a);
+            work.load[3 * i + a] = 0.0;
+        });
         work.solves += 1;
     }
     Ok(())
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
-fn foresee_knees(law: &Law, work: &mut Work, loose: impl Fn(usize) -> bool) -> bool {
+fn foresee_knees(law: &Law, work: &mut Work) -> bool {
     let Work {
         knees,
         update,
@@ -294,7 +289,7 @@ fn foresee_knees(law: &Law, work: &mut Work, loose: impl Fn(usize) -> bool) -> b
             rows[2] += knee.rows[1];
         }
         for a in 0..3 {
-            if rows[a] == V3::zeros() || !loose(j + a - 1) {
+            if rows[a] == V3::zeros() {
                 continue;
             }
             let i = j + a - 1;
@@ -302,7 +297,7 @@ fn foresee_knees(law: &Law, work: &mut Work, loose: impl Fn(usize) -> bool) -> b
                 load[3 * i + k] -= moment * rows[a][k];
             }
             for b in a..3 {
-                if rows[b] == V3::zeros() || !loose(j + b - 1) {
+                if rows[b] == V3::zeros() {
                     continue;
                 }
                 let mut block = Block::default();
