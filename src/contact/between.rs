@@ -61,6 +61,8 @@ struct NearPair {
     /// gradient at the iterate, N, and Hessian, N/m, by the distance vector
     gradient: V3,
     hessian: Block,
+    /// distance to the push, while it has none, m
+    room: f64,
     /// direction of the slide in it; 0: the bristle holds
     slide: V3,
     /// its coupling, if it has one
@@ -357,6 +359,7 @@ impl Between {
                 stiffness,
                 gradient: V3::zeros(),
                 hessian: Block::default(),
+                room: (-pair.depth).max(0.0),
                 slide: V3::zeros(),
                 cross: None,
             };
@@ -399,6 +402,13 @@ impl Between {
     ) -> bool {
         let mut any = false;
         for near in &mut self.near {
+            let relative = |q: &[V3]| place(q, &near.young) + place(q, &near.old);
+            let way = relative(there) - relative(q);
+            let far = way.norm_squared();
+            // (the foot moves along with its wire, whose turning is small beside that)
+            if 4.0 * far <= near.room * near.room || far <= (FORESIGHT * onset).powi(2) {
+                continue;
+            }
             let now = self.pairs[near.pair as usize];
             let p = place(there, &near.young);
             let foot = Curve(there).foot(p, now.segment);
@@ -407,8 +417,6 @@ impl Between {
                 normal: foot.normal,
                 ..now
             };
-            let relative = |q: &[V3]| place(q, &near.young) + place(q, &near.old);
-            let way = relative(there) - relative(q);
             let (mut gradient, mut hessian) = (V3::zeros(), Block::default());
             if pair.depth > 0.0 {
                 let slid = relative(there) - relative(last);
@@ -435,7 +443,7 @@ impl Between {
                 self.cross.len() as u32 - 1
             });
             self.cross[at as usize].block = hessian;
-            (near.gradient, near.hessian) = (gradient, hessian);
+            (near.gradient, near.hessian, near.room) = (gradient, hessian, 0.0);
         }
         any
     }

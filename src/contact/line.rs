@@ -124,6 +124,9 @@ struct Point {
     /// where the surroundings were looked up, and how far that holds
     centre: V3,
     reach: f64,
+    /// within `clear` of this place it touches nothing; 0: it may
+    free: V3,
+    clear: f64,
     /// core first, then passages of frozen wire
     touch: [Touch; 1 + PASSAGES],
     core_near: bool,
@@ -135,6 +138,8 @@ const FRESH: Point = Point {
     placed: false,
     centre: V3::new(0.0, 0.0, 0.0),
     reach: -1.0,
+    free: V3::new(0.0, 0.0, 0.0),
+    clear: 0.0,
     touch: [NONE; 1 + PASSAGES],
     core_near: false,
     passages: 0,
@@ -201,6 +206,8 @@ struct Near {
     /// gradient there, N, and Hessian, N/m
     gradient: V3,
     hessian: Block,
+    /// way from there without any push, while it has none, m
+    room: f64,
 }
 
 /// Which friction limit a push takes.
@@ -350,6 +357,7 @@ impl LineContact {
         let point = &mut self.points[k];
         self.undo.push((k as u32, *point));
         point.centre = p;
+        point.clear = 0.0;
         let core = self.shape.lower_bound(p);
         let core = if core > skin + self.radius {
             core
@@ -411,6 +419,20 @@ impl LineContact {
         if !point.core_near && point.passages == 0 {
             return None;
         }
+        if point.clear > 0.0 {
+            let way = (p - point.free).norm();
+            if way < point.clear {
+                self.near.push(Near {
+                    point: k as u32,
+                    length,
+                    place: p,
+                    gradient: V3::zeros(),
+                    hessian: Block::default(),
+                    room: point.clear - way,
+                });
+                return None;
+            }
+        }
         self.touches_of(k, p, length, step)
     }
 
@@ -443,6 +465,7 @@ impl LineContact {
         };
         let mut sum = Push::default();
         let mut any = false;
+        let mut gap = f64::INFINITY;
         for slot in 0..=point.passages {
             let (depth, normal) = if slot == 0 {
                 if !point.core_near {
@@ -465,17 +488,20 @@ impl LineContact {
             touch.normal = normal;
             if depth <= 0.0 {
                 touch.fresh = 0.0;
+                gap = gap.min(-depth);
                 continue;
             }
             any = true;
             (touch.fresh, touch.slide) = touch.push(p, &around, &mut sum);
         }
+        (point.free, point.clear) = (p, if any { 0.0 } else { gap });
         near.push(Near {
             point: k as u32,
             length,
             place: p,
             gradient: sum.gradient,
             hessian: sum.hessian,
+            room: point.clear,
         });
         any.then_some(sum)
     }
@@ -544,6 +570,11 @@ impl LineContact {
         let mut near = std::mem::take(&mut self.near);
         for n in &mut near {
             let way = move_of(n.point as usize);
+            let far = way.norm_squared();
+            // no push, or none that the way can change by more than what is let pass
+            if far <= n.room * n.room || far <= (FORESIGHT * self.onset).powi(2) {
+                continue;
+            }
             let there = self.push_there(n.point as usize, n.place + way, n.length, step);
             let off = there.gradient - n.gradient - times(&n.hessian, &way);
             if off.amax() <= FORESIGHT * self.law.stiffness * n.length * self.onset {
@@ -556,7 +587,7 @@ impl LineContact {
                 &less(&there.hessian, &n.hessian),
                 &(gradient - n.gradient),
             );
-            (n.gradient, n.hessian) = (gradient, there.hessian);
+            (n.gradient, n.hessian, n.room) = (gradient, there.hessian, 0.0);
         }
         self.near = near;
         any
