@@ -309,6 +309,19 @@ impl LineContact {
         }
     }
 
+    /// Contact point `k` is at `p` now, without having slid there.
+    pub fn carry(&mut self, k: usize, p: V3) {
+        let point = &mut self.points[k];
+        if point.placed {
+            let way = p - point.last;
+            for t in &mut point.touch {
+                t.anchor += way;
+            }
+            point.last = p;
+        }
+        point.reach = -1.0;
+    }
+
     /// Depth of the deepest touch of node `i` and the halves of its edges, m; 0: none.
     pub fn depth(&self, i: usize) -> f64 {
         let from = (2 * i).saturating_sub(1);

@@ -1,6 +1,7 @@
 //! Changes of the wire between steps: halving and joining edges, letting settled wire go and taking
 //! it back.
 
+use super::implicit::spline_point;
 use super::support::{Support, turn_about_y};
 use super::system::System;
 use crate::contact::{Memory, NodeContact};
@@ -331,6 +332,7 @@ impl System {
             l.merge(i);
         }
         self.past.merge(i);
+        self.move_points(i);
         if at_nozzle {
             let lost = joined - a - b;
             if let Some((_, f)) = &mut self.feed {
@@ -341,6 +343,23 @@ impl System {
             self.past.fed.iter_mut().for_each(|fed| *fed += lost);
             self.past.paid += lost;
             self.books.inflow += self.kinetic() - kinetic;
+        }
+    }
+
+    /// The wire's spline runs elsewhere round a node taken out at `i`: its contact points move along with
+    /// their anchors.
+    fn move_points(&mut self, i: usize) {
+        let Some(line) = &mut self.line else { return };
+        let q = &self.past.q[0];
+        if q.len() != self.rod.nodes() {
+            return;
+        }
+        if i > 1 {
+            line.carry(2 * (i - 1), spline_point(q, i - 1));
+        }
+        line.carry(2 * i - 1, (q[i - 1] + q[i]) * 0.5);
+        if i + 1 < q.len() {
+            line.carry(2 * i, spline_point(q, i));
         }
     }
 

@@ -32,7 +32,12 @@ impl Simulation {
             .watch
             .due(&self.policy, s.angle, s.speed, self.sys.time);
         let freeze = if due { self.nodes_to_freeze() } else { 0 };
-        if !insert && refine.is_empty() && freeze == 0 {
+        let coarsen = if due && self.implicit.is_some() {
+            self.nodes_to_coarsen()
+        } else {
+            Vec::new()
+        };
+        if !insert && refine.is_empty() && freeze == 0 && coarsen.is_empty() {
             return Ok(());
         }
         self.shift_velocities(0.5 * dt);
@@ -44,6 +49,11 @@ impl Simulation {
         // from the nozzle down, so that the numbers of the others stay
         for j in refine.into_iter().rev() {
             self.split(j);
+        }
+        for i in coarsen.into_iter().rev() {
+            if i > freeze + 1 {
+                self.join(i);
+            }
         }
         if freeze > 0 {
             self.freeze(freeze);
@@ -83,7 +93,12 @@ impl Simulation {
         let reach = solver.refine_distance + self.scene.wire.radius();
         let rod = &self.sys.rod;
         // the edge at the nozzle keeps its length for the feed
-        (0..rod.edges() - 1)
+        let first = if self.implicit.is_some() {
+            self.first_fine_edge()
+        } else {
+            0
+        };
+        (first..rod.edges() - 1)
             .filter(|&j| {
                 rod.rest[j] > 1.5 * solver.spacing_near
                     && self.distance_to_coil(spin.to_core(rod.x[j])) < reach

@@ -3,6 +3,7 @@
 //! A step reads as a list of stages: move, feed, forces ([`crate::integrate`]), then keeping
 //! house (insert wire at the nozzle, refine near the core, let settled wire go), then measure.
 
+mod coarsen;
 mod house;
 mod io;
 mod programme;
