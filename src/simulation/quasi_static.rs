@@ -102,7 +102,6 @@ fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Opt
     let points: Vec<V3> = (0..=count)
         .map(|k| outline(a, b, (arc + flat) * k as f64 / count as f64))
         .collect();
-    let spacing = (arc + flat) / count as f64;
     let mut sys = System::new(section.clone(), Rod::through(&points, None));
     let mirror = |point: V3, hold: [bool; 3], along: V3| Support {
         hold,

@@ -7,7 +7,7 @@ use crate::contact::{Cross, add_cross};
 use crate::integrate::Banded;
 
 /// Residual, in the norm of the preconditioner, at which an update is good enough: Newton's method needs no more.
-const CLOSE: f64 = 1e-3;
+const CLOSE: f64 = 1e-2;
 /// Steps at most; one per coupling is enough in exact arithmetic.
 const MOST_STEPS: usize = 60;
 
