@@ -84,7 +84,7 @@ fn lying(scene: &Scene, nodes: usize, frozen: usize) -> System {
     let mut line = LineContact::new(shape, law, r, nodes);
     for i in 0..frozen {
         let (p, arc) = wind(around, pitch, 2.0 * r - DEPTH, i);
-        line.tube.push(p, arc);
+        line.lay(p, arc);
     }
     sys.line = Some(line);
     sys.arc0 = 1e3;

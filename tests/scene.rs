@@ -323,7 +323,7 @@ fn impossible_scenes_say_what_would_do() {
             &["default scene", "solver.spacing_near", "too coarse"],
         ),
         (
-            "[solver]\nspacing_free_mm = 0.3",
+            "[solver]\nspacing_near_mm = 0.4\nspacing_free_mm = 0.3",
             &["cannot be finer", "solver.spacing_near, 0.0004 m"],
         ),
         ("[solver]\nspacing_free_mm = 20", &["at least three edges"]),

@@ -146,8 +146,9 @@ pub struct Between {
     old: Vec<Pair>,
     angle: Vec<f64>,
     arc: Vec<f64>,
-    /// how far each point may move before a pair may be missing, m
-    room: Vec<f64>,
+    /// for each point, how far it and the older wire may move before a pair may be missing, m, and the
+    /// node of that wire
+    room: Vec<(f64, u32)>,
     /// room for the wire in the core frame
     pub scratch: Vec<V3>,
     /// couplings of the last evaluation
@@ -238,7 +239,7 @@ impl Between {
         // both lists run along the wire
         let (mut known, mut near) = (0, 0);
         for point in 1..last_point {
-            self.room.push(f64::INFINITY);
+            self.room.push((f64::INFINITY, 0));
             let i = point / 2;
             let back = self.angle[i] - TAU;
             if back < -WINDOW {
@@ -247,7 +248,6 @@ impl Between {
             let weights = point_weights(point);
             let p = place(q, &weights);
             let way = (place(guess, &weights) - p).norm();
-            let reach = SKIN * diameter + FOLLOW * way;
             let own = arc[i] - OWN_WIRE * diameter;
             let end = arc[..i].partition_point(|a| *a <= own);
             if end < 2 {
@@ -266,8 +266,9 @@ impl Between {
             if arc[other] > own || (self.angle[other] - back).abs() > WINDOW {
                 continue;
             }
-            if gap > reach {
-                self.room[point - 1] = gap;
+            let way = way + (guess[other] - q[other]).norm();
+            if gap > SKIN * diameter + FOLLOW * way {
+                self.room[point - 1] = (gap, foot.segment);
                 continue;
             }
             while known < self.old.len() && self.old[known].point < point as u32 {
@@ -294,14 +295,18 @@ impl Between {
 
     /// First node next to wire that may have moved from `q` to `now` past wire it is not paired with.
     pub fn missed(&self, q: &[V3], now: &[V3]) -> Option<usize> {
-        self.room.iter().enumerate().find_map(|(k, room)| {
-            if room.is_infinite() {
-                return None;
-            }
-            let weights = point_weights(k + 1);
-            let way = place(now, &weights) - place(q, &weights);
-            (way.norm_squared() > room * room).then_some(k.div_ceil(2))
-        })
+        self.room
+            .iter()
+            .enumerate()
+            .find_map(|(k, &(room, other))| {
+                if room.is_infinite() {
+                    return None;
+                }
+                let weights = point_weights(k + 1);
+                let other = other as usize;
+                let way = (place(now, &weights) - place(q, &weights)).norm();
+                (way + (now[other] - q[other]).norm() > room).then_some(k.div_ceil(2))
+            })
     }
 
     /// Number of pairs near each other.
@@ -406,7 +411,7 @@ impl Between {
             let way = relative(there) - relative(q);
             let far = way.norm_squared();
             // (the foot moves along with its wire, whose turning is small beside that)
-            if 4.0 * far <= near.room * near.room || far <= (FORESIGHT * onset).powi(2) {
+            if 4.0 * far <= near.room * near.room || far <= FORESIGHT * FORESIGHT {
                 continue;
             }
             let now = self.pairs[near.pair as usize];
@@ -427,7 +432,7 @@ impl Between {
                 near.slide = push.slide;
             }
             let off = gradient - near.gradient - times(&near.hessian, &way);
-            if off.amax() <= FORESIGHT * near.stiffness * onset {
+            if off.amax() <= FORESIGHT * near.stiffness {
                 continue;
             }
             any = true;

@@ -19,10 +19,11 @@ use crate::rod::{Block, add_outer};
 const PASSAGES: usize = 4;
 /// A point's surroundings are looked up again after this way, in wire diameters.
 const SKIN: f64 = 0.15;
-/// Error of a contact force that an update may promise, over the force of one onset depth.
-pub(super) const FORESIGHT: f64 = 0.01;
-/// Depth over which the normal force sets in, m: contact of a 15 N corner is 1 um deep.
-const ONSET: f64 = 1e-5;
+/// Error of a contact force that an update may promise, as a depth, m.
+pub(super) const FORESIGHT: f64 = 1e-7;
+/// Depth over which the normal force sets in, m. Ten times as much takes a tenth off the evaluations, and adds
+/// 4.5 um to the depth at rest.
+const ONSET: f64 = 1e-6;
 
 /// Share of the zero stiffness of a sliding bristle along its slide that the Hessian takes over. With
 /// all of it updates overshoot to the far side of the anchor, with none they crawl.
@@ -183,6 +184,8 @@ pub struct LineContact {
     /// take the friction limits of the iterate before instead of the present one's. A guess may be deep
     /// in what it lands on; friction from such a normal force would throw the wire sideways.
     pub hold_limits: bool,
+    /// frozen wire lies within this of the core, m
+    pub height: f64,
     /// deepest touch of any accepted instant, m
     pub deepest: f64,
     /// live wire against live wire, where they may meet
@@ -248,6 +251,7 @@ impl LineContact {
             radius,
             loss: ContactLoss::default(),
             hold_limits: false,
+            height: 0.0,
             deepest: 0.0,
             between: None,
             near: Vec::new(),
@@ -320,6 +324,14 @@ impl LineContact {
             point.last = p;
         }
         point.reach = -1.0;
+    }
+
+    /// Wire comes to rest at `point`, `arc` of unstretched wire from the clamp.
+    pub fn lay(&mut self, point: V3, arc: f64) {
+        self.height = self
+            .height
+            .max(self.shape.nearness(point).distance + self.radius);
+        self.tube.push(point, arc);
     }
 
     /// Depth of the deepest touch of node `i` and the halves of its edges, m; 0: none.
@@ -585,12 +597,12 @@ impl LineContact {
             let way = move_of(n.point as usize);
             let far = way.norm_squared();
             // no push, or none that the way can change by more than what is let pass
-            if far <= n.room * n.room || far <= (FORESIGHT * self.onset).powi(2) {
+            if far <= n.room * n.room || far <= FORESIGHT * FORESIGHT {
                 continue;
             }
             let there = self.push_there(n.point as usize, n.place + way, n.length, step);
             let off = there.gradient - n.gradient - times(&n.hessian, &way);
-            if off.amax() <= FORESIGHT * self.law.stiffness * n.length * self.onset {
+            if off.amax() <= FORESIGHT * self.law.stiffness * n.length {
                 continue;
             }
             any = true;

@@ -190,7 +190,7 @@ impl Simulation {
                 self.rest_depth = self.rest_depth.max(self.sys.depth(i));
             }
             if let Some(l) = &mut self.sys.line {
-                l.tube.push(node.point, node.arc);
+                l.lay(node.point, node.arc);
             }
             if let Some(c) = &mut self.sys.contacts {
                 c.tube.push(node);

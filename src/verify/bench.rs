@@ -150,7 +150,7 @@ impl Bench {
             let mut line = LineContact::new(floor, law, r, points.len());
             line.damping = line_damping(&law, section);
             for node in straight_wires(neighbours, height, length) {
-                line.tube.push(node.point, node.arc);
+                line.lay(node.point, node.arc);
             }
             sys.line = Some(line);
         } else {

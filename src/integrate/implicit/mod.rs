@@ -275,7 +275,7 @@ impl Implicit {
         }
     }
 
-    /// Share of the guess's way that no node can take past the core: error estimate and contact search
+    /// Share of the guess's way that takes no node deeper than its radius into core or frozen wire: error estimate and contact search
     /// both know nothing of a surface that lies between the ends of a step.
     fn share_of_way(&self, sys: &System) -> f64 {
         let Some(line) = &sys.line else { return 1.0 };
@@ -283,7 +283,7 @@ impl Implicit {
         for (q, guess) in sys.past.q[0].iter().zip(&self.work.guess) {
             let way = (guess - q).norm();
             if way > line.radius {
-                let room = line.shape.lower_bound(*q).max(0.0) + line.radius;
+                let room = (line.shape.lower_bound(*q) - line.height).max(line.radius);
                 share = share.min(room / way);
             }
         }
