@@ -10,6 +10,7 @@ mod joint;
 mod plasticity;
 mod section;
 mod state;
+mod twisted;
 
 pub use discrete::{
     Bent, Block, Stretched, Symmetric, add_outer, add_square, bent, stretched, turning,
@@ -19,3 +20,4 @@ pub use joint::{Joint, align, frame_along, relative, rotate, rotate_back};
 pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
 pub use section::Section;
 pub use state::Rod;
+pub use twisted::{Rolled, Turned, twisted};

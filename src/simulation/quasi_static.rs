@@ -8,7 +8,7 @@
 
 use crate::contact::{ContactLaw, Contacts};
 use crate::core_shape::Surface;
-use crate::integrate::{Support, System, VERLET_LIMIT, highest_frequency, verlet};
+use crate::integrate::{Support, System, Twist, VERLET_LIMIT, highest_frequency, verlet};
 use crate::math::V3;
 use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN, polar_angle};
 use crate::rod::{Rod, Section, frame_along};
@@ -104,7 +104,7 @@ fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Opt
         frame: Some(frame_along(&along, None)),
         turning: false,
     };
-    sys.twist = false;
+    sys.twist = Twist::Off;
     sys.holonomic = true;
     sys.support[0] = mirror(points[0], [false, true, true], V3::z());
     sys.support[1] = mirror(points[count], [true, true, false], -V3::x());

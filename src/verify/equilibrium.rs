@@ -1,7 +1,7 @@
 //! Static equilibrium: by the production method, or by the forces of the explicit steps.
 
 use super::{Context, VerifyError};
-use crate::integrate::{self, Implicit, Limits, Scheme, System};
+use crate::integrate::{self, Implicit, Limits, Scheme, System, Twist};
 use crate::scene::Integrator;
 
 /// Ten times the update over the wire's length at which a static solve is done; what is left after it
@@ -16,7 +16,7 @@ pub(super) fn follow(
 ) -> Result<(), VerifyError> {
     if ctx.integrator == Integrator::Implicit {
         // the vector form of the rod carries no twist
-        sys.twist = false;
+        sys.twist = Twist::Off;
         return method(sys).follow(sys, apply).map_err(no_answer);
     }
     integrate::ramp(sys, &Limits::default(), apply)?;
@@ -33,7 +33,7 @@ pub(super) fn follow_in_plane(
     if ctx.integrator != Integrator::Implicit {
         return follow(ctx, sys, apply);
     }
-    sys.twist = false;
+    sys.twist = Twist::Off;
     let mut method = method(sys);
     method.flat = true;
     method.follow(sys, apply).map_err(no_answer)
@@ -42,7 +42,7 @@ pub(super) fn follow_in_plane(
 /// Moves to equilibrium under the present loads and supports.
 pub(super) fn settle(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
     if ctx.integrator == Integrator::Implicit {
-        sys.twist = false;
+        sys.twist = Twist::Off;
         return method(sys).settle(sys).map_err(no_answer);
     }
     integrate::relax(sys, &Limits::default())?;

@@ -8,6 +8,7 @@ mod commit;
 mod conjugate;
 mod model;
 mod newton;
+mod roll;
 mod scheme;
 mod settle;
 mod tensioner;
@@ -15,10 +16,11 @@ mod tensioner;
 pub(in crate::integrate) use model::{point_length, spline_point};
 pub use scheme::{Past, Scheme};
 
-use super::{Banded, Spindle, Support, System, turn_about_y};
+use super::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, Spin, V3};
 use crate::rod::{Joint, align, rotate};
 use model::Model;
+use roll::{Rolls, WITH_ROLL};
 use scheme::{Step, extrapolation};
 use tensioner::NozzleEdge;
 
@@ -50,7 +52,9 @@ pub struct Implicit {
     pub flat: bool,
     /// what it took so far
     pub effort: Effort,
-    work: Work,
+    work: Work<3>,
+    /// the same where twist is carried
+    twisted: Work<WITH_ROLL>,
 }
 
 /// Counts since the start.
@@ -70,9 +74,9 @@ pub struct Effort {
     pub cuts: u64,
 }
 
-/// Scratch arrays of a step, core frame.
-#[derive(Clone, Debug)]
-struct Work {
+/// Scratch arrays of a step with `D` unknowns a node, core frame.
+#[derive(Clone, Debug, Default)]
+struct Work<const D: usize> {
     q: Vec<V3>,
     start: Vec<V3>,
     guess: Vec<V3>,
@@ -92,12 +96,28 @@ struct Work {
     load: Vec<f64>,
     /// the update without a look ahead
     plain: Vec<f64>,
-    matrix: Banded<3>,
+    matrix: Banded<D>,
+    rolls: Rolls,
     gradients: conjugate::Scratch,
     force: Vec<V3>,
     evaluations: u64,
     solves: u64,
     cuts: u64,
+}
+
+impl<const D: usize> Work<D> {
+    /// Whether edges roll, so that twist is carried.
+    const ROLLS: bool = D == WITH_ROLL;
+
+    /// The update of node `i`'s place.
+    #[inline]
+    fn update_of(&self, i: usize) -> V3 {
+        V3::new(
+            self.update[D * i],
+            self.update[D * i + 1],
+            self.update[D * i + 2],
+        )
+    }
 }
 
 /// An edge's stretch as Newton's method sees it.
@@ -157,33 +177,31 @@ impl Implicit {
             scheme,
             flat: false,
             effort: Effort::default(),
-            work: Work {
-                q: Vec::new(),
-                start: Vec::new(),
-                guess: Vec::new(),
-                target: Vec::new(),
-                star: [Vec::new(), Vec::new()],
-                mass: Vec::new(),
-                set: Vec::new(),
-                axial: Vec::new(),
-                base: Vec::new(),
-                expected: Vec::new(),
-                gradient: Vec::new(),
-                update: Vec::new(),
-                load: Vec::new(),
-                plain: Vec::new(),
-                matrix: Banded::new(),
-                gradients: conjugate::Scratch::default(),
-                force: Vec::new(),
-                evaluations: 0,
-                solves: 0,
-                cuts: 0,
-            },
+            work: Work::default(),
+            twisted: Work::default(),
         }
     }
 
     /// Takes one step of at most `most` seconds; returns its length.
     pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, Stopped> {
+        if sys.twist == Twist::Off {
+            let mut work = std::mem::take(&mut self.work);
+            let taken = self.step_with(&mut work, sys, most);
+            self.work = work;
+            return taken;
+        }
+        let mut work = std::mem::take(&mut self.twisted);
+        let taken = self.step_with(&mut work, sys, most);
+        self.twisted = work;
+        taken
+    }
+
+    fn step_with<const D: usize>(
+        &mut self,
+        work: &mut Work<D>,
+        sys: &mut System,
+        most: f64,
+    ) -> Result<f64, Stopped> {
         sys.begin_past();
         if let Some(b) = sys.line.as_mut().and_then(|l| l.between.as_mut()) {
             b.list(&sys.past.q[0], &sys.rod.rest, sys.section.diameter);
@@ -199,7 +217,7 @@ impl Implicit {
             let step = Step::new(self.scheme, &sys.past, h);
             let spindle = sys.spindle.after(step.share * h);
             let support = moved(&sys.support, step.share * h);
-            let nozzle = self.prepare(sys, &step, &spindle, &support);
+            let nozzle = work.prepare(sys, &step, &spindle, &support, true);
             let back = Spin::new(spindle.angle);
             let mut model = Model {
                 rod: &sys.rod,
@@ -220,22 +238,22 @@ impl Implicit {
             };
             let solved = newton::solve(
                 &mut model,
-                &mut self.work,
+                work,
                 CLOSE * self.tolerance,
                 newton::Reach {
                     damped: self.scheme == Scheme::Bdf2,
                     ..newton::Reach::STEP
                 },
             );
-            self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
-            self.effort.solves += std::mem::take(&mut self.work.solves);
-            self.effort.cuts += std::mem::take(&mut self.work.cuts);
+            self.effort.evaluations += std::mem::take(&mut work.evaluations);
+            self.effort.solves += std::mem::take(&mut work.solves);
+            self.effort.cuts += std::mem::take(&mut work.cuts);
             let retry = match solved {
                 Ok(_) => {
-                    let error = step.error * self.difference();
+                    let error = step.error * work.difference();
                     let factor = (AIM * self.tolerance / error.max(1e-30)).cbrt();
                     if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
-                        self.commit(sys, &step, spindle, &support, nozzle);
+                        self.commit(work, sys, &step, spindle, &support, nozzle);
                         self.effort.steps += 1;
                         // a step cut short by the end of the interval says nothing against a longer one
                         let allowed = h * factor;
@@ -264,8 +282,11 @@ impl Implicit {
             self.next = h;
         }
     }
+}
 
-    /// Fills guess, inertial target, masses and plastic curvature for a step.
+impl<const D: usize> Work<D> {
+    /// Fills guess, inertial target, masses, and plastic curvature or frames for a step; rolls are
+    /// without inertia where not `inert`.
     #[inline(never)]
     fn prepare(
         &mut self,
@@ -273,8 +294,9 @@ impl Implicit {
         step: &Step,
         spindle: &Spindle,
         support: &[Support; 2],
+        inert: bool,
     ) -> Option<NozzleEdge> {
-        let w = &mut self.work;
+        let w = &mut *self;
         let (rod, past) = (&sys.rod, &sys.past);
         let nodes = rod.nodes();
         let spin = Spin::new(spindle.angle);
@@ -317,7 +339,11 @@ impl Implicit {
             }
         }
         w.q.clone_from(&w.guess);
-        self.turn_plastic_curvature(sys, spindle, support);
+        if Self::ROLLS {
+            self.rolls.prepare(sys, step, spindle, support, inert);
+        } else {
+            self.turn_plastic_curvature(sys, spindle, support);
+        }
         let (spec, feed) = sys.feed.as_ref()?;
         let last = rod.edges() - 1;
         Some(NozzleEdge::new(
@@ -337,7 +363,7 @@ impl Implicit {
 
     /// Plastic curvature of each joint as a vector in the core frame, turned along with the guess.
     fn turn_plastic_curvature(&mut self, sys: &System, spindle: &Spindle, support: &[Support; 2]) {
-        let w = &mut self.work;
+        let w = &mut *self;
         let rod = &sys.rod;
         let back = turn_about_y(-spindle.angle);
         w.set.clear();
@@ -371,11 +397,14 @@ impl Implicit {
 
     /// Root mean square over the wire of what Newton's method moved the guess by, m.
     fn difference(&self) -> f64 {
-        let w = &self.work;
+        let w = self;
         let (mut sum, mut mass) = (0.0, 0.0);
         for ((q, g), m) in w.q.iter().zip(&w.guess).zip(&w.mass) {
             sum += m * (q - g).norm_squared();
             mass += m;
+        }
+        if Self::ROLLS {
+            sum += w.rolls.difference();
         }
         (sum / mass).sqrt()
     }

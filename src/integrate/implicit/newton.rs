@@ -39,13 +39,19 @@ impl Reach {
     };
 
     /// Share of an update that is within reach, at most 1.
-    fn share(&self, work: &Work, update: f64) -> f64 {
+    fn share<const D: usize>(&self, work: &Work<D>, update: f64) -> f64 {
         let mut share = (self.longest / update).min(1.0);
         if self.turn.is_finite() {
             for j in 0..work.q.len() - 1 {
-                let u = &work.update[3 * j..3 * j + 6];
-                let change = V3::new(u[3] - u[0], u[4] - u[1], u[5] - u[2]);
+                let change = work.update_of(j + 1) - work.update_of(j);
                 share = share.min(self.turn * work.axial[j].length / change.norm());
+            }
+            if Work::<D>::ROLLS {
+                // a joint must stay clear of half a turn
+                for j in 1..work.q.len() - 1 {
+                    let twist = work.update[D * j + 3] - work.update[D * j - 1];
+                    share = share.min(self.turn / twist.abs());
+                }
             }
         }
         share
@@ -65,9 +71,9 @@ pub(super) struct Stuck {
 
 /// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
 #[inline(never)]
-pub(super) fn solve(
+pub(super) fn solve<const D: usize>(
     model: &mut Model,
-    work: &mut Work,
+    work: &mut Work<D>,
     close: f64,
     reach: Reach,
 ) -> Result<usize, Stuck> {
@@ -77,12 +83,16 @@ pub(super) fn solve(
     hold_limits(model, false);
     // inertia bounds the update from above: a guess that is good enough costs no solve
     let weight = model.gamma * model.gamma;
-    let bound = work
+    let radius = 0.5 * model.diameter;
+    let mut bound = work
         .gradient
         .iter()
         .zip(&work.mass)
         .map(|(g, m)| g.amax() * weight / m)
         .fold(0.0, f64::max);
+    if Work::<D>::ROLLS {
+        bound = bound.max(work.rolls.bound(model.gamma, radius));
+    }
     // (the midpoint rule keeps what is wrong with a guess for ever)
     if bound < close && reach.damped {
         return Ok(0);
@@ -103,9 +113,11 @@ pub(super) fn solve(
         }
         let (mut update, mut node) = (0.0, 0);
         for (k, u) in work.update.iter().enumerate() {
-            if !(u.abs() <= update) {
-                update = u.abs();
-                node = k / 3;
+            // a roll counts by the way of the wire's surface
+            let u = if k % D < 3 { u.abs() } else { u.abs() * radius };
+            if !(u <= update) {
+                update = u;
+                node = k / D;
             }
         }
         if !update.is_finite() {
@@ -118,6 +130,7 @@ pub(super) fn solve(
         let mut share = reach.share(work, update);
         work.start.clone_from(&work.q);
         work.base.clone_from(&work.axial);
+        work.rolls.start.clone_from(&work.rolls.angle);
         // near the end each step shrinks the update by the same factor or better
         let next = if last_update.is_finite() {
             update * (update / last_update).min(1.0)
@@ -170,11 +183,14 @@ fn hold_limits(model: &mut Model, hold: bool) {
 
 /// The update from gradient and Hessian, with tangents of contact that fit where it leads.
 #[inline(never)]
-fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
+fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result<(), usize> {
     let nodes = work.q.len();
     work.load.clear();
-    for g in &work.gradient {
+    for (i, g) in work.gradient.iter().enumerate() {
         work.load.extend_from_slice(&[-g.x, -g.y, -g.z]);
+        if Work::<D>::ROLLS {
+            work.load.push(-work.rolls.gradient[i]);
+        }
     }
     for look in 0.. {
         work.matrix.factor().map_err(|loose| loose.node)?;
@@ -205,7 +221,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
             let (at, weight) = point_weights(point);
             let mut d = V3::zeros();
             for (i, w) in at.iter().zip(weight) {
-                d += V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]) * w;
+                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * w;
             }
             d
         };
@@ -227,7 +243,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
             add_block(matrix, &(at, weight), &block);
             for (i, w) in at.iter().zip(weight) {
                 for a in 0..3 {
-                    load[3 * i + a] += w * n[a] * force;
+                    load[D * i + a] += w * n[a] * force;
                 }
             }
         });
@@ -240,7 +256,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
 }
 
 /// At the start tensions are expected to stay what they were at the last accepted instant.
-pub(super) fn expect_nothing(model: &Model, work: &mut Work) {
+pub(super) fn expect_nothing<const D: usize>(model: &Model, work: &mut Work<D>) {
     work.expected.clear();
     for j in 0..model.rod.edges() {
         let tension = model.tension.get(j).copied().unwrap_or(0.0);
@@ -256,10 +272,11 @@ pub(super) fn expect_nothing(model: &Model, work: &mut Work) {
 
 /// What the update promises for the stretch of each edge.
 #[inline(never)]
-fn expect_tension(work: &mut Work, share: f64) {
+fn expect_tension<const D: usize>(work: &mut Work<D>, share: f64) {
+    let update = &work.update;
     for (j, (e, a)) in work.expected.iter_mut().zip(&work.base).enumerate() {
-        let u = &work.update[3 * j..3 * j + 6];
-        let change = V3::new(u[3] - u[0], u[4] - u[1], u[5] - u[2]) * share;
+        let (u, v) = (&update[D * j..], &update[D * (j + 1)..]);
+        let change = V3::new(v[0] - u[0], v[1] - u[1], v[2] - u[2]) * share;
         let longer = a.along.dot(&change);
         e.length = a.length + longer;
         e.tension = a.tension + a.stiffness * longer;
@@ -268,17 +285,27 @@ fn expect_tension(work: &mut Work, share: f64) {
 }
 
 /// Slope of the potential along the update.
-fn slope(work: &Work) -> f64 {
+fn slope<const D: usize>(work: &Work<D>) -> f64 {
     work.gradient
         .iter()
-        .zip(work.update.chunks_exact(3))
-        .map(|(g, u)| g.x * u[0] + g.y * u[1] + g.z * u[2])
+        .zip(work.update.chunks_exact(D))
+        .enumerate()
+        .map(|(i, (g, u))| {
+            let places = g.x * u[0] + g.y * u[1] + g.z * u[2];
+            if Work::<D>::ROLLS {
+                places + work.rolls.gradient[i] * u[3]
+            } else {
+                places
+            }
+        })
         .sum()
 }
 
-fn take(work: &mut Work, share: f64) {
-    for (i, q) in work.q.iter_mut().enumerate() {
-        let u = &work.update[3 * i..3 * i + 3];
-        *q = work.start[i] + V3::new(u[0], u[1], u[2]) * share;
+fn take<const D: usize>(work: &mut Work<D>, share: f64) {
+    for i in 0..work.q.len() {
+        work.q[i] = work.start[i] + work.update_of(i) * share;
+    }
+    for (j, angle) in work.rolls.angle.iter_mut().enumerate() {
+        *angle = work.rolls.start[j] + work.update[D * j + 3] * share;
     }
 }
