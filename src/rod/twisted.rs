@@ -234,7 +234,7 @@ mod tests {
             let g = self.gradient(p);
             let size: f64 = (0..8).map(|k| g[k].abs() * Self::scale(k)).sum();
             for k in 0..8 {
-                let h = 2e-6 * Self::scale(k);
+                let h = 1e-6 * Self::scale(k);
                 let energy = |s: f64| {
                     let mut q = *p;
                     q[k] += s * h;

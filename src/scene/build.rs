@@ -4,6 +4,7 @@ use super::error::Warning;
 use super::material::section;
 use super::settings::SceneSettings;
 use super::{Core, Integrator, Preset, Scene, SceneError, Solver};
+use crate::integrate::Twist;
 use crate::rod::Section;
 use std::path::{Path, PathBuf};
 
@@ -36,7 +37,7 @@ impl SceneSettings {
             ("verlet", _) => Integrator::Verlet,
             _ => Integrator::Implicit,
         };
-        let solver = self.solver_for(integrator);
+        let solver = self.solver_for(integrator, self.twist(integrator)?);
         self.check_spacing(&solver, &wire, &extent)?;
         let warnings = self.warnings(&solver, &wire, &core, &extent);
 
@@ -263,8 +264,26 @@ impl SceneSettings {
         Ok(())
     }
 
+    /// How twist is carried: none of it decides where wire comes to lie, so the implicit method leaves it out
+    /// unless told; the explicit ones have always had it, and no way to solve for a balance.
+    fn twist(&self, integrator: Integrator) -> Result<Twist, SceneError> {
+        let implicit = integrator == Integrator::Implicit;
+        match self.solver.twist.as_str() {
+            "off" => Ok(Twist::Off),
+            "dynamic" => Ok(Twist::Dynamic),
+            "quasi-static" if implicit => Ok(Twist::QuasiStatic),
+            "quasi-static" => Err(self.impossible(
+                "solver.twist",
+                "the explicit methods step every edge's roll in time",
+                "auto, off or dynamic; quasi-static with solver.integrator = implicit",
+            )),
+            _ if implicit => Ok(Twist::Off),
+            _ => Ok(Twist::Dynamic),
+        }
+    }
+
     /// Solver settings with the spacing that suits the method where none is given.
-    fn solver_for(&self, integrator: Integrator) -> Solver {
+    fn solver_for(&self, integrator: Integrator, twist: Twist) -> Solver {
         // the explicit step falls with the square of the finest spacing wherever it is, so a coarse
         // free span saves little there and costs a refinement front
         let (near, free, refine): (f64, f64, f64) = match integrator {
@@ -276,6 +295,7 @@ impl SceneSettings {
         let spacing_near = given(s.spacing_near, near.min(given(s.spacing_free, near)));
         Solver {
             integrator,
+            twist,
             spacing_near,
             spacing_free: given(s.spacing_free, free.max(spacing_near)),
             refine_distance: given(s.refine_distance, refine),

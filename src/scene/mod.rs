@@ -17,6 +17,7 @@ pub use file::packed_names;
 pub use key::unit_suffixes;
 pub use settings::{CoreSettings, SceneSettings, SolverSettings, WireSettings};
 
+use crate::integrate::Twist;
 use crate::rod::Section;
 use std::path::PathBuf;
 
@@ -195,6 +196,8 @@ pub enum Integrator {
 pub struct Solver {
     /// time integrator
     pub integrator: Integrator,
+    /// how the wire's twist is carried
+    pub twist: Twist,
     /// node spacing near the core, m
     pub spacing_near: f64,
     /// node spacing in the free span, m

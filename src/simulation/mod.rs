@@ -86,7 +86,12 @@ impl Simulation {
         };
         let spacing = scene.solver.spacing_near.min(scene.solver.spacing_free);
         let contact = scene.contact.stiffness;
-        let frequency = highest_frequency(&scene.wire, spacing, contact, true);
+        let frequency = highest_frequency(
+            &scene.wire,
+            spacing,
+            contact,
+            scene.solver.twist.is_carried(),
+        );
         let damping = damping_for_restitution(scene.contact.restitution);
         let stable = longest_step(limit, frequency, damping, contact, &scene.wire);
         let longest_step = if scene.solver.step > 0.0 {

@@ -5,7 +5,7 @@ use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution}
 use crate::core_shape::generate::{cylinder, rounded_box, segments_for_sagitta};
 use crate::core_shape::{Shape, Surface, TriMesh};
 use crate::feed::{Feed, FeedSpec};
-use crate::integrate::{Spindle, Support, System, Twist, turn_about_y};
+use crate::integrate::{Spindle, Support, System, turn_about_y};
 use crate::math::{Spin, V3};
 use crate::measure::{Coil, CoilSpec, polar_angle};
 use crate::rod::{Rod, Scalar, frame_along};
@@ -174,8 +174,8 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
     if scene.solver.integrator == Integrator::Implicit {
         let shape = core_shape(&scene.core, &surface);
         sys.line = Some(LineContact::new(shape, law, radius, sys.rod.nodes()));
-        sys.twist = Twist::Off;
     }
+    sys.twist = scene.solver.twist;
     let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,
