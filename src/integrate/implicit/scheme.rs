@@ -70,8 +70,8 @@ impl Past {
         }
     }
 
-    /// Node `i` was taken out.
-    pub(in crate::integrate) fn merge(&mut self, i: usize) {
+    /// Node `i` was taken out; `share` is that of the edge after it in the joined edge.
+    pub(in crate::integrate) fn merge(&mut self, i: usize, share: f64) {
         for q in &mut self.q {
             if q.len() > i {
                 q.remove(i);
@@ -83,7 +83,8 @@ impl Past {
         }
         for a in self.roll.iter_mut().chain([&mut self.spin]) {
             if a.len() > i {
-                a.remove(i);
+                let gone = a.remove(i);
+                a[i - 1] += (gone - a[i - 1]) * share;
             }
         }
     }
