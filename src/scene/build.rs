@@ -264,8 +264,8 @@ impl SceneSettings {
         Ok(())
     }
 
-    /// How twist is carried: none of it decides where wire comes to lie, so the implicit method leaves it out
-    /// unless told; the explicit ones have always had it, and no way to solve for a balance.
+    /// How twist is carried. Left to itself each method does what it did before there was a choice: the
+    /// implicit one leaves twist out, the explicit ones step it in time and cannot solve for a balance.
     fn twist(&self, integrator: Integrator) -> Result<Twist, SceneError> {
         let implicit = integrator == Integrator::Implicit;
         match self.solver.twist.as_str() {

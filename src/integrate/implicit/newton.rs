@@ -115,7 +115,7 @@ pub(super) fn solve<const D: usize>(
         for (k, u) in work.update.iter().enumerate() {
             // a roll counts by the way of the wire's surface
             let u = if k % D < 3 { u.abs() } else { u.abs() * radius };
-            if !(u <= update) {
+            if u > update || u.is_nan() {
                 update = u;
                 node = k / D;
             }

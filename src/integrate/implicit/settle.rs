@@ -128,7 +128,9 @@ impl Implicit {
             }
         }
         let reach = Reach {
-            steps: 40,
+            // wire bent and twisted far from its free shape converges by a factor, not by squares: what the
+            // Hessian leaves out is not small there
+            steps: if Work::<D>::ROLLS { 200 } else { 40 },
             longest: f64::INFINITY,
             turn: 0.4,
             damped: true,
