@@ -81,7 +81,12 @@ impl Machine {
 /// Laid wire that froze and comes back is what it was before, to rounding; so are the books.
 #[test]
 fn thawing_undoes_freezing() {
-    let mut m = Machine::new(&[]);
+    for twist in ["off", "quasi-static", "dynamic"] {
+        freeze_and_thaw(Machine::new(&[("solver.twist", twist)]));
+    }
+}
+
+fn freeze_and_thaw(mut m: Machine) {
     m.ramp(100.0, 0.02);
     m.turn(0.6, 100.0);
     let before = m.sim.system().clone();
@@ -138,7 +143,12 @@ fn thawing_undoes_freezing() {
 
 #[test]
 fn a_reversed_spindle_unwinds_the_coil() {
-    let mut m = Machine::new(&[]);
+    for twist in ["off", "quasi-static", "dynamic"] {
+        wind_and_unwind(Machine::new(&[("solver.twist", twist)]));
+    }
+}
+
+fn wind_and_unwind(mut m: Machine) {
     m.ramp(100.0, 0.02);
     m.turn(1.6, 100.0);
     m.ramp(0.0, 0.02);

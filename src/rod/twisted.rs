@@ -90,8 +90,14 @@ pub fn twisted(
     } else {
         laws.twist.modulus
     };
+    // derivatives of the angles with respect to the rotation of the edge after against the one before
     let row = |m: [f64; 2], t: f64| rotate(&before.frame, &joint.moment(m, t));
-    let moment = row([m.x, m.y], t);
+    let rows = [
+        row([1.0, 0.0], 0.0),
+        row([0.0, 1.0], 0.0),
+        row([0.0; 2], 1.0),
+    ];
+    let moment = rows[0] * m.x + rows[1] * m.y + rows[2] * t;
     let (g0, t0) = before.derivative(&moment);
     let (g1, t1) = after.derivative(&moment);
     let mut bent = Bent {
@@ -105,12 +111,16 @@ pub fn twisted(
         torque: [-t0, t1],
         ..Rolled::default()
     };
-    // bending along the moment and across it: elastic, any two directions will do
-    let d = if dir == V3::zeros() { V3::x() } else { dir };
+    let (mut lead, mut side) = (rows[0], rows[1]);
+    if dir != V3::zeros() {
+        // along the moment and across it
+        lead = rows[0] * dir.x + rows[1] * dir.y;
+        side = rows[1] * dir.x - rows[0] * dir.y;
+    }
     for (row, c) in [
-        (row([d.x, d.y], 0.0), along * inv),
-        (row([-d.y, d.x], 0.0), across * inv),
-        (row([0.0; 2], 1.0), stiffness * inv),
+        (lead, along * inv),
+        (side, across * inv),
+        (rows[2], stiffness * inv),
     ] {
         let (w0, r0) = before.derivative(&-row);
         let (w1, r1) = after.derivative(&row);
