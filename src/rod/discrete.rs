@@ -185,7 +185,7 @@ fn add_pair(m: &mut Symmetric, a: &V3, b: &V3) {
 }
 
 /// Moment, energy per length, stiffness along and across the moment, its direction.
-#[inline]
+#[inline(always)]
 pub(super) fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3) {
     let n2 = trial.norm_squared();
     let limit = law.limit + rise;

@@ -211,7 +211,7 @@ impl Model<'_> {
                 let k = work.mass[e] * weight;
                 work.matrix.add_diagonal(
                     e,
-                    &wide(&[
+                    &[
                         [carried[0] + own[0] - 2.0 * b[0][0] + k, 0.0, 0.0],
                         [
                             carried[1] + own[1] - b[1][0] - b[0][1],
@@ -223,7 +223,7 @@ impl Model<'_> {
                             carried[4] + own[4] - b[2][1] - b[1][2],
                             carried[5] + own[5] - 2.0 * b[2][2] + k,
                         ],
-                    ]),
+                    ],
                 );
                 carried = own;
                 let whole = [
@@ -232,9 +232,9 @@ impl Model<'_> {
                     [own[3], own[4], own[5]],
                 ];
                 let off = combine(|r, c| b[r][c] + next[r][c] - whole[r][c]);
-                work.matrix.add(e, 1, &wide(&off));
+                work.matrix.add(e, 1, &off);
                 if j < edges {
-                    work.matrix.add(e, 2, &wide(&combine(|r, c| -next[r][c])));
+                    work.matrix.add(e, 2, &combine(|r, c| -next[r][c]));
                 } else {
                     let k = work.mass[j] * weight;
                     let last = [
@@ -242,7 +242,7 @@ impl Model<'_> {
                         [own[1], own[2] + k, 0.0],
                         [own[3], own[4], own[5] + k],
                     ];
-                    work.matrix.add_diagonal(j, &wide(&last));
+                    work.matrix.add_diagonal(j, &last);
                 }
             }
             if j < edges {
@@ -390,12 +390,12 @@ pub(super) fn add_block<const D: usize>(
         if wa == 0.0 {
             continue;
         }
-        matrix.add_diagonal(i, &wide(&combine(|r, c| block[r][c] * (wa * wa))));
+        matrix.add_diagonal(i, &combine(|r, c| block[r][c] * (wa * wa)));
         for b in a + 1..3 {
             let wb = weights[b];
             if wb != 0.0 {
                 let cross = combine(|r, c| block[r][c] * (wa * wb));
-                matrix.add(i, nodes[b] - i, &wide(&cross));
+                matrix.add(i, nodes[b] - i, &cross);
             }
         }
     }
@@ -416,18 +416,12 @@ fn spread<const D: usize>(
     for (a, wa) in weight.iter().enumerate() {
         work.gradient[first + a] += gradient * *wa;
         let own = combine(|r, c| hessian[r][c] * (wa * wa));
-        work.matrix.add_diagonal(first + a, &wide(&own));
+        work.matrix.add_diagonal(first + a, &own);
         for (b, wb) in weight.iter().enumerate().skip(a + 1) {
             let cross = combine(|r, c| hessian[r][c] * (wa * wb));
-            work.matrix.add(first + a, b - a, &wide(&cross));
+            work.matrix.add(first + a, b - a, &cross);
         }
     }
-}
-
-/// A block of places among those of all unknowns of a node.
-#[inline]
-pub(super) fn wide<const D: usize>(block: &Block) -> [[f64; D]; D] {
-    std::array::from_fn(|r| std::array::from_fn(|c| if r < 3 && c < 3 { block[r][c] } else { 0.0 }))
 }
 
 #[inline]

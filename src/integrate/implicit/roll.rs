@@ -8,11 +8,10 @@
 //! about its own axis, neither here nor in the explicit methods.
 
 use super::Work;
-use super::model::wide;
 use super::scheme::{Past, Scheme, Step, extrapolation};
 use crate::integrate::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, V3};
-use crate::rod::{Block, Rolled, Turned};
+use crate::rod::{Rolled, Turned};
 
 /// Unknowns of a node with twist: place and roll.
 pub(super) const WITH_ROLL: usize = 4;
@@ -239,12 +238,12 @@ pub(super) fn spread<const D: usize>(
 }
 
 /// A block of nothing but a last column, a last row and their corner.
-fn framed<const D: usize>(column: V3, row: V3, corner: f64) -> [[f64; D]; D] {
-    let mut block = wide(&Block::default());
-    for a in 0..3 {
-        block[a][D - 1] = column[a];
-        block[D - 1][a] = row[a];
-    }
-    block[D - 1][D - 1] = corner;
-    block
+#[inline]
+fn framed(column: V3, row: V3, corner: f64) -> [[f64; WITH_ROLL]; WITH_ROLL] {
+    [
+        [0.0, 0.0, 0.0, column.x],
+        [0.0, 0.0, 0.0, column.y],
+        [0.0, 0.0, 0.0, column.z],
+        [row.x, row.y, row.z, corner],
+    ]
 }
