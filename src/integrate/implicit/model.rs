@@ -153,7 +153,10 @@ impl Model<'_> {
         let mut axial = Value::default();
         // edge in hand, the joint at its start, the cross block there
         let mut before = (self.clamp[0], 0.0);
-        let mut frame_before = work.rolls.clamp(0);
+        let mut frame_before = None;
+        if Work::<D>::ROLLS {
+            frame_before = work.rolls.clamp(0);
+        }
         let mut at_start = NO_JOINT;
         let mut stretch = [0.0; 6];
         // what the edge before puts on the node in hand
@@ -281,7 +284,9 @@ impl Model<'_> {
                 add_square(&mut stretch, &t, s.stiffness - across);
             }
             before = after;
-            frame_before = frame_after;
+            if Work::<D>::ROLLS {
+                frame_before = frame_after;
+            }
             at_start = joint;
         }
         (energy, axial)
@@ -406,6 +411,7 @@ pub(in crate::integrate) fn spline_point(q: &[V3], i: usize) -> V3 {
     (q[i - 1] + q[i + 1]) * 0.125 + q[i] * 0.75
 }
 
+#[inline]
 fn spread<const D: usize>(
     work: &mut Work<D>,
     first: usize,
@@ -424,7 +430,7 @@ fn spread<const D: usize>(
     }
 }
 
-#[inline]
+#[inline(always)]
 fn combine(entry: impl Fn(usize, usize) -> f64) -> Block {
     std::array::from_fn(|r| std::array::from_fn(|c| entry(r, c)))
 }
