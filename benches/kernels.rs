@@ -32,7 +32,10 @@ fn full_band<const D: usize>(nodes: usize) -> Banded<D> {
 
 fn factor_and_solve_of<const D: usize>(c: &mut Criterion) {
     let mut group = c.benchmark_group("factor_and_solve");
-    for nodes in [50usize, 200, 800, 1600] {
+    group.sample_size(20);
+    group.warm_up_time(std::time::Duration::from_millis(300));
+    group.measurement_time(std::time::Duration::from_secs(1));
+    for nodes in [50usize, 100, 200, 400, 800, 1600] {
         let mut matrix = full_band::<D>(nodes);
         let b: Vec<f64> = (0..nodes * D).map(|i| (0.7 * i as f64).sin()).collect();
         let mut x = b.clone();

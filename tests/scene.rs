@@ -45,7 +45,9 @@ fn packed_fig8_is_the_reference_scene() {
     let text = include_str!("reference/scene_fig8.json");
     let json: serde_json::Value = serde_json::from_str(text).unwrap();
     let number = |path: &str| json.pointer(path).and_then(|v| v.as_f64()).expect(path);
-    let scene = fig8().build().unwrap();
+    let mut settings = fig8();
+    settings.preset = "paper".to_owned();
+    let scene = settings.build().unwrap();
 
     let w = &scene.wire;
     for (got, path) in [
@@ -318,12 +320,12 @@ fn impossible_scenes_say_what_would_do() {
             &["too fine", "7e-5 to 0.007 m"],
         ),
         (
-            "[wire]\ndiameter_um = 40\n[tensioner]\ntension = 0.1",
+            "[wire]\ndiameter_um = 30\n[tensioner]\ntension = 0.1",
             &["default scene", "solver.spacing_near", "too coarse"],
         ),
         (
-            "[solver]\nspacing_free_mm = 0.4",
-            &["cannot be finer", "solver.spacing_near, 0.0005 m"],
+            "[solver]\nspacing_free_mm = 0.3",
+            &["cannot be finer", "solver.spacing_near, 0.0004 m"],
         ),
         ("[solver]\nspacing_free_mm = 20", &["at least three edges"]),
         (
@@ -488,7 +490,7 @@ fn the_integrator_decides_how_twist_is_carried_unless_it_is_set() {
 #[test]
 fn preset_decides_the_integrator_unless_it_is_set() {
     let integrator = |text: &str| parse(text).unwrap().build().unwrap().solver.integrator;
-    assert_eq!(integrator(""), Integrator::Verlet);
+    assert_eq!(integrator(""), Integrator::Implicit);
     assert_eq!(integrator("preset = 'paper'"), Integrator::Rk4);
     assert_eq!(
         integrator("preset = 'paper'\n[solver]\nintegrator = 'verlet'"),

@@ -7,7 +7,7 @@
 //! linear system is solved by conjugate gradients with the banded part as preconditioner.
 
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
-use super::line::{huber, onset_law};
+use super::line::{ALONG_SLIDE, FORESIGHT, huber, less, onset_law, times};
 use super::{ContactLoss, OWN_WIRE};
 use crate::freeze::Curve;
 use crate::math::V3;
@@ -15,9 +15,10 @@ use crate::measure::{polar_angle, wrap_to_pi};
 use crate::rod::{Block, add_outer};
 use std::f64::consts::TAU;
 
-/// Pairs are listed when nearer than this beyond touching, in wire diameters: farther than a point
-/// moves in a step.
-const SKIN: f64 = 1.0;
+/// Pairs are listed when nearer than this beyond touching, in wire diameters ...
+const SKIN: f64 = 0.25;
+/// ... and this much of the way the step's guess moves the point.
+const FOLLOW: f64 = 1.5;
 /// How far from one turn back along the wire a partner may lie, rad.
 const WINDOW: f64 = 0.6;
 
@@ -29,6 +30,8 @@ pub(super) struct Pair {
     held: bool,
     bristle: V3,
     lag: f64,
+    /// the same at the last accepted instant
+    kept: f64,
     fresh: f64,
     depth: f64,
     /// where the foot was in the last evaluation
@@ -40,12 +43,34 @@ pub(super) struct Pair {
 #[derive(Clone, Copy, Debug)]
 pub struct Cross {
     /// nodes of the younger wire and their weights
-    pub young: ([usize; 3], [f64; 3]),
+    pub young: Triple,
     /// nodes of the older wire and their weights, negative
-    pub old: ([usize; 3], [f64; 3]),
+    pub old: Triple,
     /// Hessian with respect to the distance vector, N/m
     pub block: Block,
 }
+
+/// A listed pair as the linear system sees it.
+#[derive(Clone, Copy, Debug)]
+struct NearPair {
+    pair: u32,
+    young: Triple,
+    old: Triple,
+    /// contact stiffness of what the point stands for, N/m
+    stiffness: f64,
+    /// gradient at the iterate, N, and Hessian, N/m, by the distance vector
+    gradient: V3,
+    hessian: Block,
+    /// distance to the push, while it has none, m
+    room: f64,
+    /// direction of the slide in it; 0: the bristle holds
+    slide: V3,
+    /// its coupling, if it has one
+    cross: Option<u32>,
+}
+
+/// Three nodes and their weights.
+pub type Triple = ([usize; 3], [f64; 3]);
 
 /// What a pair adds to the step's potential.
 #[derive(Clone, Copy, Debug, Default)]
@@ -56,6 +81,61 @@ pub struct PairPush {
     pub energy: f64,
     /// gradient with respect to the young point, N; its negative acts on the foot
     pub gradient: V3,
+    /// friction limit, N
+    pub limit: f64,
+    /// direction of the slide; 0: the bristle holds
+    pub slide: V3,
+}
+
+impl Pair {
+    /// What a touching pair adds that has slid `way` since the last accepted instant; `limit` gives the friction
+    /// limit for a normal force. A slide against `before` is not taken at once, see `Touch::push`.
+    fn push(
+        &self,
+        law: &ContactLaw,
+        onset: f64,
+        stiffness: f64,
+        way: V3,
+        before: V3,
+        limit: impl Fn(f64) -> f64,
+    ) -> (PairPush, Block) {
+        let (e, f, s) = onset_law(self.depth, onset);
+        let n = self.normal;
+        let mut push = PairPush {
+            energy_lagged: stiffness * e,
+            energy: stiffness * e,
+            gradient: n * (-stiffness * f),
+            limit: 0.0,
+            slide: V3::zeros(),
+        };
+        let mut block = Block::default();
+        let mut along = stiffness * s;
+        if law.mu_static > 0.0 {
+            push.limit = limit(stiffness * f);
+            let b = self.bristle + way;
+            let b = b - n * b.dot(&n);
+            let k_t = stiffness * TANGENTIAL_SHARE;
+            let size = b.norm();
+            push.energy_lagged += huber(k_t, self.lag, size);
+            push.energy += huber(k_t, push.limit, size);
+            let dir = b / size;
+            let h = if k_t * size <= push.limit || dir.dot(&before) < 0.0 {
+                k_t
+            } else {
+                push.slide = dir;
+                let h = push.limit / size;
+                add_outer(&mut block, &(dir * (-ALONG_SLIDE * h)), &dir);
+                h
+            };
+            push.gradient += b * h;
+            for (k, row) in block.iter_mut().enumerate() {
+                row[k] += h;
+            }
+            along -= h;
+        }
+        add_outer(&mut block, &(n * along), &n);
+        (push, block)
+    }
 }
 
 /// Pairs of live wire and what their friction remembers.
@@ -66,17 +146,20 @@ pub struct Between {
     old: Vec<Pair>,
     angle: Vec<f64>,
     arc: Vec<f64>,
+    /// how far each point may move before a pair may be missing, m
+    room: Vec<f64>,
     /// room for the wire in the core frame
     pub scratch: Vec<V3>,
     /// couplings of the last evaluation
     pub cross: Vec<Cross>,
+    near: Vec<NearPair>,
     /// totals of what was lost
     pub loss: ContactLoss,
 }
 
 /// Nodes and weights of contact point `point`: `2 i` the spline at node i, `2 j + 1` the middle of
 /// edge j.
-pub fn point_weights(point: usize) -> ([usize; 3], [f64; 3]) {
+pub fn point_weights(point: usize) -> Triple {
     let i = point / 2;
     if point.is_multiple_of(2) {
         ([i - 1, i, i + 1], [0.125, 0.75, 0.125])
@@ -86,7 +169,7 @@ pub fn point_weights(point: usize) -> ([usize; 3], [f64; 3]) {
 }
 
 /// The weighted place.
-fn place(q: &[V3], (nodes, weights): &([usize; 3], [f64; 3])) -> V3 {
+fn place(q: &[V3], (nodes, weights): &Triple) -> V3 {
     q[nodes[0]] * weights[0] + q[nodes[1]] * weights[1] + q[nodes[2]] * weights[2]
 }
 
@@ -128,11 +211,13 @@ impl Between {
         }
     }
 
-    /// Lists the pairs for a step that starts at `q` (core frame); `rest` are its edges' unstretched lengths.
+    /// Lists the pairs for a step from `q` that is expected to lead to `guess` (core frame); `rest` are the
+    /// edges' unstretched lengths.
     #[inline(never)]
-    pub fn list(&mut self, q: &[V3], rest: &[f64], diameter: f64) {
+    pub fn list(&mut self, q: &[V3], guess: &[V3], rest: &[f64], diameter: f64) {
         self.angle.clear();
         self.arc.clear();
+        self.room.clear();
         let mut last = (0.0, polar_angle(q[0]));
         let mut arc = 0.0;
         for (i, p) in q.iter().enumerate() {
@@ -150,7 +235,10 @@ impl Between {
         std::mem::swap(&mut self.pairs, &mut self.old);
         self.pairs.clear();
         let last_point = 2 * (q.len() - 1);
+        // both lists run along the wire
+        let (mut known, mut near) = (0, 0);
         for point in 1..last_point {
+            self.room.push(f64::INFINITY);
             let i = point / 2;
             let back = self.angle[i] - TAU;
             if back < -WINDOW {
@@ -158,39 +246,62 @@ impl Between {
             }
             let weights = point_weights(point);
             let p = place(q, &weights);
+            let way = (place(guess, &weights) - p).norm();
+            let reach = SKIN * diameter + FOLLOW * way;
             let own = arc[i] - OWN_WIRE * diameter;
-            let from = self.angle[..i].partition_point(|a| *a < back - WINDOW);
-            let mut best: Option<(f64, usize)> = None;
-            for k in from..i {
-                if self.angle[k] > back + WINDOW || arc[k + 1] > own {
-                    break;
-                }
-                let d = (q[k] - p).norm_squared();
-                if best.is_none_or(|(least, _)| d < least) {
-                    best = Some((d, k));
-                }
-            }
-            let Some((_, k)) = best else { continue };
-            let foot = Curve(q).foot(p, k as u32);
-            if foot.distance > (1.0 + SKIN) * diameter || arc[foot.segment as usize] > own {
+            let end = arc[..i].partition_point(|a| *a <= own);
+            if end < 2 {
                 continue;
             }
-            let known = self
+            // one turn back along the wire, and downhill from there
+            while near + 1 < end - 1 && self.angle[near] < back {
+                near += 1;
+            }
+            while near > 0 && self.angle[near - 1] >= back {
+                near -= 1;
+            }
+            let foot = Curve(q).foot(p, near as u32);
+            let gap = foot.distance - diameter;
+            let other = foot.segment as usize;
+            if arc[other] > own || (self.angle[other] - back).abs() > WINDOW {
+                continue;
+            }
+            if gap > reach {
+                self.room[point - 1] = gap;
+                continue;
+            }
+            while known < self.old.len() && self.old[known].point < point as u32 {
+                known += 1;
+            }
+            let before = self
                 .old
-                .iter()
-                .find(|o| o.point == point as u32 && o.segment.abs_diff(foot.segment) < 6);
+                .get(known)
+                .filter(|o| o.point == point as u32 && o.segment.abs_diff(foot.segment) < 6);
             self.pairs.push(Pair {
                 point: point as u32,
                 segment: foot.segment,
-                held: known.is_some_and(|o| o.held),
-                bristle: known.map_or(V3::zeros(), |o| o.bristle),
-                lag: known.map_or(0.0, |o| o.lag),
+                held: before.is_some_and(|o| o.held),
+                bristle: before.map_or(V3::zeros(), |o| o.bristle),
+                lag: before.map_or(0.0, |o| o.kept),
+                kept: before.map_or(0.0, |o| o.kept),
                 fresh: 0.0,
-                depth: known.map_or(0.0, |o| o.depth),
+                depth: before.map_or(0.0, |o| o.depth),
                 share: foot.share,
                 normal: foot.normal,
             });
         }
+    }
+
+    /// First node next to wire that may have moved from `q` to `now` past wire it is not paired with.
+    pub fn missed(&self, q: &[V3], now: &[V3]) -> Option<usize> {
+        self.room.iter().enumerate().find_map(|(k, room)| {
+            if room.is_infinite() {
+                return None;
+            }
+            let weights = point_weights(k + 1);
+            let way = place(now, &weights) - place(q, &weights);
+            (way.norm_squared() > room * room).then_some((k + 1) / 2)
+        })
     }
 
     /// Number of pairs near each other.
@@ -229,6 +340,7 @@ impl Between {
         mut take: impl FnMut(&Cross, &PairPush),
     ) {
         self.cross.clear();
+        self.near.clear();
         let curve = Curve(q);
         for pair in &mut self.pairs {
             let young = point_weights(pair.point as usize);
@@ -237,55 +349,103 @@ impl Between {
             pair.segment = foot.segment;
             (pair.share, pair.normal) = (foot.share, foot.normal);
             pair.depth = diameter - foot.distance;
+            let old = curve.weights(foot.segment as usize, foot.share);
+            let minus = (old.0, old.1.map(|w| -w));
+            let stiffness = law.stiffness * length(pair.point as usize);
+            let mut near = NearPair {
+                pair: self.near.len() as u32,
+                young,
+                old: minus,
+                stiffness,
+                gradient: V3::zeros(),
+                hessian: Block::default(),
+                room: (-pair.depth).max(0.0),
+                slide: V3::zeros(),
+                cross: None,
+            };
             if pair.depth <= 0.0 {
                 pair.fresh = 0.0;
+                self.near.push(near);
                 continue;
             }
-            let old = curve.weights(foot.segment as usize, foot.share);
-            let k_n = law.stiffness * length(pair.point as usize);
-            let (e, f, s) = onset_law(pair.depth, onset);
+            let way = (p - place(last, &young)) - (foot.point - place(last, &old));
             let n = foot.normal;
-            let mut push = PairPush {
-                energy_lagged: k_n * e,
-                energy: k_n * e,
-                gradient: n * (-k_n * f),
-            };
-            let mut block = Block::default();
-            let mut along = k_n * s;
-            if law.mu_static > 0.0 {
-                let way = (p - place(last, &young)) - (foot.point - place(last, &old));
-                let way = way - n * way.dot(&n);
-                pair.fresh = if hold_limits {
+            let (push, hessian) = pair.push(law, onset, stiffness, way, V3::zeros(), |force| {
+                if hold_limits {
                     pair.lag
                 } else {
-                    law.mu(way.norm() / step) * k_n * f
-                };
-                let b = pair.bristle + way;
-                let b = b - n * b.dot(&n);
-                let k_t = k_n * TANGENTIAL_SHARE;
-                let size = b.norm();
-                push.energy_lagged += huber(k_t, pair.lag, size);
-                push.energy += huber(k_t, pair.fresh, size);
-                let h = if k_t * size <= pair.fresh {
-                    k_t
-                } else {
-                    pair.fresh / size
-                };
-                push.gradient += b * h;
-                for (k, row) in block.iter_mut().enumerate() {
-                    row[k] += h;
+                    law.mu((way - n * way.dot(&n)).norm() / step) * force
                 }
-                along -= h;
-            }
-            add_outer(&mut block, &(n * along), &n);
+            });
+            pair.fresh = push.limit;
+            near.cross = Some(self.cross.len() as u32);
+            (near.gradient, near.hessian) = (push.gradient, hessian);
+            near.slide = push.slide;
+            self.near.push(near);
             let cross = Cross {
                 young,
-                old: (old.0, old.1.map(|w| -w)),
-                block,
+                old: minus,
+                block: hessian,
             };
             take(&cross, &push);
             self.cross.push(cross);
         }
+    }
+
+    /// As [`LineContact::foresee`](super::LineContact::foresee), for pairs, with the wire at `there`;
+    /// `correct` gets both triples.
+    pub fn foresee(
+        &mut self,
+        (law, onset, diameter): (&ContactLaw, f64, f64),
+        (q, last, there): (&[V3], &[V3], &[V3]),
+        mut correct: impl FnMut(&Triple, &Triple, &Block, &V3),
+    ) -> bool {
+        let mut any = false;
+        for near in &mut self.near {
+            let relative = |q: &[V3]| place(q, &near.young) + place(q, &near.old);
+            let way = relative(there) - relative(q);
+            let far = way.norm_squared();
+            // (the foot moves along with its wire, whose turning is small beside that)
+            if 4.0 * far <= near.room * near.room || far <= (FORESIGHT * onset).powi(2) {
+                continue;
+            }
+            let now = self.pairs[near.pair as usize];
+            let p = place(there, &near.young);
+            let foot = Curve(there).foot(p, now.segment);
+            let pair = Pair {
+                depth: diameter - foot.distance,
+                normal: foot.normal,
+                ..now
+            };
+            let (mut gradient, mut hessian) = (V3::zeros(), Block::default());
+            if pair.depth > 0.0 {
+                let slid = relative(there) - relative(last);
+                let push;
+                let limit = |_| now.fresh;
+                (push, hessian) = pair.push(law, onset, near.stiffness, slid, near.slide, limit);
+                gradient = push.gradient;
+                near.slide = push.slide;
+            }
+            let off = gradient - near.gradient - times(&near.hessian, &way);
+            if off.amax() <= FORESIGHT * near.stiffness * onset {
+                continue;
+            }
+            any = true;
+            gradient -= times(&hessian, &way);
+            let more = less(&hessian, &near.hessian);
+            correct(&near.young, &near.old, &more, &(gradient - near.gradient));
+            let at = *near.cross.get_or_insert_with(|| {
+                self.cross.push(Cross {
+                    young: near.young,
+                    old: near.old,
+                    block: Block::default(),
+                });
+                self.cross.len() as u32 - 1
+            });
+            self.cross[at as usize].block = hessian;
+            (near.gradient, near.hessian, near.room) = (gradient, hessian, 0.0);
+        }
+        any
     }
 
     /// Takes the wire at `q` over as accepted: bristles move on, slip is booked.
@@ -297,7 +457,7 @@ impl Between {
     ) {
         let curve = Curve(q);
         for pair in &mut self.pairs {
-            pair.lag = pair.fresh;
+            (pair.lag, pair.kept) = (pair.fresh, pair.fresh);
             if pair.depth <= 0.0 {
                 pair.held = false;
                 pair.bristle = V3::zeros();
@@ -346,8 +506,8 @@ pub fn add_cross<const D: usize>(cross: &[Cross], x: &[f64], y: &mut [f64]) {
 
 fn one_way<const D: usize>(
     block: &Block,
-    from: &([usize; 3], [f64; 3]),
-    to: &([usize; 3], [f64; 3]),
+    from: &Triple,
+    to: &Triple,
     x: &[f64],
     y: &mut [f64],
 ) {

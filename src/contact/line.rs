@@ -20,13 +20,13 @@ const PASSAGES: usize = 4;
 /// A point's surroundings are looked up again after this way, in wire diameters.
 const SKIN: f64 = 0.15;
 /// Error of a contact force that an update may promise, over the force of one onset depth.
-const FORESIGHT: f64 = 0.01;
+pub(super) const FORESIGHT: f64 = 0.01;
 /// Depth over which the normal force sets in, m: contact of a 15 N corner is 1 um deep.
 const ONSET: f64 = 1e-5;
 
 /// Share of the zero stiffness of a sliding bristle along its slide that the Hessian takes over. With
 /// all of it updates overshoot to the far side of the anchor, with none they crawl.
-const ALONG_SLIDE: f64 = 0.9;
+pub(super) const ALONG_SLIDE: f64 = 0.9;
 /// One possible touch of a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Touch {
@@ -38,8 +38,12 @@ struct Touch {
     anchor: V3,
     /// largest friction force by the normal force of the last iterate, N
     lag: f64,
+    /// the same at the last accepted instant, N
+    kept: f64,
     /// the same by the iterate in hand, N
     fresh: f64,
+    /// direction of the slide as the linear system has it; 0: the bristle holds
+    slide: V3,
     normal: V3,
     depth: f64,
     /// depth at the last accepted instant, 0: none, m
@@ -51,11 +55,65 @@ const NONE: Touch = Touch {
     held: false,
     anchor: V3::new(0.0, 0.0, 0.0),
     lag: 0.0,
+    kept: 0.0,
     fresh: 0.0,
+    slide: V3::new(0.0, 0.0, 0.0),
     normal: V3::new(0.0, 0.0, 0.0),
     depth: 0.0,
     before: 0.0,
 };
+
+impl Touch {
+    /// Adds the push of a touch with `depth` and `normal` at `p`; returns its own friction limit, N, and the
+    /// direction of its slide.
+    #[inline]
+    fn push(&self, p: V3, c: &Circumstances, sum: &mut Push) -> (f64, V3) {
+        let (e, f, s) = if c.brake > 0.0 {
+            damped_law(self.depth, c.onset, c.brake, self.before)
+        } else {
+            onset_law(self.depth, c.onset)
+        };
+        let n = self.normal;
+        let force = c.stiffness * f;
+        sum.energy += c.stiffness * e;
+        sum.energy_lagged += c.stiffness * e;
+        sum.gradient -= n * force;
+        let mut along = c.stiffness * s;
+        let (mut limit, mut slide) = (0.0, V3::zeros());
+        if c.law.mu_static > 0.0 {
+            limit = match c.limit {
+                Limit::Lagged => self.lag,
+                Limit::Latest => self.fresh,
+                Limit::Own => {
+                    let way = p - c.last;
+                    let slide = (way - n * way.dot(&n)).norm() / c.step;
+                    c.law.mu(slide) * force
+                }
+            };
+            let (b, k_t) = bristle(self, p, c.last, c.stiffness * TANGENTIAL_SHARE, c.brake);
+            let size = b.norm();
+            sum.energy_lagged += huber(k_t, self.lag, size);
+            sum.energy += huber(k_t, limit, size);
+            let dir = b / size;
+            // from sliding to sliding the other way: it would be thrown to and fro
+            let turns = c.limit == Limit::Latest && dir.dot(&self.slide) < 0.0;
+            if k_t * size <= limit || turns {
+                sum.gradient += b * k_t;
+                add_identity(&mut sum.hessian, k_t);
+                along -= k_t;
+            } else {
+                slide = dir;
+                sum.gradient += dir * limit;
+                let h = limit / size;
+                add_identity(&mut sum.hessian, h);
+                add_outer(&mut sum.hessian, &(dir * (-ALONG_SLIDE * h)), &dir);
+                along -= h;
+            }
+        }
+        add_outer(&mut sum.hessian, &(n * along), &n);
+        (limit, slide)
+    }
+}
 
 /// A contact point of the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +124,9 @@ struct Point {
     /// where the surroundings were looked up, and how far that holds
     centre: V3,
     reach: f64,
+    /// within `clear` of this place it touches nothing; 0: it may
+    free: V3,
+    clear: f64,
     /// core first, then passages of frozen wire
     touch: [Touch; 1 + PASSAGES],
     core_near: bool,
@@ -77,6 +138,8 @@ const FRESH: Point = Point {
     placed: false,
     centre: V3::new(0.0, 0.0, 0.0),
     reach: -1.0,
+    free: V3::new(0.0, 0.0, 0.0),
+    clear: 0.0,
     touch: [NONE; 1 + PASSAGES],
     core_near: false,
     passages: 0,
@@ -127,24 +190,50 @@ pub struct LineContact {
     /// every surface near a point at the last evaluation
     near: Vec<Near>,
     points: Vec<Point>,
+    /// points whose surroundings this attempt at a step looked up, as they were
+    undo: Vec<(u32, Point)>,
     found: Vec<u32>,
 }
 
-/// A surface near a contact point: what an update needs to know of it in advance.
+/// A point with surfaces near it: how the linear system sees their push.
 #[derive(Clone, Copy, Debug)]
-pub struct Near {
-    /// the point
-    pub point: u32,
-    /// outward normal of the surface
-    pub normal: V3,
-    /// depth, negative for a gap, m
-    pub depth: f64,
-    /// contact stiffness of what the point stands for, N/m
-    pub stiffness: f64,
-    /// share of it that the Hessian holds
-    pub share: f64,
-    /// force at which that tangent leaves the depth of the iterate, N
-    pub force: f64,
+struct Near {
+    point: u32,
+    /// length of wire it stands for, m
+    length: f64,
+    /// where the iterate has it
+    place: V3,
+    /// gradient there, N, and Hessian, N/m
+    gradient: V3,
+    hessian: Block,
+    /// way from there without any push, while it has none, m
+    room: f64,
+}
+
+/// Which friction limit a push takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Limit {
+    /// that of the iterate before
+    Lagged,
+    /// by its own normal force
+    Own,
+    /// that of the last evaluation
+    Latest,
+}
+
+/// What a push depends on besides the touch.
+#[derive(Clone, Copy, Debug)]
+struct Circumstances<'a> {
+    law: &'a ContactLaw,
+    onset: f64,
+    /// stiffness of what the point stands for, N/m
+    stiffness: f64,
+    /// dashpot over stiffness, for this step
+    brake: f64,
+    step: f64,
+    /// place at the last accepted instant, m
+    last: V3,
+    limit: Limit,
 }
 
 impl LineContact {
@@ -163,6 +252,7 @@ impl LineContact {
             between: None,
             near: Vec::new(),
             points: vec![FRESH; 2 * nodes],
+            undo: Vec::with_capacity(256),
             found: Vec::with_capacity(64),
         }
     }
@@ -243,10 +333,31 @@ impl LineContact {
         }
     }
 
+    /// An attempt at a step begins.
+    pub fn begin_attempt(&mut self) {
+        self.undo.clear();
+    }
+
+    /// The attempt failed: everything it changed becomes what it was.
+    pub fn undo_attempt(&mut self) {
+        for (k, point) in self.undo.drain(..).rev() {
+            self.points[k as usize] = point;
+        }
+        for p in &mut self.points {
+            if p.core_near || p.passages > 0 {
+                for t in &mut p.touch[..=p.passages] {
+                    t.lag = t.kept;
+                }
+            }
+        }
+    }
+
     fn look_up(&mut self, k: usize, p: V3, own: f64) {
         let skin = SKIN * 2.0 * self.tube.radius();
         let point = &mut self.points[k];
+        self.undo.push((k as u32, *point));
         point.centre = p;
+        point.clear = 0.0;
         let core = self.shape.lower_bound(p);
         let core = if core > skin + self.radius {
             core
@@ -277,7 +388,8 @@ impl LineContact {
             // the passage keeps its friction: it is the one whose segment is close by along the wire
             let known = point.touch[1..=point.passages]
                 .iter()
-                .find(|t| t.start.abs_diff(foot.segment) < 6);
+                .filter(|t| t.start.abs_diff(foot.segment) < 6)
+                .min_by_key(|t| t.start.abs_diff(foot.segment));
             next[count] = known.copied().unwrap_or(NONE);
             next[count].start = foot.segment;
             count += 1;
@@ -307,6 +419,20 @@ impl LineContact {
         if !point.core_near && point.passages == 0 {
             return None;
         }
+        if point.clear > 0.0 {
+            let way = (p - point.free).norm();
+            if way < point.clear {
+                self.near.push(Near {
+                    point: k as u32,
+                    length,
+                    place: p,
+                    gradient: V3::zeros(),
+                    hessian: Block::default(),
+                    room: point.clear - way,
+                });
+                return None;
+            }
+        }
         self.touches_of(k, p, length, step)
     }
 
@@ -324,8 +450,22 @@ impl LineContact {
             ..
         } = self;
         let point = &mut points[k];
+        let around = Circumstances {
+            law,
+            onset: *onset,
+            stiffness: law.stiffness * length,
+            brake: *damping / (law.stiffness * step),
+            step,
+            last: point.last,
+            limit: if *hold_limits {
+                Limit::Lagged
+            } else {
+                Limit::Own
+            },
+        };
         let mut sum = Push::default();
         let mut any = false;
+        let mut gap = f64::INFINITY;
         for slot in 0..=point.passages {
             let (depth, normal) = if slot == 0 {
                 if !point.core_near {
@@ -336,70 +476,75 @@ impl LineContact {
             } else {
                 let foot = tube.foot(p, point.touch[slot].start);
                 point.touch[slot].start = foot.segment;
+                // inside a sharp bend two feet merge as the point moves: that is one touch
+                if point.touch[1..slot].iter().any(|t| t.start == foot.segment) {
+                    (point.touch[slot].depth, point.touch[slot].fresh) = (0.0, 0.0);
+                    continue;
+                }
                 (*radius + tube.radius() - foot.distance, foot.normal)
             };
-            let last = point.last;
             let touch = &mut point.touch[slot];
             touch.depth = depth;
             touch.normal = normal;
-            let k_n = law.stiffness * length;
-            let mut row = Near {
-                point: k as u32,
-                normal,
-                depth,
-                stiffness: k_n,
-                share: 0.0,
-                force: 0.0,
-            };
             if depth <= 0.0 {
                 touch.fresh = 0.0;
-                near.push(row);
+                gap = gap.min(-depth);
                 continue;
             }
             any = true;
-            let brake = *damping / (law.stiffness * step);
-            let (e, f, s) = if brake > 0.0 {
-                damped_law(depth, *onset, brake, touch.before)
-            } else {
-                onset_law(depth, *onset)
-            };
-            let force = k_n * f;
-            (row.share, row.force) = (s, force);
-            if brake == 0.0 {
-                near.push(row);
-            }
-            sum.energy += k_n * e;
-            sum.energy_lagged += k_n * e;
-            sum.gradient -= normal * force;
-            let mut along = k_n * s;
-            if law.mu_static > 0.0 {
-                let way = p - last;
-                let slide = (way - normal * way.dot(&normal)).norm() / step;
-                touch.fresh = if *hold_limits {
-                    touch.lag
-                } else {
-                    law.mu(slide) * force
-                };
-                let (b, k_t) = bristle(touch, p, last, k_n * TANGENTIAL_SHARE, brake);
-                let size = b.norm();
-                sum.energy_lagged += huber(k_t, touch.lag, size);
-                sum.energy += huber(k_t, touch.fresh, size);
-                if k_t * size <= touch.fresh {
-                    sum.gradient += b * k_t;
-                    add_identity(&mut sum.hessian, k_t);
-                    along -= k_t;
-                } else {
-                    let dir = b / size;
-                    sum.gradient += dir * touch.fresh;
-                    let h = touch.fresh / size;
-                    add_identity(&mut sum.hessian, h);
-                    add_outer(&mut sum.hessian, &(dir * (-ALONG_SLIDE * h)), &dir);
-                    along -= h;
-                }
-            }
-            add_outer(&mut sum.hessian, &(normal * along), &normal);
+            (touch.fresh, touch.slide) = touch.push(p, &around, &mut sum);
         }
+        (point.free, point.clear) = (p, if any { 0.0 } else { gap });
+        near.push(Near {
+            point: k as u32,
+            length,
+            place: p,
+            gradient: sum.gradient,
+            hessian: sum.hessian,
+            room: point.clear,
+        });
         any.then_some(sum)
+    }
+
+    /// The push on point `k` at a place that an update leads to, as far as its surroundings are known.
+    fn push_there(&mut self, k: usize, p: V3, length: f64, step: f64) -> Push {
+        let point = &mut self.points[k];
+        let around = Circumstances {
+            law: &self.law,
+            onset: self.onset,
+            stiffness: self.law.stiffness * length,
+            brake: self.damping / (self.law.stiffness * step),
+            step,
+            last: point.last,
+            limit: Limit::Latest,
+        };
+        let mut sum = Push::default();
+        for slot in 0..=point.passages {
+            let touch = point.touch[slot];
+            if slot > 0 && point.touch[1..slot].iter().any(|t| t.start == touch.start) {
+                continue;
+            }
+            let (depth, normal) = if slot == 0 {
+                if !point.core_near {
+                    continue;
+                }
+                let n = self.shape.nearness(p);
+                (self.radius - n.distance, n.normal)
+            } else {
+                let foot = self.tube.foot(p, touch.start);
+                let wire = self.radius + self.tube.radius();
+                (wire - foot.distance, foot.normal)
+            };
+            if depth > 0.0 {
+                let there = Touch {
+                    depth,
+                    normal,
+                    ..touch
+                };
+                point.touch[slot].slide = there.push(p, &around, &mut sum).1;
+            }
+        }
+        sum
     }
 
     /// Forgets what was near before a new evaluation.
@@ -407,42 +552,44 @@ impl LineContact {
         self.near.clear();
     }
 
-    /// Looks where the update `move_of(point)` leads every point, and corrects the tangents that would be
-    /// wrong there: `correct(point, change of Hessian along normal, change of force, normal)`. Whether any was.
+    /// Evaluates the pushes where the update `move_of(point)` leads every point, and puts their tangents
+    /// there in the place of those that promised something else: `correct(point, change of Hessian, change
+    /// of gradient at the iterate)`. Whether any did.
     ///
     /// A point on its way through a surface that the Hessian does not hold yet would otherwise be
-    /// thrown back and forth, with all its neighbours on a flat.
+    /// thrown back and forth, with all its neighbours on a flat; so would one that slides round a corner,
+    /// or whose bristle comes to hold.
     #[inline(never)]
     pub fn foresee(
         &mut self,
+        step: f64,
         move_of: impl Fn(usize) -> V3,
-        mut correct: impl FnMut(usize, f64, f64, V3),
+        mut correct: impl FnMut(usize, &Block, &V3),
     ) -> bool {
         let mut any = false;
-        for near in &mut self.near {
-            let away = near.normal.dot(&move_of(near.point as usize));
-            let (_, f, s) = if near.depth > away {
-                onset_law(near.depth - away, self.onset)
-            } else {
-                (0.0, 0.0, 0.0)
-            };
-            let force = near.stiffness * f;
-            let promised = near.force - near.stiffness * near.share * away;
-            if (force - promised).abs() <= FORESIGHT * near.stiffness * self.onset {
+        let mut near = std::mem::take(&mut self.near);
+        for n in &mut near {
+            let way = move_of(n.point as usize);
+            let far = way.norm_squared();
+            // no push, or none that the way can change by more than what is let pass
+            if far <= n.room * n.room || far <= (FORESIGHT * self.onset).powi(2) {
+                continue;
+            }
+            let there = self.push_there(n.point as usize, n.place + way, n.length, step);
+            let off = there.gradient - n.gradient - times(&n.hessian, &way);
+            if off.amax() <= FORESIGHT * self.law.stiffness * n.length * self.onset {
                 continue;
             }
             any = true;
-            // the tangent at the place the update leads to, brought back to the iterate
-            let there = force + near.stiffness * s * away;
+            let gradient = there.gradient - times(&there.hessian, &way);
             correct(
-                near.point as usize,
-                near.stiffness * (s - near.share),
-                there - near.force,
-                near.normal,
+                n.point as usize,
+                &less(&there.hessian, &n.hessian),
+                &(gradient - n.gradient),
             );
-            near.share = s;
-            near.force = there;
+            (n.gradient, n.hessian, n.room) = (gradient, there.hessian, 0.0);
         }
+        self.near = near;
         any
     }
 
@@ -470,7 +617,7 @@ impl LineContact {
         let point = &mut self.points[k];
         let last = point.last;
         for t in &mut point.touch[..=point.passages] {
-            t.lag = t.fresh;
+            (t.lag, t.kept) = (t.fresh, t.fresh);
             if t.depth <= 0.0 {
                 t.held = false;
                 t.before = 0.0;
@@ -566,6 +713,20 @@ pub(super) fn onset_law(depth: f64, onset: f64) -> (f64, f64, f64) {
     }
 }
 
+/// Product of a symmetric block with a vector.
+pub(super) fn times(m: &Block, v: &V3) -> V3 {
+    V3::new(
+        m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z,
+        m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+        m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z,
+    )
+}
+
+/// Difference of two blocks.
+pub(super) fn less(a: &Block, b: &Block) -> Block {
+    std::array::from_fn(|r| std::array::from_fn(|c| a[r][c] - b[r][c]))
+}
+
 fn add_identity(m: &mut Block, c: f64) {
     for (k, row) in m.iter_mut().enumerate() {
         row[k] += c;
@@ -583,7 +744,7 @@ fn damped_law(depth: f64, onset: f64, brake: f64, before: f64) -> (f64, f64, f64
         let way = depth - before;
         (e + 0.5 * brake * way * way, f + brake * way, s + brake)
     };
-    if before == 0.0 {
+    if before == 0.0 || brake == 0.0 {
         return sum(depth);
     }
     let linear = (brake * before + 0.5 * onset) / (1.0 + brake);
@@ -592,11 +753,11 @@ fn damped_law(depth: f64, onset: f64, brake: f64, before: f64) -> (f64, f64, f64
     } else {
         2.0 * brake * before / (brake + (brake * (brake + 2.0 * before / onset)).sqrt())
     };
-    if depth <= end || brake == 0.0 && depth <= 0.0 {
+    if depth <= end {
         return (0.0, 0.0, 0.0);
     }
     let (e, f, s) = sum(depth);
-    (e - sum(end).0, f, s)
+    ((e - sum(end).0).max(0.0), f, s)
 }
 
 /// Potential of a bristle of stiffness `k` that gives way at `limit`.

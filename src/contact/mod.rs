@@ -9,7 +9,7 @@ mod law;
 mod line;
 mod live;
 
-pub use between::{Between, Cross, PairPush, add_cross, point_weights};
+pub use between::{Between, Cross, PairPush, Triple, add_cross, point_weights};
 pub use law::{ContactLaw, TouchForce, damping_for_restitution};
 pub use line::{LineContact, Memory, Push, own_wire};
 pub use live::{LiveContact, Wire};

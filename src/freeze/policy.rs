@@ -17,10 +17,24 @@ pub struct FreezePolicy {
     pub time: f64,
     /// largest displacement over the window, m
     pub displacement: f64,
+    /// polar angle behind lift-off from which on the displacement may be larger, rad
+    pub patience: f64,
     /// length behind lift-off that stays live, m
     pub keep_length: f64,
     /// largest height of the wire's surface over the core, m
     pub margin: f64,
+}
+
+/// The displacement that counts as rest doubles with every quarter of a turn beyond the patience. Bows that
+/// stand off the core never come quite to rest: every turn that lands shoves the ones before by some
+/// micrometres. With one limit for all, live wire would grow with the number of turns.
+const DOUBLING: f64 = 0.25 * std::f64::consts::TAU;
+
+impl FreezePolicy {
+    /// Largest displacement over the window of wire at rest that lies `behind` lift-off, rad; m.
+    pub fn limit(&self, behind: f64) -> f64 {
+        self.displacement * ((behind - self.patience) / DOUBLING).max(0.0).exp2()
+    }
 }
 
 /// Looks a window is split into; a check takes place at each.
@@ -89,13 +103,14 @@ impl Watch {
 
     /// Takes a look; returns how many nodes from the clamp on have stayed in place over the window.
     ///
-    /// `position` gives the core-frame position of a live node.
+    /// `position` gives the core-frame position of a live node, `behind` how far it lies behind lift-off, rad.
     pub fn look(
         &mut self,
         policy: &FreezePolicy,
         angle: f64,
         time: f64,
         position: impl Fn(usize) -> V3,
+        behind: impl Fn(usize) -> f64,
     ) -> usize {
         self.last = angle;
         self.last_time = time;
@@ -109,7 +124,7 @@ impl Watch {
                 .iter()
                 .map(|q| (p - q).norm_squared())
                 .fold(0.0, f64::max);
-            if in_order && full && moved <= policy.displacement * policy.displacement {
+            if in_order && full && moved <= policy.limit(behind(i)).powi(2) {
                 still = i + 1;
             } else {
                 in_order = false;
@@ -131,6 +146,7 @@ mod tests {
             window: 0.4,
             time: 1.0,
             displacement: 1e-6,
+            patience: 4.0,
             keep_length: 0.0,
             margin: 1e-3,
         }
@@ -144,14 +160,20 @@ mod tests {
         for k in 1..=40 {
             let angle = 0.1 * k as f64;
             assert!(w.due(&p, angle + 1e-9, 1.0, 0.0));
-            still = w.look(&p, angle, 0.0, |i| {
-                V3::x()
-                    * if i == 0 {
-                        0.0
-                    } else {
-                        1e-4 * (angle * 9.0).sin()
-                    }
-            });
+            still = w.look(
+                &p,
+                angle,
+                0.0,
+                |i| {
+                    V3::x()
+                        * if i == 0 {
+                            0.0
+                        } else {
+                            1e-4 * (angle * 9.0).sin()
+                        }
+                },
+                |_| 0.0,
+            );
             if k <= 4 {
                 assert_eq!(still, 0, "a whole window must have been seen");
             }
@@ -170,12 +192,12 @@ mod tests {
                 "a turning core is judged by angle"
             );
             assert!(!w.due(&p, 0.0, 0.0, time - 0.01) && w.due(&p, 0.0, 0.0, time));
-            let still = w.look(&p, 0.0, time, |_| V3::x());
+            let still = w.look(&p, 0.0, time, |_| V3::x(), |_| 0.0);
             assert_eq!(still, usize::from(k == 5));
         }
         w.insert_front(2);
         assert_eq!(
-            w.look(&p, 0.0, 1.5, |_| V3::x()),
+            w.look(&p, 0.0, 1.5, |_| V3::x(), |_| 0.0),
             0,
             "unseen wire is not at rest"
         );
@@ -187,10 +209,21 @@ mod tests {
         let mut w = Watch::new(3, 0.0);
         let mut still = 9;
         for k in 1..=10 {
-            still = w.look(&p, k as f64, 0.0, |i| {
-                V3::x() * if i == 1 { k as f64 } else { 0.0 }
-            });
+            still = w.look(
+                &p,
+                k as f64,
+                0.0,
+                |i| V3::x() * if i == 1 { k as f64 } else { 0.0 },
+                |_| 0.0,
+            );
         }
         assert_eq!(still, 1, "the third is at rest but behind a moving one");
+    }
+
+    #[test]
+    fn patience_ends() {
+        let p = policy();
+        assert_eq!(p.limit(3.9), 1e-6);
+        assert!((p.limit(4.0 + std::f64::consts::PI) - 4e-6).abs() < 1e-20);
     }
 }

@@ -313,7 +313,7 @@ impl Curve<'_> {
     /// The edges before and after a node; at the wire's ends the one edge there is, twice.
     #[inline(always)]
     fn edges(&self, segment: usize) -> [V3; 2] {
-        let points = &self.0[..];
+        let points = &self.0;
         let here = points[segment];
         if segment == 0 {
             let edge = points[1] - here;

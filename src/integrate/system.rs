@@ -56,8 +56,6 @@ pub struct System {
     pub set_tension: f64,
     /// how twist is carried; the explicit methods know no quasi-static one
     pub twist: Twist,
-    /// never move the plastic state on (monotonic loading only)
-    pub holonomic: bool,
     /// unstretched length from the clamp to the first live node, m
     pub arc0: f64,
     /// energy books
@@ -97,7 +95,6 @@ impl System {
             feed: None,
             set_tension: 0.0,
             twist: Twist::Dynamic,
-            holonomic: false,
             arc0: 0.0,
             books: Books::default(),
             deepest: 0.0,
@@ -197,7 +194,6 @@ impl System {
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
         let parts = ForceParts {
             commit,
-            holonomic: self.holonomic,
             twist: self.twist.is_carried(),
         };
         internal_forces(

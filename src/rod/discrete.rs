@@ -7,6 +7,7 @@
 //! positive semidefinite whatever the moment. Curvature binormal and its derivative after Bergou
 //! et al., *Discrete Elastic Rods*, 2008; the angle itself in place of twice its tangent.
 
+use super::knee::Knee;
 use super::plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
 use crate::math::V3;
 
@@ -64,6 +65,8 @@ pub struct Bent {
     pub own: [Symmetric; 2],
     /// its rest: rows before, columns after
     pub cross: Block,
+    /// set where the law may change its branch
+    pub knee: Option<Knee>,
 }
 
 /// Bending of a joint between edges of directions `t` and inverse lengths `il`.
@@ -79,6 +82,8 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
     let trial = (kb * (s * inv) - set) * law.modulus;
     // moment and tangent, both of the angle
     let (moment, energy, along, across, dir) = respond(law, trial, rise);
+    let near = dir != V3::zeros();
+    let stiffness = along * inv;
     let (energy, c_across, c_along) = (energy * lv, across * inv, (along - across) * inv);
     // in terms of the curvature binormal: angle = s(kb^2) kb
     let kb2 = kb.norm_squared();
@@ -123,9 +128,20 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
     add_outer(&mut cross, &((a[0] * cf + t_sum * ck) * s), &t_sum);
     add_outer(&mut cross, &(t_sum * (-cf * s)), &a[1]);
     add_outer(&mut cross, &(u[0] * c2), &u[1]);
-    if c_along != 0.0 {
+    let mut knee = None;
+    if near {
         let d = turn(&dir);
         let w = on(&d, [d.cross(t[1]), d.cross(t[0])]);
+        knee = Some(Knee {
+            rows: w,
+            rolls: [0.0; 2],
+            trial: trial.dot(&dir),
+            length: lv,
+            rise,
+            moment: moment.dot(&dir),
+            stiffness,
+            branch: i8::from(along != law.modulus),
+        });
         add_square(&mut own[0], &w[0], c_along);
         add_square(&mut own[1], &w[1], c_along);
         add_outer(&mut cross, &(w[0] * c_along), &w[1]);
@@ -136,6 +152,7 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
         after,
         own,
         cross,
+        knee,
     }
 }
 
@@ -184,14 +201,21 @@ fn add_pair(m: &mut Symmetric, a: &V3, b: &V3) {
     m[5] += 2.0 * a.z * b.z;
 }
 
-/// Moment, energy per length, stiffness along and across the moment, its direction.
+/// Moment, energy per length, stiffness along and across the moment, its direction (none where that does not
+/// matter).
 #[inline(always)]
 pub(super) fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3) {
     let n2 = trial.norm_squared();
     let limit = law.limit + rise;
     if n2 <= limit * limit {
         let e = 0.5 * n2 / law.modulus;
-        return (trial, e, law.modulus, law.modulus, V3::zeros());
+        let n = n2.sqrt();
+        let dir = if Knee::matters(law, n, rise) {
+            trial / n
+        } else {
+            V3::zeros()
+        };
+        return (trial, e, law.modulus, law.modulus, dir);
     }
     let n = n2.sqrt();
     let state = Bend {

@@ -67,8 +67,6 @@ impl Load {
 pub struct ForceParts {
     /// take over frames and plastic state as the new state
     pub commit: bool,
-    /// leave the plastic state as it is even so: the law then acts like a nonlinear elastic one
-    pub holonomic: bool,
     /// whether twist is carried
     pub twist: bool,
 }
@@ -87,7 +85,6 @@ pub fn internal_forces(
     load: &mut Load,
 ) {
     let edges = rod.edges();
-    let harden = parts.commit && !parts.holonomic;
     load.plastic = [0.0; 3];
     load.clamp_moment = [V3::zeros(); 2];
     // frame and moment at the start joint of the edge in hand
@@ -125,12 +122,12 @@ pub fn internal_forces(
                 let (t, twist, work) =
                     respond_scalar(&laws.twist, &rod.twist[j], joint.twist * inv);
                 torque = t;
-                if harden && work > 0.0 {
+                if parts.commit && work > 0.0 {
                     rod.twist[j] = twist;
                     load.plastic[1] += work * lv;
                 }
             }
-            if harden && work > 0.0 {
+            if parts.commit && work > 0.0 {
                 rod.bend[j] = bend;
                 load.plastic[0] += work * lv;
             }
@@ -155,7 +152,7 @@ pub fn internal_forces(
             let (n, state, work) =
                 respond_scalar(&laws.stretch, &rod.stretch[j], length / rod.rest[j] - 1.0);
             load.tension[j] = n;
-            if harden && work > 0.0 {
+            if parts.commit && work > 0.0 {
                 rod.stretch[j] = state;
                 load.plastic[2] += work * rod.rest[j];
             }
@@ -302,7 +299,6 @@ mod tests {
             &roll,
             ForceParts {
                 commit: true,
-                holonomic: false,
                 twist: true,
             },
             &mut load,
@@ -345,7 +341,7 @@ mod tests {
             let mut load = Load::default();
             load.fit(&rod);
             let roll = vec![0.0; rod.edges()];
-            internal_forces(&mut rod, &laws, &[None, None], &roll, ForceParts { commit: false, holonomic: false, twist: true }, &mut load);
+            internal_forces(&mut rod, &laws, &[None, None], &roll, ForceParts { commit: false, twist: true }, &mut load);
             let f: V3 = load.force.iter().sum();
             let m: V3 = (0..rod.nodes()).map(|i| rod.x[i].cross(&load.force[i])).sum::<V3>()
                 + (0..rod.edges()).map(|j| load.tangent[j] * load.torque[j]).sum::<V3>();

@@ -10,6 +10,7 @@
 
 use super::discrete::{Bent, Symmetric, add_outer, add_square, respond};
 use super::forces::Laws;
+use super::knee::Knee;
 use super::joint::{Joint, align, rotate};
 use super::plasticity::{Bend, Scalar, respond_scalar};
 use crate::math::{Quat, V3};
@@ -106,6 +107,7 @@ pub fn twisted(
         after: g1,
         own: [Symmetric::default(); 2],
         cross: [[0.0; 3]; 3],
+        knee: None,
     };
     let mut rolled = Rolled {
         torque: [-t0, t1],
@@ -116,6 +118,17 @@ pub fn twisted(
         // along the moment and across it
         lead = rows[0] * dir.x + rows[1] * dir.y;
         side = rows[1] * dir.x - rows[0] * dir.y;
+        let ((w0, r0), (w1, r1)) = (before.derivative(&-lead), after.derivative(&lead));
+        bent.knee = Some(Knee {
+            rows: [w0, w1],
+            rolls: [r0, r1],
+            trial: trial.dot(&dir),
+            length: lv,
+            rise: bend.rise,
+            moment: m.dot(&dir),
+            stiffness: along * inv,
+            branch: i8::from(along != laws.bend.modulus),
+        });
     }
     for (row, c) in [
         (lead, along * inv),
@@ -338,7 +351,7 @@ mod tests {
             let (bent, rolled) = twisted(&s.laws, &s.bend, &s.twist, lv, [&a, &b]);
             let mut load = Load::default();
             load.fit(&rod);
-            let parts = ForceParts { commit: true, holonomic: false, twist: true };
+            let parts = ForceParts { commit: true, twist: true };
             internal_forces(&mut rod, &s.laws, &[None, None], &rolls, parts, &mut load);
             let stored: f64 = stored_energy(&rod, &s.laws, &[None, None], true).iter().sum();
             let total = stored + load.plastic.iter().sum::<f64>();

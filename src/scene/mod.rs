@@ -223,6 +223,8 @@ pub struct Freeze {
     pub time: f64,
     /// largest motion in the core frame per core angle, m/rad
     pub creep: f64,
+    /// turns behind lift-off from which on that limit grows
+    pub patience: f64,
     /// settled wire kept live behind lift-off, m; 0: 1.75 sqrt(EI/T)
     pub keep_length: f64,
     /// region: largest distance of the wire's surface from the core, m

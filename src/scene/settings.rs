@@ -168,10 +168,11 @@ impl Default for SceneSettings {
             },
             freeze: super::Freeze {
                 enabled: true,
-                window: 1.5,
+                window: 1.0,
                 // ten periods of the free span's slowest ringing (60 mm of 0.7 mm wire at 15 N: 1.8 ms)
                 time: 0.02,
-                creep: 6e-6,
+                creep: 2e-6,
+                patience: 0.75,
                 keep_length: 0.0,
                 margin: 5e-3,
             },

@@ -99,10 +99,23 @@ impl Simulation {
     fn nodes_to_freeze(&mut self) -> usize {
         let angle = self.sys.spindle.angle;
         let spin = Spin::new(angle);
+        let lift = self.lift_off();
+        self.behind.clear();
+        self.behind.resize(lift + 1, 0.0);
         let x = &self.sys.rod.x;
-        let still = self
-            .watch
-            .look(&self.policy, angle, self.sys.time, |i| spin.to_core(x[i]));
+        let mut last = polar_angle(spin.to_core(x[lift]));
+        for i in (0..lift).rev() {
+            let polar = polar_angle(spin.to_core(x[i]));
+            self.behind[i] = self.behind[i + 1] + wrap_to_pi(last - polar).abs();
+            last = polar;
+        }
+        let still = self.watch.look(
+            &self.policy,
+            angle,
+            self.sys.time,
+            |i| spin.to_core(x[i]),
+            |i| self.behind.get(i).copied().unwrap_or(0.0),
+        );
         self.watch_live_wire();
         if !self.scene.freeze.enabled {
             return 0;

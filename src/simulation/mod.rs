@@ -42,6 +42,8 @@ pub struct Simulation {
     coil: Coil,
     watch: Watch,
     policy: FreezePolicy,
+    /// polar angle from each laid node to lift-off, at the last look, rad
+    behind: Vec<f64>,
     programme: Programme,
     /// core angle at the start, rad
     angle0: f64,
@@ -119,6 +121,7 @@ impl Simulation {
                 1.75 * (scene.wire.ei / inputs.tension_setpoint.max(0.01 * scene.tensioner.tension))
                     .sqrt()
             },
+            patience: scene.freeze.patience * std::f64::consts::TAU,
             margin: scene.freeze.margin,
         };
         let mut sim = Self {
@@ -128,6 +131,7 @@ impl Simulation {
             sys,
             coil,
             policy,
+            behind: Vec::new(),
             angle0,
             longest_step,
             implicit,

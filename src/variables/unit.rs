@@ -49,7 +49,7 @@ pub fn units() -> &'static [Unit] {
         Unit {
             name: "s",
             base: &[("s", 1)],
-            display: &[("us", 1e6, 0.0)],
+            display: &[("ms", 1e3, 0.0), ("us", 1e6, 0.0)],
         },
         Unit {
             name: "kg",

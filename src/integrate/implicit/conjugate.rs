@@ -18,6 +18,8 @@ pub(super) struct Scratch {
     p: Vec<f64>,
     z: Vec<f64>,
     y: Vec<f64>,
+    banded: Vec<f64>,
+    pub(super) rounds: u64,
 }
 
 /// Solves (banded + couplings) x = b in place; `matrix` is factored.
@@ -30,17 +32,19 @@ pub(super) fn solve<const D: usize>(
     s: &mut Scratch,
 ) {
     let n = b.len();
-    for v in [&mut s.x, &mut s.p, &mut s.z, &mut s.y] {
+    for v in [&mut s.x, &mut s.p, &mut s.z, &mut s.y, &mut s.banded] {
         v.clear();
         v.resize(n, 0.0);
     }
     s.z.copy_from_slice(b);
     matrix.solve(&mut s.z);
     s.p.copy_from_slice(&s.z);
+    // the banded part times p follows from the residuals that p is made of
+    s.banded.copy_from_slice(b);
     let mut rz = dot(b, &s.z);
     let stop = rz * CLOSE * CLOSE;
     for _ in 0..MOST_STEPS {
-        matrix.multiply(&s.p, &mut s.y);
+        s.y.copy_from_slice(&s.banded);
         add_cross::<D>(cross, &s.p, &mut s.y);
         for (end, first) in [(0, 0), (1, n - D)] {
             for a in 0..3 {
@@ -49,6 +53,7 @@ pub(super) fn solve<const D: usize>(
                 }
             }
         }
+        s.rounds += 1;
         let curvature = dot(&s.p, &s.y);
         if curvature <= 0.0 || rz <= 0.0 {
             break;
@@ -68,6 +73,7 @@ pub(super) fn solve<const D: usize>(
         rz = next;
         for k in 0..n {
             s.p[k] = s.z[k] + beta * s.p[k];
+            s.banded[k] = b[k] + beta * s.banded[k];
         }
     }
     b.copy_from_slice(&s.x);

@@ -18,7 +18,7 @@ pub use scheme::{Past, Scheme};
 
 use super::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, Spin, V3};
-use crate::rod::{Joint, align, rotate};
+use crate::rod::{Joint, Knee, align, rotate};
 use model::Model;
 use roll::{Rolls, WITH_ROLL};
 use scheme::{Step, extrapolation};
@@ -72,6 +72,8 @@ pub struct Effort {
     pub evaluations: u64,
     /// halvings of a Newton step
     pub cuts: u64,
+    /// rounds of conjugate gradients
+    pub rounds: u64,
 }
 
 /// Scratch arrays of a step with `D` unknowns a node, core frame.
@@ -91,6 +93,8 @@ struct Work<const D: usize> {
     base: Vec<Axial>,
     /// stretch of each edge as the update promises it
     expected: Vec<Axial>,
+    /// joints that may change between yielding and not
+    knees: Vec<(u32, Knee)>,
     gradient: Vec<V3>,
     update: Vec<f64>,
     load: Vec<f64>,
@@ -203,9 +207,6 @@ impl Implicit {
         most: f64,
     ) -> Result<f64, Stopped> {
         sys.begin_past();
-        if let Some(b) = sys.line.as_mut().and_then(|l| l.between.as_mut()) {
-            b.list(&sys.past.q[0], &sys.rod.rest, sys.section.diameter);
-        }
         let mut h = self.fixed.unwrap_or(self.next).min(self.longest);
         if h >= most {
             h = most;
@@ -218,24 +219,19 @@ impl Implicit {
             let spindle = sys.spindle.after(step.share * h);
             let support = moved(&sys.support, step.share * h);
             let nozzle = work.prepare(sys, &step, &spindle, &support, true);
-            let back = Spin::new(spindle.angle);
-            let mut model = Model {
-                rod: &sys.rod,
-                laws: &sys.laws,
-                line: sys.line.as_mut(),
-                loads: &sys.loads,
-                last: &sys.past.q[0],
-                tension: &sys.load.tension,
-                clamp: clamp_directions(&support, &spindle),
-                nozzle,
-                gamma: step.gamma,
-                elapsed: step.share * h,
-                diameter: sys.section.diameter,
-                arc0: sys.arc0,
-                back,
-                held: [support[0].hold, support[1].hold],
-                flat: false,
-            };
+            let share = work.share_of_way(sys);
+            if share < 1.0 && h > self.shortest && self.fixed.is_none() {
+                h = (share * h).max(self.shortest);
+                continue;
+            }
+            if let Some(line) = &mut sys.line {
+                line.begin_attempt();
+                if let Some(b) = &mut line.between {
+                    let (from, guess) = (&sys.past.q[0], &work.guess);
+                    b.list(from, guess, &sys.rod.rest, sys.section.diameter);
+                }
+            }
+            let mut model = model_of(sys, &step, &spindle, &support, nozzle);
             let solved = newton::solve(
                 &mut model,
                 work,
@@ -248,7 +244,17 @@ impl Implicit {
             self.effort.evaluations += std::mem::take(&mut work.evaluations);
             self.effort.solves += std::mem::take(&mut work.solves);
             self.effort.cuts += std::mem::take(&mut work.cuts);
+            self.effort.rounds += std::mem::take(&mut work.gradients.rounds);
+            let missed = sys.line.as_ref().and_then(|l| {
+                let between = l.between.as_ref()?;
+                between.missed(&sys.past.q[0], &work.q)
+            });
             let retry = match solved {
+                // farther than the pairs of wire were looked for
+                Ok(_) if missed.is_some() && h > self.shortest && self.fixed.is_none() => {
+                    self.effort.rejects += 1;
+                    0.5 * h
+                }
                 Ok(_) => {
                     let error = step.error * work.difference();
                     let factor = (AIM * self.tolerance / error.max(1e-30)).cbrt();
@@ -280,11 +286,65 @@ impl Implicit {
             };
             h = retry.max(self.shortest);
             self.next = h;
+            if let Some(line) = &mut sys.line {
+                line.undo_attempt();
+            }
+        }
+    }
+
+    /// Hands `with` the evaluation of potential, gradient and Hessian at the guess of a step of `h`, to
+    /// be measured as often as it likes; nothing is committed.
+    #[doc(hidden)]
+    pub fn evaluating(
+        &mut self,
+        sys: &mut System,
+        h: f64,
+        with: impl FnOnce(&mut dyn FnMut() -> f64),
+    ) {
+        if sys.twist == Twist::Off {
+            evaluating_with(self.scheme, &mut self.work, sys, h, with);
+        } else {
+            evaluating_with(self.scheme, &mut self.twisted, sys, h, with);
         }
     }
 }
 
+fn evaluating_with<const D: usize>(
+    scheme: Scheme,
+    work: &mut Work<D>,
+    sys: &mut System,
+    h: f64,
+    with: impl FnOnce(&mut dyn FnMut() -> f64),
+) {
+    sys.begin_past();
+    let step = Step::new(scheme, &sys.past, h);
+    let (spindle, support) = (
+        sys.spindle.after(step.share * h),
+        moved(&sys.support, step.share * h),
+    );
+    let nozzle = work.prepare(sys, &step, &spindle, &support, true);
+    let mut model = model_of(sys, &step, &spindle, &support, nozzle);
+    newton::expect_nothing(&model, work);
+    with(&mut || model.evaluate(work).now);
+}
+
 impl<const D: usize> Work<D> {
+    /// Share of the guess's way that no node can take past the core: error estimate and contact search
+    /// both know nothing of a surface that lies between the ends of a step.
+    fn share_of_way(&self, sys: &System) -> f64 {
+        let Some(line) = &sys.line else { return 1.0 };
+        let mut share: f64 = 1.0;
+        for (q, guess) in sys.past.q[0].iter().zip(&self.guess) {
+            let way = (guess - q).norm();
+            if way > line.radius {
+                let room = line.shape.lower_bound(*q).max(0.0) + line.radius;
+                share = share.min(room / way);
+            }
+        }
+        // (a little less, so that the second look agrees)
+        if share < 1.0 { 0.9 * share } else { 1.0 }
+    }
+
     /// Fills guess, inertial target, masses, and plastic curvature or frames for a step; rolls are
     /// without inertia where not `inert`.
     #[inline(never)]
@@ -417,6 +477,33 @@ fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
     let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
     let mid = p * Quat::new(c, 0.0, 0.0, s) * half;
     rotate(&mid, &V3::new(k[0], k[1], 0.0))
+}
+
+/// What a solve of `step` needs besides the iterate.
+fn model_of<'a>(
+    sys: &'a mut System,
+    step: &Step,
+    spindle: &Spindle,
+    support: &[Support; 2],
+    nozzle: Option<NozzleEdge>,
+) -> Model<'a> {
+    Model {
+        rod: &sys.rod,
+        laws: &sys.laws,
+        line: sys.line.as_mut(),
+        loads: &sys.loads,
+        last: &sys.past.q[0],
+        tension: &sys.load.tension,
+        clamp: clamp_directions(support, spindle),
+        nozzle,
+        gamma: step.gamma,
+        elapsed: step.share * step.h,
+        diameter: sys.section.diameter,
+        arc0: sys.arc0,
+        back: Spin::new(spindle.angle),
+        held: [support[0].hold, support[1].hold],
+        flat: false,
+    }
 }
 
 /// The supports `dt` later.

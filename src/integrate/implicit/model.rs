@@ -51,6 +51,7 @@ const NO_JOINT: Bent = Bent {
     after: V3::new(0.0, 0.0, 0.0),
     own: [[0.0; 6]; 2],
     cross: [[0.0; 3]; 3],
+    knee: None,
 };
 
 impl Model<'_> {
@@ -73,24 +74,33 @@ impl Model<'_> {
             now: energy + stretch.now,
         };
         self.contact(work, &mut value);
-        for (end, i) in [(0, 0), (1, nodes - 1)] {
-            for a in 0..3 {
-                if self.held[end][a] {
-                    work.matrix.pin(i, a);
-                    work.gradient[i][a] = 0.0;
-                }
-            }
-        }
+        let Work {
+            matrix, gradient, ..
+        } = work;
+        self.pinned(nodes, |i, a| {
+            matrix.pin(i, a);
+            gradient[i][a] = 0.0;
+        });
         if Work::<D>::ROLLS {
             work.rolls.pin(&mut work.matrix);
         }
-        if self.flat {
-            for i in 0..nodes {
-                work.matrix.pin(i, 2);
-                work.gradient[i].z = 0.0;
+        value
+    }
+
+    /// Calls `pin` with the node and coordinate of everything that does not move.
+    pub(super) fn pinned(&self, nodes: usize, mut pin: impl FnMut(usize, usize)) {
+        for (end, i) in [(0, 0), (1, nodes - 1)] {
+            for a in 0..3 {
+                if self.held[end][a] {
+                    pin(i, a);
+                }
             }
         }
-        value
+        if self.flat {
+            for i in 0..nodes {
+                pin(i, 2);
+            }
+        }
     }
 
     fn inertia_and_loads<const D: usize>(&self, work: &mut Work<D>) -> f64 {
@@ -149,6 +159,7 @@ impl Model<'_> {
     /// Energy of bending, and of stretch.
     fn rod_forces<const D: usize>(&self, work: &mut Work<D>) -> (f64, Value) {
         let edges = work.q.len() - 1;
+        work.knees.clear();
         let mut energy = 0.0;
         let mut axial = Value::default();
         // edge in hand, the joint at its start, the cross block there
@@ -190,6 +201,9 @@ impl Model<'_> {
                     );
                     energy += joint.energy;
                     roll::spread(work, j, &rolled, [j > 0, j < edges]);
+                    if let Some(knee) = joint.knee {
+                        work.knees.push((j as u32, knee));
+                    }
                 }
             } else if let (Some(p), Some(n)) = (&before.0, &after.0) {
                 joint = bent(
@@ -201,6 +215,9 @@ impl Model<'_> {
                     [before.1, after.1],
                 );
                 energy += joint.energy;
+                if let Some(knee) = joint.knee {
+                    work.knees.push((j as u32, knee));
+                }
             }
             if j > 0 {
                 // edge j - 1 is complete

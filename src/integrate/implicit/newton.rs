@@ -1,16 +1,17 @@
 //! Newton's method on the incremental potential, with line search.
 
 use super::model::{Model, add_block};
-use super::{Work, conjugate};
-use crate::contact::point_weights;
+use super::{Work, conjugate, roll};
+use crate::contact::{Triple, point_weights};
+use crate::integrate::Banded;
 use crate::math::V3;
-use crate::rod::add_outer;
+use crate::rod::{Block, Law, add_outer};
 
 /// Newton steps that renew the friction limits; from then on they stay, so that the rest converges
 /// quadratically. What is left of the lag is its last change.
 const LIMIT_STEPS: usize = 5;
-/// Times that an update is solved again for contact it meets on its way.
-const LOOKS_AHEAD: usize = 4;
+/// Times that an update is solved again for contact and yielding it meets on its way.
+const LOOKS_AHEAD: usize = 8;
 /// Halvings of one Newton step.
 const MOST_CUTS: usize = 12;
 /// Rounding noise of the potential as a share of its size.
@@ -114,10 +115,10 @@ pub(super) fn solve<const D: usize>(
         let (mut update, mut node) = (0.0, 0);
         for (k, u) in work.update.iter().enumerate() {
             // a roll counts by the way of the wire's surface
-            let u = if k % D < 3 { u.abs() } else { u.abs() * radius };
-            if u > update || u.is_nan() {
-                update = u;
-                node = k / D;
+            let size = if k % D < 3 { u.abs() } else { u.abs() * radius };
+            let size = if size.is_nan() { f64::INFINITY } else { size };
+            if size > update {
+                (update, node) = (size, k / D);
             }
         }
         if !update.is_finite() {
@@ -208,51 +209,163 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
         if look == 0 {
             work.plain.clone_from(&work.update);
         }
-        let Some(line) = model.line.as_deref_mut().filter(|_| look < LOOKS_AHEAD) else {
+        if look == LOOKS_AHEAD {
             break;
-        };
+        }
+        let mut any = foresee_knees(&model.laws.bend, work);
         let Work {
+            q,
             update,
             load,
             matrix,
+            force: there,
             ..
         } = work;
-        let move_of = |point: usize| {
-            let (at, weight) = point_weights(point);
+        let move_of = |(at, weight): &Triple| {
             let mut d = V3::zeros();
             for (i, w) in at.iter().zip(weight) {
-                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * w;
+                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * *w;
             }
             d
         };
-        let any = line.foresee(move_of, |point, stiffness, force, n| {
-            let (at, mut weight) = point_weights(point);
-            for (w, i) in weight.iter_mut().zip(at) {
-                // held nodes keep their unit rows
-                let end = if i == 0 {
-                    Some(0)
-                } else {
-                    (i == nodes - 1).then_some(1)
-                };
-                if end.is_some_and(|e| model.held[e] == [true; 3]) {
-                    *w = 0.0;
-                }
-            }
-            let mut block = crate::rod::Block::default();
-            add_outer(&mut block, &(n * stiffness), &n);
-            add_block(matrix, &(at, weight), &block);
-            for (i, w) in at.iter().zip(weight) {
+        let mut correct = |triple: &Triple, stiffness: &Block, gradient: &V3| {
+            add_block(matrix, triple, stiffness);
+            for (i, w) in triple.0.iter().zip(triple.1) {
                 for a in 0..3 {
-                    load[D * i + a] += w * n[a] * force;
+                    load[D * i + a] -= w * gradient[a];
                 }
             }
-        });
+        };
+        if let Some(line) = model.line.as_deref_mut() {
+            any |= line.foresee(
+                model.elapsed,
+                |point| move_of(&point_weights(point)),
+                |point, stiffness, gradient| correct(&point_weights(point), stiffness, gradient),
+            );
+            if let Some(between) = &mut line.between {
+                there.clear();
+                for (i, p) in q.iter().enumerate() {
+                    there.push(p + V3::new(update[D * i], update[D * i + 1], update[D * i + 2]));
+                }
+                any |= between.foresee(
+                    (&line.law, line.onset, model.diameter),
+                    (q, model.last, there),
+                    |young, old, stiffness, gradient| {
+                        correct(young, stiffness, gradient);
+                        correct(old, stiffness, gradient);
+                    },
+                );
+            }
+        }
         if !any {
             break;
+        }
+        model.pinned(nodes, |i, a| {
+            work.matrix.pin(i, a);
+            work.load[D * i + a] = 0.0;
+        });
+        if Work::<D>::ROLLS {
+            for i in work.rolls.pinned().into_iter().flatten() {
+                work.matrix.pin(i, 3);
+                work.load[D * i + 3] = 0.0;
+            }
         }
         work.solves += 1;
     }
     Ok(())
+}
+
+/// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
+fn foresee_knees<const D: usize>(law: &Law, work: &mut Work<D>) -> bool {
+    let Work {
+        knees,
+        update,
+        load,
+        matrix,
+        ..
+    } = work;
+    let nodes = update.len() / D;
+    let mut any = false;
+
+    for (joint, knee) in knees {
+        let j = *joint as usize;
+        let of = |i: usize| V3::new(update[D * i], update[D * i + 1], update[D * i + 2]);
+        let mut angle = 0.0;
+        if j > 0 {
+            angle += knee.rows[0].dot(&(of(j) - of(j - 1)));
+        }
+        if j + 1 < nodes {
+            angle += knee.rows[1].dot(&(of(j + 1) - of(j)));
+        }
+        // derivative of the angle by the rolls, which stand with the first nodes of their edges
+        let mut rolls = [0.0; 3];
+        if Work::<D>::ROLLS {
+            if j > 0 {
+                rolls[0] = knee.rolls[0];
+                angle += rolls[0] * update[D * j - 1];
+            }
+            if j + 1 < nodes {
+                rolls[1] = knee.rolls[1];
+                angle += rolls[1] * update[D * j + 3];
+            }
+        }
+        let Some((stiffness, moment)) = knee.foresee(law, angle) else {
+            continue;
+        };
+        any = true;
+        // derivative of the angle by the nodes
+        let mut rows = [V3::zeros(); 3];
+        if j > 0 {
+            rows[0] -= knee.rows[0];
+            rows[1] += knee.rows[0];
+        }
+        if j + 1 < nodes {
+            rows[1] -= knee.rows[1];
+            rows[2] += knee.rows[1];
+        }
+        let none = |a: usize| rows[a] == V3::zeros() && rolls[a] == 0.0;
+        for a in 0..3 {
+            if none(a) {
+                continue;
+            }
+            let i = j + a - 1;
+            for k in 0..3 {
+                load[D * i + k] -= moment * rows[a][k];
+            }
+            if Work::<D>::ROLLS {
+                load[D * i + 3] -= moment * rolls[a];
+            }
+            for b in a..3 {
+                if none(b) {
+                    continue;
+                }
+                let mut block = Block::default();
+                add_outer(&mut block, &(rows[a] * stiffness), &rows[b]);
+                add_at(matrix, i, b - a, &block);
+                if Work::<D>::ROLLS {
+                    let (own, other) = (rolls[a] * stiffness, rolls[b] * stiffness);
+                    let edge = roll::framed(rows[a] * other, rows[b] * own, own * rolls[b]);
+                    add_at(matrix, i, b - a, &edge);
+                }
+            }
+        }
+    }
+    any
+}
+
+/// Adds a block between nodes `i` and `i + k`.
+#[inline(always)]
+fn add_at<const D: usize, const B: usize>(
+    matrix: &mut Banded<D>,
+    i: usize,
+    k: usize,
+    block: &[[f64; B]; B],
+) {
+    if k == 0 {
+        matrix.add_diagonal(i, block);
+    } else {
+        matrix.add(i, k, block);
+    }
 }
 
 /// At the start tensions are expected to stay what they were at the last accepted instant.

@@ -130,13 +130,16 @@ impl Rolls {
 
     /// Holds what is no unknown.
     pub(super) fn pin<const D: usize>(&mut self, matrix: &mut Banded<D>) {
-        let last = self.angle.len();
-        matrix.pin(last, 3);
-        self.gradient[last] = 0.0;
-        if self.loose {
-            matrix.pin(0, 3);
-            self.gradient[0] = 0.0;
+        for i in self.pinned().into_iter().flatten() {
+            matrix.pin(i, 3);
+            self.gradient[i] = 0.0;
         }
+    }
+
+    /// Nodes whose roll is no unknown: the last has none, the first is held where nothing else says how the
+    /// wire is rolled.
+    pub(super) fn pinned(&self) -> [Option<usize>; 2] {
+        [Some(self.angle.len()), self.loose.then_some(0)]
     }
 
     /// Largest move of an edge's surface that the torques allow, m; without inertia nothing bounds it.
@@ -239,7 +242,7 @@ pub(super) fn spread<const D: usize>(
 
 /// A block of nothing but a last column, a last row and their corner.
 #[inline]
-fn framed(column: V3, row: V3, corner: f64) -> [[f64; WITH_ROLL]; WITH_ROLL] {
+pub(super) fn framed(column: V3, row: V3, corner: f64) -> [[f64; WITH_ROLL]; WITH_ROLL] {
     [
         [0.0, 0.0, 0.0, column.x],
         [0.0, 0.0, 0.0, column.y],

@@ -1,0 +1,77 @@
+//! The knee of the bending law, looked at ahead.
+//!
+//! A joint that yields gives way tens of times more easily than one that unloads. Newton's method at one
+//! side of the knee promises the other side a moment that is far off, in every joint of a corner at
+//! once. So the tangent is taken where the update leads: a joint's angle is linear in the update to
+//! good accuracy, and along its own moment the law is scalar.
+
+use super::plasticity::{Law, Scalar, respond_scalar};
+use crate::math::V3;
+
+/// Joints below this share of their yield moment are left alone.
+const FAR: f64 = 0.25;
+/// Error of a moment that an update may promise, over the yield moment.
+const PROMISE: f64 = 0.01;
+
+/// A joint whose law may change its branch.
+#[derive(Clone, Copy, Debug)]
+pub struct Knee {
+    /// derivative of the angle along the moment by the edges before and after, 1/m
+    pub rows: [V3; 2],
+    /// the same by their rolls; 0 where no twist is carried
+    pub rolls: [f64; 2],
+    /// trial moment, N m, and Voronoi length, m
+    pub trial: f64,
+    /// see `trial`
+    pub length: f64,
+    /// rise of the yield moment, N m
+    pub rise: f64,
+    /// moment at the iterate as the linear system has it, N m
+    pub moment: f64,
+    /// stiffness against the angle as the linear system has it, N m
+    pub stiffness: f64,
+    /// the branch that is from: 0 elastic, 1 and -1 yielding along and against the moment
+    pub branch: i8,
+}
+
+impl Knee {
+    /// Whether a joint is near enough to yielding to be looked at.
+    pub fn matters(law: &Law, trial: f64, rise: f64) -> bool {
+        trial > FAR * (law.limit + rise)
+    }
+
+    /// Puts the tangent at an `angle` farther on in the place of one that promised something else; returns the
+    /// changes of stiffness and moment.
+    pub fn foresee(&mut self, law: &Law, angle: f64) -> Option<(f64, f64)> {
+        let state = Scalar {
+            strain: 0.0,
+            rise: self.rise,
+        };
+        let strain = self.trial / law.modulus + angle / self.length;
+        let (moment, next, _) = respond_scalar(law, &state, strain);
+        let promised = self.moment + self.stiffness * angle;
+        if (moment - promised).abs() <= PROMISE * (law.limit + self.rise) {
+            return None;
+        }
+        let mut branch = match next.strain {
+            0.0 => 0,
+            yielded if yielded > 0.0 => 1,
+            _ => -1,
+        };
+        if branch == -self.branch {
+            // from yielding to yielding the other way: both are soft, so it would be thrown to and fro
+            branch = 0;
+        }
+        let (stiffness, moment) = if branch == 0 {
+            (law.modulus / self.length, self.trial)
+        } else {
+            let stiffness = law.tangent(next.rise) / self.length;
+            (stiffness, moment - stiffness * angle)
+        };
+        let change = (stiffness - self.stiffness, moment - self.moment);
+        self.branch = branch;
+        self.stiffness += change.0;
+        self.moment += change.1;
+        Some(change)
+    }
+}

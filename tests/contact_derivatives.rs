@@ -1,0 +1,209 @@
+//! Energy, gradient and Hessian of a contact point's push by finite differences, with friction limits
+//! held as the line search sees them.
+
+use coilwind::contact::{ContactLaw, LineContact, Push};
+use coilwind::core_shape::Shape;
+use coilwind::math::V3;
+use proptest::prelude::*;
+
+const STIFFNESS: f64 = 1e10;
+const LENGTH: f64 = 0.5e-3;
+const RADIUS: f64 = 0.35e-3;
+const STEP: f64 = 1e-5;
+const MU: f64 = 0.2;
+/// Stiffness of what the point stands for, N/m, and the share of it along the surface (Mindlin).
+const K: f64 = STIFFNESS * LENGTH;
+const ALONG: f64 = 2.0 * (1.0 - 0.34) / (2.0 - 0.34);
+/// Share of a sliding bristle's missing stiffness that the Hessian leaves in.
+const ALONG_SLIDE: f64 = 0.9;
+/// Step of the differences, m: depths are some um, the wire's radius is 350 um.
+const H: f64 = 1e-10;
+
+fn contact(mu: f64) -> LineContact {
+    let law = ContactLaw {
+        stiffness: STIFFNESS,
+        damping_ratio: 0.0,
+        mu_static: mu,
+        mu_kinetic: mu,
+        slip_speed: 1.0,
+    };
+    let shape = Shape::RoundedBox {
+        half_x: 6e-3,
+        half_z: 10e-3,
+        half_y: 8e-3,
+        corner_radius: 2e-3,
+    };
+    let mut line = LineContact::new(shape, law, RADIUS, 1);
+    // one turn round a cylinder far off the box, edges of 0.8 mm
+    for i in 0..40 {
+        let a = 0.1 * f64::from(i);
+        let p = V3::new(60e-3 + 8e-3 * libm::cos(a), 1e-4 * a, 8e-3 * libm::sin(a));
+        line.tube.push(p, 0.8e-3 * f64::from(i));
+    }
+    line
+}
+
+/// Surfaces to touch: flat, corner arc, frozen wire.
+#[derive(Clone, Copy, Debug)]
+enum On {
+    Flat,
+    Corner,
+    Wire,
+}
+
+/// A place at which the point just touches, the way out, and one along.
+fn ground(on: On, at: f64) -> [V3; 3] {
+    match on {
+        On::Flat => [
+            V3::new(6e-3 + RADIUS, 5e-3 * (at - 0.5), 3e-3 * at),
+            V3::x(),
+            V3::new(0.0, 0.6, 0.8),
+        ],
+        On::Corner => {
+            let a = 0.2 + 1.1 * at;
+            let out = V3::new(libm::cos(a), 0.0, libm::sin(a));
+            let axis = V3::new(4e-3, 5e-3 * (at - 0.5), 8e-3);
+            [axis + out * (2e-3 + RADIUS), out, V3::y()]
+        }
+        On::Wire => {
+            let line = contact(0.0);
+            let (a, b) = (0.3 + 3.0 * at, 6.2 * at);
+            let round = V3::new(libm::cos(a), 0.0, libm::sin(a));
+            let out = round * libm::cos(b) + V3::y() * libm::sin(b);
+            let foot = line.tube.foot(
+                V3::x() * 60e-3 + round * 8e-3 + out * 2.0 * RADIUS,
+                (10.0 * a) as u32,
+            );
+            let p = foot.point + foot.normal * (2.0 * RADIUS);
+            [p, foot.normal, foot.tangent]
+        }
+    }
+}
+
+/// Any of the three surfaces.
+fn on() -> impl Strategy<Value = On> {
+    prop_oneof![Just(On::Flat), Just(On::Corner), Just(On::Wire)]
+}
+
+fn at(line: &mut LineContact, p: V3) -> Push {
+    line.push(0, p, LENGTH, f64::INFINITY, STEP)
+        .unwrap_or_default()
+}
+
+/// A point that was committed at depth `before` (m, 0: never), is then at `p`, its limit held.
+fn held(mu: f64, [q, out, _]: [V3; 3], before: f64, p: V3) -> LineContact {
+    let mut line = contact(mu);
+    let start = q - out * before + out * if before > 0.0 { 0.0 } else { 1e-6 };
+    line.place(0, start);
+    if before > 0.0 {
+        line.commit(0, start, LENGTH, f64::INFINITY, STEP);
+    }
+    // an iterate that is accepted leaves its limit behind
+    at(&mut line, p);
+    line.renew_lags();
+    line.hold_limits = true;
+    line
+}
+
+/// Differences of the energy and of the gradient.
+fn differences(line: &mut LineContact, p: V3) -> (V3, [V3; 3]) {
+    let step = |a: usize| V3::ith(a, H);
+    let mut pushes = [0, 1, 2].map(|a| [at(line, p + step(a)), at(line, p - step(a))]);
+    let slope = V3::from_fn(|a, _| (pushes[a][0].energy - pushes[a][1].energy) / (2.0 * H));
+    let rows = pushes
+        .each_mut()
+        .map(|[a, b]| (a.gradient - b.gradient) / (2.0 * H));
+    (slope, rows)
+}
+
+fn times(m: &coilwind::rod::Block, v: V3) -> V3 {
+    V3::from_fn(|r, _| m[r][0] * v.x + m[r][1] * v.y + m[r][2] * v.z)
+}
+
+proptest! {
+    /// Exact on a flat. On a bend the normal turns with the point, and with it the plane of the
+    /// bristle; that part is left out, friction times the way from the anchor along the normal over the radius.
+    #[test]
+    fn gradient_is_that_of_the_energy_with_limits_held(
+        on in on(),
+        place in 0.0..1.0f64,
+        before in prop_oneof![Just(0.0), 0.2e-6..30e-6f64],
+        depth in 0.3e-6..30e-6f64,
+        slide in -8e-6..8e-6f64,
+        round in 0.0..6.3f64,
+        mu in prop_oneof![Just(0.0), 0.05..0.4f64],
+    ) {
+        let g = ground(on, place);
+        let [q, out, along] = g;
+        let way = along * libm::cos(round) + out.cross(&along) * libm::sin(round);
+        let p = q - out * depth + way * slide;
+        let mut line = held(mu, g, before, p);
+        let push = at(&mut line, p);
+        prop_assert!(push.energy > 0.0 && push.energy == push.energy_lagged);
+        let (slope, _) = differences(&mut line, p);
+        // the energy's third derivative is k/onset, rounding 1e-16 of it over the step
+        let noise = K * H * H / 1e-5 + 1e-15 * push.energy / H + 1e-6 * push.gradient.norm();
+        let (way_in, bend) = (depth + before + 1e-6, 2.0 * RADIUS - depth);
+        let stuck = K * ALONG * slide.abs() * (1.0 + way_in / bend);
+        let friction = stuck.min(1.01 * mu * push.gradient.norm());
+        let turning = friction * way_in / bend;
+        let off = (slope - push.gradient).norm();
+        prop_assert!(off < 1.01 * turning + noise, "{off} {turning} {noise}");
+    }
+
+    /// On a flat the Hessian is the gradient's derivative where the bristle sticks, and keeps a tenth of its
+    /// stiffness along the slide where it gives way.
+    #[test]
+    fn hessian_on_a_flat(
+        place in 0.0..1.0f64, before in prop_oneof![Just(0.0), 0.2e-6..30e-6f64],
+        depth in 0.3e-6..30e-6f64, slide in 5e-8..8e-6f64, round in 0.0..6.3f64,
+    ) {
+        let g = ground(On::Flat, place);
+        let [q, out, along] = g;
+        let way = along * libm::cos(round) + out.cross(&along) * libm::sin(round);
+        let p = q - out * depth + way * slide;
+        let mut line = held(MU, g, before, p);
+        let push = at(&mut line, p);
+        let (_, rows) = differences(&mut line, p);
+        let across = out.cross(&way);
+        let normal = push.gradient.dot(&out).abs();
+        let limit = MU * normal;
+        let sticks = K * ALONG * slide < limit;
+        prop_assume!((K * ALONG * slide / limit - 1.0).abs() > 1e-3 && (depth / 1e-5 - 1.0).abs() > 1e-3);
+        let noise = 1e-5 * K;
+        for v in [out, across, way] {
+            let exact = V3::from_fn(|a, _| rows[a].dot(&v));
+            let mut kept = V3::zeros();
+            if !sticks && v == way {
+                kept = way * ((1.0 - ALONG_SLIDE) * limit / slide);
+            }
+            let off = times(&push.hessian, v) - exact - kept;
+            prop_assert!(off.norm() < noise, "{sticks} {v} off by {off} of {}", K);
+        }
+    }
+
+    /// Off a flat the Hessian leaves out the normal's turning: force over radius, which pulls on the
+    /// update as a pressed column does. It falls below what is exact only inside a bend of wire, by
+    /// force over that bend's radius, and stays positive.
+    #[test]
+    fn hessian_leaves_out_only_the_turning_of_the_normal(
+        on in on(), place in 0.0..1.0f64, depth in 0.3e-6..30e-6f64,
+        v in (-1.0..1.0f64, -1.0..1.0f64, -1.0..1.0f64),
+    ) {
+        let g = ground(on, place);
+        let [q, out, _] = g;
+        let p = q - out * depth;
+        let mut line = held(0.0, g, 0.0, p);
+        let push = at(&mut line, p);
+        let (_, rows) = differences(&mut line, p);
+        let v = V3::new(v.0, v.1, v.2);
+        let exact = V3::from_fn(|a, _| rows[a].dot(&v));
+        let left_out = (times(&push.hessian, v) - exact).dot(&v);
+        let noise = 1e-6 * K * v.norm_squared();
+        prop_assume!((depth / 1e-5 - 1.0).abs() > 1e-3);
+        let force = push.gradient.norm();
+        prop_assert!(left_out > -force / 7e-3 * v.norm_squared() - noise);
+        prop_assert!(left_out < force / (2.0 * RADIUS - depth) * v.norm_squared() + noise);
+        prop_assert!(times(&push.hessian, v).dot(&v) >= -1e-12 * K * v.norm_squared());
+    }
+}

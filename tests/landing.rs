@@ -1,0 +1,158 @@
+//! A wire that lands at winding speed is stopped by what it lands on, in steps of any length that the
+//! method chooses or is given.
+
+use coilwind::contact::{ContactLaw, LineContact};
+use coilwind::core_shape::Shape;
+use coilwind::integrate::{Implicit, Scheme, Stopped, System, Twist};
+use coilwind::math::V3;
+use coilwind::rod::Rod;
+use coilwind::scene::{Scene, SceneSettings};
+
+/// Speed of a wire that is drawn onto a flat, m/s.
+const SPEED: f64 = 10.0;
+/// Nodes and their spacing, m.
+const NODES: usize = 41;
+const SPACING: f64 = 0.5e-3;
+/// Way to fall, m: not a whole number of steps of any kind; and one long enough for steps to grow.
+const FALL: f64 = 1.137e-3;
+const LONG_FALL: f64 = 61.37e-3;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Onto {
+    Flat,
+    Corner,
+    Wire,
+}
+
+fn scene() -> Scene {
+    SceneSettings::load("fig8")
+        .expect("packed")
+        .build()
+        .expect("valid")
+}
+
+/// A free straight wire over a core, on its way down along x.
+///
+/// Wire along y on the flat or along the corner, along z across a frozen wire that lies along y.
+fn falling(scene: &Scene, onto: Onto, fall: f64) -> System {
+    let r = scene.wire.radius();
+    let shape = Shape::RoundedBox {
+        half_x: 6e-3,
+        half_z: 15e-3,
+        half_y: 30e-3,
+        corner_radius: 2e-3,
+    };
+    let law = ContactLaw {
+        stiffness: scene.contact.stiffness,
+        damping_ratio: 0.0,
+        mu_static: scene.friction.static_,
+        mu_kinetic: scene.friction.kinetic,
+        slip_speed: scene.friction.slip_speed,
+    };
+    let along = |i: usize| SPACING * (i as f64 - 0.5 * (NODES - 1) as f64);
+    let point = |i: usize| match onto {
+        Onto::Flat => V3::new(6e-3 + r + fall, along(i), 0.3e-3),
+        // over the middle of the arc, which turns away to one side
+        Onto::Corner => V3::new(
+            4e-3 + 0.8 * (2e-3 + r) + fall,
+            along(i),
+            13e-3 + 0.6 * (2e-3 + r),
+        ),
+        Onto::Wire => V3::new(6e-3 + 3.0 * r + fall, 0.1e-3, along(i)),
+    };
+    let points: Vec<V3> = (0..NODES).map(point).collect();
+    let mut sys = System::new(scene.wire.clone(), Rod::through(&points, None));
+    sys.twist = Twist::Off;
+    sys.rod.v.fill(-V3::x() * SPEED);
+    let mut line = LineContact::new(shape, law, r, NODES);
+    if onto == Onto::Wire {
+        for i in 0..NODES {
+            line.tube
+                .push(V3::new(6e-3 + r, along(i), 0.2e-3), SPACING * i as f64);
+        }
+    }
+    sys.line = Some(line);
+    // nothing is the falling wire's own neighbourhood
+    sys.arc0 = 1.0;
+    sys.refresh();
+    sys
+}
+
+/// Deepest touch of any step over the diameter, and whether any node is inside afterwards.
+fn land(
+    scene: &Scene,
+    onto: Onto,
+    fall: f64,
+    fixed: Option<f64>,
+    longest: f64,
+) -> Result<(f64, bool), Stopped> {
+    let mut sys = falling(scene, onto, fall);
+    let mut method = Implicit::new(Scheme::Bdf2, scene.solver.tolerance, 1e-9, longest);
+    method.fixed = fixed;
+    let mut left = fall / SPEED + 1.4e-3;
+    while left > 0.0 {
+        match method.step(&mut sys, left) {
+            Ok(h) => left = if h >= left { 0.0 } else { left - h },
+            Err(stopped) => return Err(stopped),
+        }
+    }
+    let line = sys.line.as_ref().expect("contact");
+    let r = scene.wire.radius();
+    let through = sys.rod.x.iter().any(|x| {
+        let core = line.shape.nearness(*x).distance < 0.5 * r;
+        let past = onto == Onto::Wire && x.z.abs() < 0.3e-3 && x.x < 6e-3 + 2.0 * r;
+        core || past
+    });
+    Ok((sys.deepest / scene.wire.diameter, through))
+}
+
+#[test]
+fn with_steps_of_its_own_choice() {
+    let scene = scene();
+    for onto in [Onto::Flat, Onto::Corner, Onto::Wire] {
+        for longest in [20e-6, 50e-6, 0.1] {
+            let (depth, through) = land(&scene, onto, FALL, None, longest).expect("steps");
+            assert!(!through && depth < 0.05, "{onto:?} {longest}: {depth} d");
+        }
+    }
+}
+
+/// Steps of up to 1.5 mm of way: where the method gives up it says so, and nothing is passed through.
+#[test]
+fn with_steps_prescribed() {
+    let scene = scene();
+    for onto in [Onto::Flat, Onto::Corner, Onto::Wire] {
+        for fixed in [1e-6, 5e-6, 20e-6, 50e-6, 100e-6, 150e-6] {
+            match land(&scene, onto, FALL, Some(fixed), 0.1) {
+                Ok((depth, through)) => {
+                    assert!(!through && depth < 0.05, "{onto:?} {fixed}: {depth} d");
+                }
+                // wire crossing wire: Newton's method needs shorter steps to settle there
+                Err(_) => assert!(onto == Onto::Wire && fixed > 5e-6, "{onto:?} {fixed}"),
+            }
+        }
+    }
+}
+
+/// Steps that have grown in the flight to 10 mm of way.
+#[test]
+fn after_a_long_flight() {
+    let scene = scene();
+    for onto in [Onto::Flat, Onto::Corner, Onto::Wire] {
+        for longest in [50e-6, 100e-6, 300e-6, 1e-3] {
+            let (depth, through) = land(&scene, onto, LONG_FALL, None, longest).expect("steps");
+            assert!(!through && depth < 0.05, "{onto:?} {longest}: {depth} d");
+        }
+    }
+}
+
+/// Free flight has no error that would bound the step.
+#[test]
+#[ignore = "nothing bounds the way of a step: wire in free flight steps over the whole core"]
+fn after_a_long_flight_in_steps_of_any_length() {
+    let scene = scene();
+    for onto in [Onto::Flat, Onto::Corner, Onto::Wire] {
+        let (depth, _) = land(&scene, onto, LONG_FALL, None, 0.1).expect("steps");
+        assert!(0.0 < depth && depth < 0.05, "{onto:?}: {depth} d");
+    }
+}
