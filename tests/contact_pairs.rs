@@ -128,9 +128,9 @@ proptest! {
         rest.iter().for_each(|r| arc.push(arc[arc.len() - 1] + r));
         let mut between = Between::default();
         for way in ways {
-            between.list(&q, &rest, DIAMETER);
             let last = q.clone();
             q = moved(&q, way);
+            between.list(&last, &q, &rest, DIAMETER);
             let (want, doubtful) = slow(&q, &arc);
             if doubtful {
                 return Ok(());
@@ -160,8 +160,8 @@ proptest! {
     fn pairs_put_no_force_and_no_moment_on_the_whole(coil in coil(), way in way(), mu in 0.0..0.4f64) {
         let (q, _) = coil.wound();
         let mut between = Between::default();
-        between.list(&q, &rests(&q), DIAMETER);
         let now = moved(&q, way);
+        between.list(&q, &now, &rests(&q), DIAMETER);
         for (cross, push) in fast(&mut between, &now, &q, mu) {
             let (mut force, mut moment) = (V3::zeros(), V3::zeros());
             for side in [&cross.young, &cross.old] {
@@ -195,7 +195,7 @@ fn wire_two_turns_back_is_a_partner_too() {
     };
     let (q, arc) = coil.wound();
     let mut between = Between::default();
-    between.list(&q, &rests(&q), DIAMETER);
+    between.list(&q, &q, &rests(&q), DIAMETER);
     let got = fast(&mut between, &q, &q, 0.0);
     let (want, _) = slow(&q, &arc);
     assert_eq!(got.len(), want.len());

@@ -504,13 +504,7 @@ pub fn add_cross<const D: usize>(cross: &[Cross], x: &[f64], y: &mut [f64]) {
     }
 }
 
-fn one_way<const D: usize>(
-    block: &Block,
-    from: &Triple,
-    to: &Triple,
-    x: &[f64],
-    y: &mut [f64],
-) {
+fn one_way<const D: usize>(block: &Block, from: &Triple, to: &Triple, x: &[f64], y: &mut [f64]) {
     let mut s = [0.0; 3];
     for (n, w) in from.0.iter().zip(from.1) {
         for a in 0..3 {
