@@ -310,5 +310,6 @@ fn set_wire_pulled_out_of_its_plane_is_that_of_the_explicit_forces() {
     });
     let yielded = joints.rod.bend.iter().filter(|b| b.curvature != [0.0; 2]);
     assert!(yielded.count() > 5);
-    assert!(off[0] < 1e-9 && off[1] < 1e-9 && off[2] > 1e-3, "{off:?}");
+    // (both ramps choose their increments, and what is set depends on them in the sixth digit)
+    assert!(off[0] < 5e-6 && off[1] < 5e-6 && off[2] > 1e-3, "{off:?}");
 }

@@ -6,12 +6,14 @@
 //! the shortest way onto the edge and then rolled about it. Where the edge turns by `dt`, its frame
 //! turns by `t x dt + (roll + c . dt) t`: `c` is what the shortest way from a fixed start
 //! adds to the shortest way from here. The Hessian is `J^T C J`, with `J` the derivative of the
-//! three angles and `C` the tangents of their laws.
+//! three angles and `C` the tangents of their laws. A bending law knows no direction, so `J` may look at
+//! the trial moment from a frame that rolls along with the edges in part. The part is the one with which a joint
+//! whose edges roll alike has the right stiffness: none for elastic wire, which does not feel it.
 
 use super::discrete::{Bent, Symmetric, add_outer, add_square, respond};
 use super::forces::Laws;
-use super::knee::Knee;
 use super::joint::{Joint, align, rotate};
+use super::knee::Knee;
 use super::plasticity::{Bend, Scalar, respond_scalar};
 use crate::math::{Quat, V3};
 
@@ -113,16 +115,25 @@ pub fn twisted(
         torque: [-t0, t1],
         ..Rolled::default()
     };
-    let (mut lead, mut side) = (rows[0], rows[1]);
-    if dir != V3::zeros() {
+    let (mut lead, mut side, mut free) = (rows[0], rows[1], 0.0);
+    let n = trial.norm();
+    if n > 0.0 {
         // along the moment and across it
-        lead = rows[0] * dir.x + rows[1] * dir.y;
-        side = rows[1] * dir.x - rows[0] * dir.y;
+        let d = trial / n;
+        lead = rows[0] * d.x + rows[1] * d.y;
+        side = rows[1] * d.x - rows[0] * d.y;
+        // rolled alike, edges see their curvature turn: the energy curves by `curved (curved - elastic)` there
+        let curved = (joint.bend[0] * d.x + joint.bend[1] * d.y) * inv;
+        let elastic = n / laws.bend.modulus;
+        let kept = (curved * (curved - elastic)).max(0.0).sqrt();
+        free = 0.5 * lv * (curved - kept.copysign(curved));
+    }
+    if dir != V3::zeros() {
         let ((w0, r0), (w1, r1)) = (before.derivative(&-lead), after.derivative(&lead));
         bent.knee = Some(Knee {
             rows: [w0, w1],
             rolls: [r0, r1],
-            trial: trial.dot(&dir),
+            trial: n,
             length: lv,
             rise: bend.rise,
             moment: m.dot(&dir),
@@ -130,13 +141,14 @@ pub fn twisted(
             branch: i8::from(along != laws.bend.modulus),
         });
     }
-    for (row, c) in [
-        (lead, along * inv),
-        (side, across * inv),
-        (rows[2], stiffness * inv),
+    let free = [before.along * free, after.along * free];
+    for ([first, second], c) in [
+        ([-lead, lead], along * inv),
+        ([free[0] - side, free[1] + side], across * inv),
+        ([-rows[2], rows[2]], stiffness * inv),
     ] {
-        let (w0, r0) = before.derivative(&-row);
-        let (w1, r1) = after.derivative(&row);
+        let (w0, r0) = before.derivative(&first);
+        let (w1, r1) = after.derivative(&second);
         add_square(&mut bent.own[0], &w0, c);
         add_square(&mut bent.own[1], &w1, c);
         add_outer(&mut bent.cross, &(w0 * c), &w1);
