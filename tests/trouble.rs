@@ -376,3 +376,15 @@ fn values_out_of_range_are_refused_with_the_range() {
         assert!(error.contains(name) && error.contains(range), "{error}");
     }
 }
+
+/// The end of the ramp and a sum of communication steps are the same time but for rounding.
+#[test]
+fn an_interval_may_end_where_the_ramp_does() {
+    let changes = [("spindle.speed", "300"), ("spindle.turns", "1")];
+    let mut sim = Simulation::new(&fig8(&changes)).expect("the scene starts");
+    let dt = sim.programme().end() / 200.0;
+    for _ in 0..200 {
+        sim.advance_programme(dt).expect("the run goes on");
+    }
+    assert!((sim.outputs().spindle_angle - TAU).abs() < 1e-9);
+}

@@ -12,6 +12,7 @@ mod summary;
 
 pub use io::{Centreline, Event, EventKind, Inputs, Outputs, SimError};
 pub use programme::Programme;
+use programme::ROUNDING;
 pub use start::core_surface;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 
@@ -228,7 +229,8 @@ impl Simulation {
         }
         let start = (self.sys.support[1].point.y, self.sys.spindle.angle);
         let mut left = dt;
-        while left > 0.0 {
+        // (differences of times leave a rest that is none, in which nothing can be solved for)
+        while left > ROUNDING * self.sys.time.max(dt) {
             let next = self.implicit.as_ref().map_or(left, |m| m.next);
             self.steer_nozzle(left.min(next), per_angle, start);
             let taken = self.implicit_step(left.min(self.longest_return()))?;
