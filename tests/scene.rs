@@ -475,7 +475,17 @@ fn the_integrator_decides_how_twist_is_carried_unless_it_is_set() {
             "[solver]\nintegrator = '{integrator}'\ntwist = '{level}'"
         ))
     };
-    assert_eq!(twist(""), Ok(Twist::Off));
+    assert_eq!(twist(""), Ok(Twist::QuasiStatic));
+    assert_eq!(twist("[wire]\nelastic = true"), Ok(Twist::Off));
+    let skipped = |text: &str| parse(text).unwrap().build().unwrap().skipped;
+    let [decision] = skipped("")[..] else {
+        panic!("one decision")
+    };
+    assert_eq!(
+        (decision.name, decision.setting, decision.decision),
+        ("solver.twist", "auto", "quasi-static")
+    );
+    assert!(skipped("[solver]\ntwist = 'off'").is_empty());
     assert_eq!(twist("preset = 'paper'"), Ok(Twist::Dynamic));
     assert_eq!(with("implicit", "quasi-static"), Ok(Twist::QuasiStatic));
     assert_eq!(with("implicit", "dynamic"), Ok(Twist::Dynamic));

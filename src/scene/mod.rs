@@ -50,6 +50,8 @@ pub struct Scene {
     pub friction: Friction,
     /// solver settings
     pub solver: Solver,
+    /// what was left to the program, and what it does without
+    pub skipped: Vec<Decision>,
     /// when wire at rest leaves the computation
     pub freeze: Freeze,
     /// limits of the defect flags
@@ -189,6 +191,19 @@ pub enum Integrator {
     Verlet,
     /// implicit, second order, error-controlled
     Implicit,
+}
+
+/// What became of a setting that left the choice to the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Decision {
+    /// name of the setting
+    pub name: &'static str,
+    /// what it was set to
+    pub setting: &'static str,
+    /// what was taken
+    pub decision: &'static str,
+    /// the reason
+    pub why: &'static str,
 }
 
 /// Solver settings.
