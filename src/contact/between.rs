@@ -300,7 +300,7 @@ impl Between {
             }
             let weights = point_weights(k + 1);
             let way = place(now, &weights) - place(q, &weights);
-            (way.norm_squared() > room * room).then_some((k + 1) / 2)
+            (way.norm_squared() > room * room).then_some(k.div_ceil(2))
         })
     }
 
