@@ -7,7 +7,7 @@
 
 use coilwind::contact::{ContactLaw, LineContact};
 use coilwind::core_shape::Shape;
-use coilwind::integrate::{Implicit, Scheme, Support, System};
+use coilwind::integrate::{Implicit, Scheme, Support, System, Twist};
 use coilwind::math::V3;
 use coilwind::rod::Rod;
 use coilwind::scene::{Scene, SceneSettings};
@@ -37,7 +37,7 @@ fn tight(scene: &Scene, x: &[V3]) -> System {
     let rod = Rod::through(x, Some(rest.collect()));
     let mut sys = System::new(scene.wire.clone(), rod);
     sys.support = [Support::pinned(x[0]), Support::pinned(x[x.len() - 1])];
-    sys.twist = false;
+    sys.twist = Twist::Off;
     sys
 }
 

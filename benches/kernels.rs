@@ -16,7 +16,8 @@ fn full_band<const D: usize>(nodes: usize) -> Banded<D> {
     matrix.reset(nodes);
     for i in 0..nodes {
         for k in 0..(nodes - i).min(3) {
-            let block = std::array::from_fn(|a| std::array::from_fn(|b| wave(3 * i + k, a, b)));
+            let block: [[f64; 3]; 3] =
+                std::array::from_fn(|a| std::array::from_fn(|b| wave(3 * i + k, a, b)));
             if k == 0 {
                 matrix.add_diagonal(i, &block);
             } else {

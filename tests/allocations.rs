@@ -35,8 +35,16 @@ static COUNTING: Counting = Counting;
 /// halved, nodes freeze) arrays may grow; every other step must not touch the heap.
 #[test]
 fn a_warm_step_takes_no_heap() {
+    // one test: the counter is everybody's
+    for twist in ["off", "quasi-static", "dynamic"] {
+        warm_steps(twist);
+    }
+}
+
+fn warm_steps(twist: &str) {
     let mut settings = SceneSettings::load("fig8").expect("packed");
     settings.spindle.speed = 100.0;
+    settings.solver.twist = twist.to_owned();
     let scene = settings.build().expect("valid");
     let mut sim = Simulation::new(&scene).expect("starts");
     let warm = sim.programme().time_at(1.3 * std::f64::consts::TAU);
@@ -56,7 +64,7 @@ fn a_warm_step_takes_no_heap() {
     }
     assert!(
         quiet > 200,
-        "only {quiet} steps without a change of the wire"
+        "{twist}: only {quiet} steps without a change of the wire"
     );
-    assert!(noisy.is_empty(), "steps that took heap: {noisy:?}");
+    assert!(noisy.is_empty(), "{twist}: steps that took heap: {noisy:?}");
 }

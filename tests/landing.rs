@@ -3,7 +3,7 @@
 
 use coilwind::contact::{ContactLaw, LineContact};
 use coilwind::core_shape::Shape;
-use coilwind::integrate::{Implicit, Scheme, Stopped, System};
+use coilwind::integrate::{Implicit, Scheme, Stopped, System, Twist};
 use coilwind::math::V3;
 use coilwind::rod::Rod;
 use coilwind::scene::{Scene, SceneSettings};
@@ -62,7 +62,7 @@ fn falling(scene: &Scene, onto: Onto, fall: f64) -> System {
     };
     let points: Vec<V3> = (0..NODES).map(point).collect();
     let mut sys = System::new(scene.wire.clone(), Rod::through(&points, None));
-    sys.twist = false;
+    sys.twist = Twist::Off;
     sys.rod.v.fill(-V3::x() * SPEED);
     let mut line = LineContact::new(shape, law, r, NODES);
     if onto == Onto::Wire {

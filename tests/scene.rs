@@ -1,5 +1,6 @@
 //! Scene files through the front door: what is read, in which order, and what is refused.
 
+use coilwind::integrate::Twist;
 use coilwind::scene::{Core, Integrator, Place, Preset, SceneError, SceneSettings, Start};
 use coilwind::variables::{Value, by_name, table};
 use std::path::Path;
@@ -464,6 +465,36 @@ fn parameters_come_in_any_order() {
     assert_eq!(one.file, "fig8");
     let none = SceneSettings::from_parameters(std::iter::empty()).unwrap();
     assert_eq!(none, SceneSettings::default());
+}
+
+#[test]
+fn the_integrator_decides_how_twist_is_carried_unless_it_is_set() {
+    let twist = |text: &str| parse(text).unwrap().build().map(|s| s.solver.twist);
+    let with = |integrator: &str, level: &str| {
+        twist(&format!(
+            "[solver]\nintegrator = '{integrator}'\ntwist = '{level}'"
+        ))
+    };
+    assert_eq!(twist(""), Ok(Twist::QuasiStatic));
+    assert_eq!(twist("[wire]\nelastic = true"), Ok(Twist::Off));
+    let skipped = |text: &str| parse(text).unwrap().build().unwrap().skipped;
+    let [decision] = skipped("")[..] else {
+        panic!("one decision")
+    };
+    assert_eq!(
+        (decision.name, decision.setting, decision.decision),
+        ("solver.twist", "auto", "quasi-static")
+    );
+    assert!(skipped("[solver]\ntwist = 'off'").is_empty());
+    assert_eq!(twist("preset = 'paper'"), Ok(Twist::Dynamic));
+    assert_eq!(with("implicit", "quasi-static"), Ok(Twist::QuasiStatic));
+    assert_eq!(with("implicit", "dynamic"), Ok(Twist::Dynamic));
+    assert_eq!(with("verlet", "auto"), Ok(Twist::Dynamic));
+    assert_eq!(with("verlet", "off"), Ok(Twist::Off));
+    let text = with("rk4", "quasi-static").unwrap_err().to_string();
+    for part in ["solver.twist", "quasi-static", "auto, off or dynamic"] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
 }
 
 #[test]

@@ -81,7 +81,12 @@ impl Machine {
 /// Laid wire that froze and comes back is what it was before, to rounding; so are the books.
 #[test]
 fn thawing_undoes_freezing() {
-    let mut m = Machine::new(&[]);
+    for twist in ["off", "quasi-static", "dynamic"] {
+        freeze_and_thaw(Machine::new(&[("solver.twist", twist)]));
+    }
+}
+
+fn freeze_and_thaw(mut m: Machine) {
     m.ramp(100.0, 0.02);
     m.turn(0.6, 100.0);
     let before = m.sim.system().clone();
@@ -138,7 +143,12 @@ fn thawing_undoes_freezing() {
 
 #[test]
 fn a_reversed_spindle_unwinds_the_coil() {
-    let mut m = Machine::new(&[]);
+    for twist in ["off", "quasi-static", "dynamic"] {
+        wind_and_unwind(Machine::new(&[("solver.twist", twist)]));
+    }
+}
+
+fn wind_and_unwind(mut m: Machine) {
     m.ramp(100.0, 0.02);
     m.turn(2.1, 100.0);
     m.ramp(0.0, 0.02);
@@ -365,4 +375,16 @@ fn values_out_of_range_are_refused_with_the_range() {
         let error = settings.set_text(name, value).expect_err(name).to_string();
         assert!(error.contains(name) && error.contains(range), "{error}");
     }
+}
+
+/// The end of the ramp and a sum of communication steps are the same time but for rounding.
+#[test]
+fn an_interval_may_end_where_the_ramp_does() {
+    let changes = [("spindle.speed", "300"), ("spindle.turns", "1")];
+    let mut sim = Simulation::new(&fig8(&changes)).expect("the scene starts");
+    let dt = sim.programme().end() / 200.0;
+    for _ in 0..200 {
+        sim.advance_programme(dt).expect("the run goes on");
+    }
+    assert!((sim.outputs().spindle_angle - TAU).abs() < 1e-9);
 }

@@ -189,7 +189,7 @@ fn modes_stepped_in_time_have_the_frequency_of_theory() {
             nodal: vec![(40, V3::x() * 5.0)],
             ..Loads::default()
         };
-        sys.twist = false;
+        sys.twist = coilwind::integrate::Twist::Off;
         let f = stepped(sys, false, 1, |s| libm::sin(PI * s), step);
         let theory = expected(&file, 4, "f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "bending {f} {theory}");

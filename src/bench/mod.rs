@@ -22,7 +22,7 @@ pub use record::{Details, Outcome, Record};
 pub use winding::Wound;
 
 use crate::integrate::{
-    Effort, RK4_LIMIT, Support, System, VERLET_LIMIT, highest_frequency, longest_step,
+    Effort, RK4_LIMIT, Support, System, Twist, VERLET_LIMIT, highest_frequency, longest_step,
 };
 use crate::math::V3;
 use crate::rod::{Rod, Section, frame_along};
@@ -100,7 +100,7 @@ fn elastic_wire() -> Result<Section, BenchError> {
 /// Without twist: the problems are plane and the implicit method has none.
 fn cantilever(section: Section, points: &[V3], rest: Vec<f64>) -> System {
     let mut sys = System::new(section, Rod::through(points, Some(rest)));
-    sys.twist = false;
+    sys.twist = Twist::Off;
     sys.support[0] = Support::clamped(points[0], frame_along(&V3::x(), None));
     sys.refresh();
     sys

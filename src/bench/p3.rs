@@ -10,7 +10,7 @@ use super::watch::Watch;
 use super::{BenchError, elastic_wire};
 use crate::contact::{ContactLaw, LineContact};
 use crate::core_shape::Shape;
-use crate::integrate::{Implicit, Scheme, Support, System};
+use crate::integrate::{Implicit, Scheme, Support, System, Twist};
 use crate::math::V3;
 use crate::rod::{Rod, Section};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -128,7 +128,7 @@ fn capstan(section: &Section, n: usize) -> (System, f64) {
         .map(|p| (p[1] - p[0]).norm() / stretch)
         .collect();
     let mut sys = System::new(section.clone(), Rod::through(&points, Some(rest)));
-    sys.twist = false;
+    sys.twist = Twist::Off;
     let law = ContactLaw {
         stiffness: STIFFNESS,
         damping_ratio: 0.0,

@@ -6,7 +6,7 @@ use super::args::{BenchArgs, Method};
 use super::record::{Details, Outcome};
 use super::watch::Watch;
 use super::{BenchError, elastic_wire, iterations, stable_step};
-use crate::integrate::{Implicit, Scheme, System, rk4, verlet};
+use crate::integrate::{Implicit, Scheme, System, Twist, rk4, verlet};
 use crate::math::V3;
 use crate::rod::Rod;
 
@@ -53,7 +53,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
         .map(|i| V3::new(SPACING * i as f64, HEIGHT * wave(i), 0.0))
         .collect();
     let mut sys = System::new(section, Rod::through(&x, None));
-    sys.twist = false;
+    sys.twist = Twist::Off;
     for i in 0..=n {
         sys.rod.v[i] = V3::new(0.0, 0.0, SPEED * wave(i));
     }

@@ -163,6 +163,12 @@ fn report(args: &RunArgs, simulation: &Simulation, directory: &str) -> Result<()
             outputs.turns_settled,
             simulation.time(),
         ))?;
+        for d in &simulation.scene().skipped {
+            print(&format!(
+                "{} = {} ({}): {}\n",
+                d.name, d.decision, d.setting, d.why
+            ))?;
+        }
     }
     let found = flags(outputs);
     if args.fail_on_defect && (outputs.defect_count > 0 || !found.is_empty()) {

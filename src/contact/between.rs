@@ -501,19 +501,19 @@ impl Between {
     }
 }
 
-/// Adds the couplings' product with `x` to `y`, three coordinates a node.
-pub fn add_cross(cross: &[Cross], x: &[f64], y: &mut [f64]) {
+/// Adds the couplings' product with `x` to `y`, which have `D` unknowns a node, first its coordinates.
+pub fn add_cross<const D: usize>(cross: &[Cross], x: &[f64], y: &mut [f64]) {
     for c in cross {
-        one_way(&c.block, &c.old, &c.young, x, y);
-        one_way(&c.block, &c.young, &c.old, x, y);
+        one_way::<D>(&c.block, &c.old, &c.young, x, y);
+        one_way::<D>(&c.block, &c.young, &c.old, x, y);
     }
 }
 
-fn one_way(block: &Block, from: &Triple, to: &Triple, x: &[f64], y: &mut [f64]) {
+fn one_way<const D: usize>(block: &Block, from: &Triple, to: &Triple, x: &[f64], y: &mut [f64]) {
     let mut s = [0.0; 3];
     for (n, w) in from.0.iter().zip(from.1) {
         for a in 0..3 {
-            s[a] += w * x[3 * n + a];
+            s[a] += w * x[D * n + a];
         }
     }
     // symmetric block
@@ -521,7 +521,7 @@ fn one_way(block: &Block, from: &Triple, to: &Triple, x: &[f64], y: &mut [f64]) 
         std::array::from_fn(|r| block[r][0] * s[0] + block[r][1] * s[1] + block[r][2] * s[2]);
     for (n, w) in to.0.iter().zip(to.1) {
         for a in 0..3 {
-            y[3 * n + a] += w * t[a];
+            y[D * n + a] += w * t[a];
         }
     }
 }

@@ -32,7 +32,7 @@ impl System {
     /// Elastic energy of the live wire and its touches, J.
     pub fn stored(&self) -> f64 {
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
-        let rod: f64 = stored_energy(&self.rod, &self.laws, &clamp, self.twist)
+        let rod: f64 = stored_energy(&self.rod, &self.laws, &clamp, self.twist.is_carried())
             .iter()
             .sum();
         let touch: f64 = match &self.contacts {

@@ -4,9 +4,10 @@
 use super::implicit::spline_point;
 use super::support::{Support, turn_about_y};
 use super::system::System;
+use super::twist::Twist;
 use crate::contact::{Memory, NodeContact};
 use crate::math::{Quat, Spin, V3, spin_velocity};
-use crate::rod::{Bend, Scalar, align};
+use crate::rod::{Bend, Joint, Scalar, align, rotate};
 
 /// A frozen node with the edge after it: all it takes to let them move again where they lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,6 +62,12 @@ impl System {
         } else {
             (self.rod.v[j] + self.rod.v[j + 1]) * 0.5
         };
+        let quarter_turn = if j == last {
+            // wire leaves the nozzle untwisted
+            0.0
+        } else {
+            0.25 * self.rod.rest[j] * self.twist_along(j)
+        };
         let rod = &mut self.rod;
         let half = 0.5 * rod.rest[j];
         rod.x.insert(j + 1, mid);
@@ -68,9 +75,11 @@ impl System {
         rod.rest[j] = half;
         rod.rest.insert(j + 1, half);
         let frame = rod.frame[j];
-        rod.frame[j] = align(&frame, &((mid - a) / (mid - a).norm()), 0.0);
-        rod.frame
-            .insert(j + 1, align(&frame, &((b - mid) / (b - mid).norm()), 0.0));
+        rod.frame[j] = align(&frame, &((mid - a) / (mid - a).norm()), -quarter_turn);
+        rod.frame.insert(
+            j + 1,
+            align(&frame, &((b - mid) / (b - mid).norm()), quarter_turn),
+        );
         rod.spin.insert(j + 1, rod.spin[j]);
         rod.stretch.insert(j + 1, rod.stretch[j]);
         let mut bend = rod.bend[j + 1];
@@ -107,6 +116,25 @@ impl System {
             // the half edge at the nozzle was not in the books before
             self.books.inflow += self.kinetic() - kinetic;
         }
+    }
+
+    /// Twist per length along edge `j`, the mean of its two joints, 1/m. Only the implicit method, whose
+    /// edges roll by what is asked of them, spreads twist over the halves of an edge.
+    fn twist_along(&self, j: usize) -> f64 {
+        if self.line.is_none() || !self.twist.is_carried() {
+            return 0.0;
+        }
+        let rod = &self.rod;
+        let at = |i: usize| {
+            let before = if i == 0 {
+                self.clamp_frame(0)
+            } else {
+                Some(rod.frame[i - 1])
+            };
+            before.map(|p| Joint::between(&p, &rod.frame[i]).twist / rod.voronoi(i))
+        };
+        let next = at(j + 1).unwrap_or(0.0);
+        0.5 * (at(j).unwrap_or(next) + next)
     }
 
     /// The same for the instants before, if the method keeps any.
@@ -181,7 +209,7 @@ impl System {
     /// Frame of a clamp at an inner node that leaves curvature and moment there what they are.
     fn frame_to_clamp(&self, node: usize) -> Quat {
         let rod = &self.rod;
-        let joint = crate::rod::Joint::between(&rod.frame[node - 1], &rod.frame[node]);
+        let joint = Joint::between(&rod.frame[node - 1], &rod.frame[node]);
         let share = rod.rest[node] / (rod.rest[node - 1] + rod.rest[node]);
         let rel = crate::rod::relative(
             [joint.bend[0] * share, joint.bend[1] * share],
@@ -269,6 +297,7 @@ impl System {
         let before = self.spindle.before(self.past.h[0]);
         self.past
             .insert_front(&places, Spin::new(before.angle), before.speed);
+        self.roll_with_core(count);
         self.place_supports();
         for i in 1..=count {
             let m = self.rod.mass(&self.section, i);
@@ -276,6 +305,34 @@ impl System {
         }
         self.books.frozen_stored += stored - self.stored();
         count
+    }
+
+    /// Gives the first `count` edges the spin of the turning core, now and in the instants before.
+    fn roll_with_core(&mut self, count: usize) {
+        if self.twist == Twist::Dynamic {
+            for j in 0..count {
+                self.rod.spin[j] = self.spindle.speed * self.rod.tangent(j).y;
+            }
+        }
+        if self.past.roll[0].len() + count != self.rod.edges() {
+            return;
+        }
+        let [h, h1] = self.past.h;
+        let times = [0.0, h, h + h1].map(|dt| self.spindle.before(dt));
+        for k in 0..2 {
+            let [now, back] = [times[k].angle, times[k + 1].angle];
+            let away = [now, back].map(|angle| turn_about_y(angle - self.spindle.angle));
+            let frames = self.rod.frame[..count].iter();
+            let rolls = frames.map(|f| roll_between(&(away[1] * f), &(away[0] * f)));
+            self.past.roll[k].splice(0..0, rolls);
+        }
+        let spin = self.rod.spin[..count].iter();
+        let share = if self.spindle.speed == 0.0 {
+            1.0
+        } else {
+            times[1].speed / self.spindle.speed
+        };
+        self.past.spin.splice(0..0, spin.map(|s| s * share));
     }
 
     /// Takes inner node `i` out and joins its edges; plastic state is shared out by length.
@@ -315,7 +372,13 @@ impl System {
         };
         rod.spin[i - 1] = share(rod.spin[i - 1], rod.spin[i]);
         rod.rest[i - 1] = joined;
-        rod.frame[i - 1] = align(&rod.frame[i - 1], &chord.normalize(), 0.0);
+        // the joined edge's middle is this far from that of its first part
+        let roll = if self.twist.is_carried() {
+            share(0.0, Joint::between(&rod.frame[i - 1], &rod.frame[i]).twist)
+        } else {
+            0.0
+        };
+        rod.frame[i - 1] = align(&rod.frame[i - 1], &chord.normalize(), roll);
         rod.x.remove(i);
         rod.v.remove(i);
         rod.bend.remove(i);
@@ -331,7 +394,7 @@ impl System {
         if let Some(l) = &mut self.line {
             l.merge(i);
         }
-        self.past.merge(i);
+        self.past.merge(i, b / (a + b));
         self.move_points(i);
         if at_nozzle {
             let lost = joined - a - b;
@@ -374,17 +437,29 @@ impl System {
         rod.twist[i].strain *= scale;
     }
 
-    /// Elastic bending energy per length at the node before the nozzle, J/m.
+    /// Elastic energy per length of bending and twist at the node before the nozzle, J/m.
     pub(super) fn bent_at_nozzle(&self) -> f64 {
         let rod = &self.rod;
         let i = rod.nodes() - 2;
-        let joint = crate::rod::Joint::between(&rod.frame[i - 1], &rod.frame[i]);
+        let joint = Joint::between(&rod.frame[i - 1], &rod.frame[i]);
         let own = rod.voronoi(i);
-        (0..2)
+        let bent: f64 = (0..2)
             .map(|k| {
                 0.5 * self.laws.bend.modulus
                     * (joint.bend[k] / own - rod.bend[i].curvature[k]).powi(2)
             })
-            .sum()
+            .sum();
+        if self.twist.is_carried() {
+            let twist = joint.twist / own - rod.twist[i].strain;
+            return bent + 0.5 * self.laws.twist.modulus * twist * twist;
+        }
+        bent
     }
+}
+
+/// Angle by which a frame has rolled on its way, against the shortest way of its edge, rad.
+fn roll_between(from: &Quat, to: &Quat) -> f64 {
+    let carried = align(from, &rotate(to, &V3::z()), 0.0);
+    let roll = carried.conjugate() * to;
+    2.0 * libm::atan2(roll.k, roll.w)
 }

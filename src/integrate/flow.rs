@@ -66,7 +66,7 @@ impl Flows {
             };
             let (m, _, work) = respond_bend(&laws.bend, &sys.rod.bend[i], [k1, k2]);
             let (t, _, twist_work) = respond_scalar(&laws.twist, &sys.rod.twist[i], k3);
-            let twists = sys.twist && twist_work > 0.0;
+            let twists = sys.twist.is_carried() && twist_work > 0.0;
             let (mut bend, mut twist) = ([[0.0; 2]; 2], 0.0);
             if work > 0.0 {
                 let (e, p) = (laws.bend.modulus, sys.rod.bend[i].curvature);

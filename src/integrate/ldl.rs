@@ -167,20 +167,21 @@ impl<const D: usize> Banded<D> {
         self.middle = [[0.0; WIDEST]; WIDEST];
     }
 
-    /// Adds a symmetric block to node `i`; only its lower half is read.
+    /// Adds a symmetric block to node `i`; only its lower half is read. A block of fewer than `D` rows
+    /// belongs to the first unknowns of the node.
     #[inline]
-    pub fn add_diagonal(&mut self, i: usize, block: &[[f64; D]; D]) {
+    pub fn add_diagonal<const B: usize>(&mut self, i: usize, block: &[[f64; B]; B]) {
         match self.place(i, i) {
             Place::Step(step, lane) => {
                 let own = &mut self.steps[step].own;
-                for a in 0..D {
+                for a in 0..B {
                     for b in 0..a + 1 {
                         own[a][b].0[lane] += block[a][b];
                     }
                 }
             }
             Place::Middle(row, _) => {
-                for a in 0..D {
+                for a in 0..B {
                     for b in 0..a + 1 {
                         self.middle[row + a][row + b] += block[a][b];
                     }
@@ -189,12 +190,13 @@ impl<const D: usize> Banded<D> {
         }
     }
 
-    /// Adds a block to the rows of node `i`, columns of node `i + k`, and its mirror image.
+    /// Adds a block to the rows of node `i`, columns of node `i + k`, and its mirror image; one of fewer
+    /// than `D` rows to their first unknowns.
     ///
     /// # Panics
     /// Unless `k` is 1 or 2 and node `i + k` exists.
     #[inline]
-    pub fn add(&mut self, i: usize, k: usize, block: &[[f64; D]; D]) {
+    pub fn add<const B: usize>(&mut self, i: usize, k: usize, block: &[[f64; B]; B]) {
         assert!(
             k == 1 || k == 2,
             "nodes couple over one or two edges, not {k}"
@@ -208,22 +210,22 @@ impl<const D: usize> Banded<D> {
                     &mut step.far
                 };
                 if lane == 0 {
-                    for a in 0..D {
-                        for b in 0..D {
+                    for a in 0..B {
+                        for b in 0..B {
                             kept[a][b].0[0] += block[a][b];
                         }
                     }
                 } else {
-                    for a in 0..D {
-                        for b in 0..D {
+                    for a in 0..B {
+                        for b in 0..B {
                             kept[b][a].0[1] += block[a][b];
                         }
                     }
                 }
             }
             Place::Middle(column, row) => {
-                for a in 0..D {
-                    for b in 0..D {
+                for a in 0..B {
+                    for b in 0..B {
                         self.middle[row + b][column + a] += block[a][b];
                     }
                 }

@@ -11,6 +11,7 @@ pub mod rk4;
 mod stability;
 mod support;
 mod system;
+mod twist;
 pub mod verlet;
 
 pub use books::Books;
@@ -20,3 +21,4 @@ pub use relax::{Limits, RelaxError, Relaxed, ramp, relax};
 pub use stability::{RK4_LIMIT, VERLET_LIMIT, highest_frequency, longest_step};
 pub use support::{Spindle, Support, turn_about_y};
 pub use system::{Loads, System};
+pub use twist::Twist;

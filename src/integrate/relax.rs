@@ -301,7 +301,7 @@ impl Balance {
         });
         let torques = (0..sys.rod.edges()).all(|j| {
             let noise = 64.0 * f64::EPSILON * sys.section.gj / sys.rod.rest[j];
-            !sys.twist || sys.load.torque[j].abs() <= tolerance * self.moment + noise
+            !sys.twist.is_carried() || sys.load.torque[j].abs() <= tolerance * self.moment + noise
         });
         forces && torques
     }
@@ -337,7 +337,7 @@ fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
         for a in 0..PER_NODE {
             let k = PER_NODE * i + a;
             if a == 3 {
-                if i + 1 == nodes || !sys.twist {
+                if i + 1 == nodes || !sys.twist.is_carried() {
                     tangent.fix(k);
                     step[k] = 0.0;
                 }

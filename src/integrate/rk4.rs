@@ -117,7 +117,7 @@ fn accumulate(sys: &mut System, s: &mut Stages, share: f64, dt: f64, reach: Opti
             sys.rod.v[i] = s.v0[i] + a * (reach * dt);
         }
     }
-    if sys.twist {
+    if sys.twist.is_carried() {
         for j in 0..sys.rod.edges() {
             let w = sys.rod.spin[j];
             let dw = sys.load.torque[j] / (inertia * sys.rod.rest[j]);

@@ -5,6 +5,7 @@
 use super::books::Books;
 use super::implicit::Past;
 use super::support::{Spindle, Support, turn_about_y};
+use super::twist::Twist;
 use crate::contact::{Body, Contacts, LineContact, LiveContact, Wire};
 use crate::feed::{Feed, FeedSpec};
 use crate::math::{Quat, Spin, V3, spin_velocity};
@@ -53,8 +54,8 @@ pub struct System {
     pub feed: Option<(FeedSpec, Feed)>,
     /// set pull of the tensioner, N
     pub set_tension: f64,
-    /// carry twist
-    pub twist: bool,
+    /// how twist is carried; the explicit methods know no quasi-static one
+    pub twist: Twist,
     /// unstretched length from the clamp to the first live node, m
     pub arc0: f64,
     /// energy books
@@ -93,7 +94,7 @@ impl System {
             dormant: Vec::new(),
             feed: None,
             set_tension: 0.0,
-            twist: true,
+            twist: Twist::Dynamic,
             arc0: 0.0,
             books: Books::default(),
             deepest: 0.0,
@@ -193,7 +194,7 @@ impl System {
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
         let parts = ForceParts {
             commit,
-            twist: self.twist,
+            twist: self.twist.is_carried(),
         };
         internal_forces(
             &mut self.rod,

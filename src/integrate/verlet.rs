@@ -30,7 +30,7 @@ pub fn shift_velocities(sys: &mut System, half: f64) {
         let m = per_length * sys.rod.voronoi(i);
         sys.rod.v[i] += sys.load.force[i] * (half / m);
     }
-    if sys.twist {
+    if sys.twist.is_carried() {
         let inertia = sys.section.spin_inertia_per_length();
         for j in 0..sys.rod.edges() {
             sys.rod.spin[j] += sys.load.torque[j] * (half / (inertia * sys.rod.rest[j]));
@@ -56,7 +56,7 @@ fn kick_and_drift(sys: &mut System, dt: f64) {
     for i in free {
         rod.x[i] += rod.v[i] * dt;
     }
-    if sys.twist {
+    if sys.twist.is_carried() {
         let inertia = sys.section.spin_inertia_per_length();
         for j in 0..rod.rest.len() {
             rod.spin[j] += sys.load.torque[j] * (dt / (inertia * rod.rest[j]));

@@ -134,6 +134,7 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
         let w = on(&d, [d.cross(t[1]), d.cross(t[0])]);
         knee = Some(Knee {
             rows: w,
+            rolls: [0.0; 2],
             trial: trial.dot(&dir),
             length: lv,
             rise,
@@ -202,8 +203,8 @@ fn add_pair(m: &mut Symmetric, a: &V3, b: &V3) {
 
 /// Moment, energy per length, stiffness along and across the moment, its direction (none where that does not
 /// matter).
-#[inline]
-fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3) {
+#[inline(always)]
+pub(super) fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3) {
     let n2 = trial.norm_squared();
     let limit = law.limit + rise;
     if n2 <= limit * limit {

@@ -18,6 +18,8 @@ const PROMISE: f64 = 0.01;
 pub struct Knee {
     /// derivative of the angle along the moment by the edges before and after, 1/m
     pub rows: [V3; 2],
+    /// the same by their rolls; 0 where no twist is carried
+    pub rolls: [f64; 2],
     /// trial moment, N m, and Voronoi length, m
     pub trial: f64,
     /// see `trial`

@@ -11,6 +11,7 @@ mod knee;
 mod plasticity;
 mod section;
 mod state;
+mod twisted;
 
 pub use discrete::{
     Bent, Block, Stretched, Symmetric, add_outer, add_square, bent, stretched, turning,
@@ -21,3 +22,4 @@ pub use knee::Knee;
 pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
 pub use section::Section;
 pub use state::Rod;
+pub use twisted::{Rolled, Turned, twisted};

@@ -17,6 +17,7 @@ pub use file::packed_names;
 pub use key::unit_suffixes;
 pub use settings::{CoreSettings, SceneSettings, SolverSettings, WireSettings};
 
+use crate::integrate::Twist;
 use crate::rod::Section;
 use std::path::PathBuf;
 
@@ -49,6 +50,8 @@ pub struct Scene {
     pub friction: Friction,
     /// solver settings
     pub solver: Solver,
+    /// what was left to the program, and what it does without
+    pub skipped: Vec<Decision>,
     /// when wire at rest leaves the computation
     pub freeze: Freeze,
     /// limits of the defect flags
@@ -190,11 +193,26 @@ pub enum Integrator {
     Implicit,
 }
 
+/// What became of a setting that left the choice to the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Decision {
+    /// name of the setting
+    pub name: &'static str,
+    /// what it was set to
+    pub setting: &'static str,
+    /// what was taken
+    pub decision: &'static str,
+    /// the reason
+    pub why: &'static str,
+}
+
 /// Solver settings.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Solver {
     /// time integrator
     pub integrator: Integrator,
+    /// how the wire's twist is carried
+    pub twist: Twist,
     /// node spacing near the core, m
     pub spacing_near: f64,
     /// node spacing in the free span, m

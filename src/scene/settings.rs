@@ -79,6 +79,7 @@ pub struct CoreSettings {
 #[allow(missing_docs)]
 pub struct SolverSettings {
     pub integrator: String,
+    pub twist: String,
     pub spacing_near: f64,
     pub spacing_free: f64,
     pub refine_distance: f64,
@@ -157,6 +158,7 @@ impl Default for SceneSettings {
             },
             solver: SolverSettings {
                 integrator: "auto".to_owned(),
+                twist: "auto".to_owned(),
                 spacing_near: 0.0,
                 spacing_free: 0.0,
                 refine_distance: 0.0,

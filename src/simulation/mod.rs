@@ -13,6 +13,7 @@ mod summary;
 
 pub use io::{Centreline, Event, EventKind, Inputs, Outputs, SimError};
 pub use programme::Programme;
+use programme::ROUNDING;
 pub use start::core_surface;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 
@@ -89,7 +90,12 @@ impl Simulation {
         };
         let spacing = scene.solver.spacing_near.min(scene.solver.spacing_free);
         let contact = scene.contact.stiffness;
-        let frequency = highest_frequency(&scene.wire, spacing, contact, true);
+        let frequency = highest_frequency(
+            &scene.wire,
+            spacing,
+            contact,
+            scene.solver.twist.is_carried(),
+        );
         let damping = damping_for_restitution(scene.contact.restitution);
         let stable = longest_step(limit, frequency, damping, contact, &scene.wire);
         let longest_step = if scene.solver.step > 0.0 {
@@ -224,7 +230,8 @@ impl Simulation {
         }
         let start = (self.sys.support[1].point.y, self.sys.spindle.angle);
         let mut left = dt;
-        while left > 0.0 {
+        // (differences of times leave a rest that is none, in which nothing can be solved for)
+        while left > ROUNDING * self.sys.time.max(dt) {
             let next = self.implicit.as_ref().map_or(left, |m| m.next);
             self.steer_nozzle(left.min(next), per_angle, start);
             let taken = self.implicit_step(left.min(self.longest_return()))?;

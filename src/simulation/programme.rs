@@ -3,6 +3,9 @@
 use crate::scene::Scene;
 use std::f64::consts::TAU;
 
+/// Share of a time by which sums of pieces of it may miss it.
+pub(super) const ROUNDING: f64 = 1e-12;
+
 /// Constant acceleration over the ramp, then constant speed; nozzle travel proportional to angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Programme {
@@ -79,7 +82,13 @@ impl Programme {
 
     /// Pieces of constant acceleration between two times.
     pub fn pieces(&self, from: f64, to: f64) -> impl Iterator<Item = Piece> + use<> {
-        let ramp = self.ramp_time();
+        let mut ramp = self.ramp_time();
+        for edge in [from, to] {
+            // what is left between is not a time, but the rounding of two
+            if (edge - ramp).abs() < ROUNDING * ramp {
+                ramp = edge;
+            }
+        }
         let mut pieces = [None; 2];
         if from < ramp {
             let end = to.min(ramp);
@@ -87,7 +96,7 @@ impl Programme {
                 pieces[0] = Some(Piece {
                     duration: end - from,
                     speed: self.speed(from),
-                    acceleration: self.speed / ramp,
+                    acceleration: self.speed / self.ramp_time(),
                 });
             }
         }
@@ -100,5 +109,41 @@ impl Programme {
             });
         }
         pieces.into_iter().flatten()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::SceneSettings;
+
+    /// However time is cut, no piece is the rounding of a sum.
+    #[test]
+    fn pieces_are_no_rounding() {
+        for speed in [30.0, 300.0, 500.0] {
+            for ramp in ["0.25", "0.5", "0.3"] {
+                let mut settings = SceneSettings::load("fig8").expect("packed");
+                for (name, value) in [("spindle.turns", "1"), ("spindle.ramp_turns", ramp)] {
+                    settings.set_text(name, value).expect("a setting");
+                }
+                let speed_text = format!("{speed}");
+                settings
+                    .set_text("spindle.speed", &speed_text)
+                    .expect("a setting");
+                let programme = Programme::new(&settings.build().expect("valid"));
+                for count in 1..400 {
+                    let dt = programme.end() / f64::from(count);
+                    let (mut time, mut whole) = (0.0, 0.0);
+                    for _ in 0..count {
+                        for piece in programme.pieces(time, time + dt) {
+                            assert!(piece.duration > 1e-9 * dt, "{speed} {count} {piece:?}");
+                            whole += piece.duration;
+                        }
+                        time += dt;
+                    }
+                    assert!((whole - programme.end()).abs() < 1e-12);
+                }
+            }
+        }
     }
 }

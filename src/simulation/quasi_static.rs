@@ -8,7 +8,7 @@
 use super::start::core_shape;
 use crate::contact::{ContactLaw, LineContact};
 use crate::core_shape::Surface;
-use crate::integrate::{Implicit, Scheme, Support, System};
+use crate::integrate::{Implicit, Scheme, Support, System, Twist};
 use crate::math::V3;
 use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN, polar_angle};
 use crate::rod::{Bend, Rod, Section, frame_along};
@@ -110,7 +110,7 @@ fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Opt
         frame: Some(frame_along(&along, None)),
         turning: false,
     };
-    sys.twist = false;
+    sys.twist = Twist::Off;
     sys.support[0] = mirror(points[0], [false, true, true], V3::z());
     sys.support[1] = mirror(points[count], [true, true, false], -V3::x());
     let law = ContactLaw {

@@ -174,8 +174,8 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
     if scene.solver.integrator == Integrator::Implicit {
         let shape = core_shape(&scene.core, &surface);
         sys.line = Some(LineContact::new(shape, law, radius, sys.rod.nodes()));
-        sys.twist = false;
     }
+    sys.twist = scene.solver.twist;
     let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,

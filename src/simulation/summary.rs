@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::measure::TurnMeasures;
-use crate::scene::{Integrator, Preset};
+use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
 
 /// What `summary.json` holds about the run itself.
@@ -14,6 +14,8 @@ pub struct Summary {
     pub preset: &'static str,
     /// `rk4` or `verlet`
     pub integrator: &'static str,
+    /// what the scene left to the program, what that took, and why
+    pub skipped: Vec<Decision>,
     /// node spacing near the core and in the free span, m
     pub spacing_m: [f64; 2],
     /// last time step, s
@@ -132,6 +134,7 @@ impl Simulation {
                 Integrator::Verlet => "verlet",
                 Integrator::Implicit => "implicit",
             },
+            skipped: self.scene.skipped.clone(),
             spacing_m: [
                 self.scene.solver.spacing_near,
                 self.scene.solver.spacing_free,

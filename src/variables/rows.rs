@@ -315,6 +315,7 @@ table! {
     fixed(1904, "solver.step_share", solver.step_share, "1", "", 1e-3, 1.0, 1.0, "time step as a share of the stability limit");
     fixed(1905, "solver.step", solver.step, "s", "us", 0.0, 1e-2, 1e-6, "fixed time step; 0: from the error (implicit) or the stability limit");
     fixed(1906, "solver.tolerance", solver.tolerance, "m", "um", 1e-9, 1e-3, 1e-6, "estimated error that a step of the implicit method may have, root mean square over the wire");
+    text(1907, "solver.twist", (solver.twist), ["auto", "off", "quasi-static", "dynamic"], "how the wire's twist is carried; auto: the least that matters; dynamic with the explicit methods");
 
     switch(2000, "freeze.enabled", freeze.enabled, "false keeps all wire in the computation");
     fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");

@@ -5,7 +5,8 @@ use super::modes::{Motion, lowest};
 use super::wire::{clamp_along_x, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::integrate::{
-    Implicit, RK4_LIMIT, Scheme, Support, System, VERLET_LIMIT, highest_frequency, rk4, verlet,
+    Implicit, RK4_LIMIT, Scheme, Support, System, Twist, VERLET_LIMIT, highest_frequency, rk4,
+    verlet,
 };
 use crate::math::V3;
 use crate::scene::Integrator;
@@ -58,7 +59,7 @@ fn wave_speed(ctx: &Context, length: f64) -> Result<f64, VerifyError> {
     let n = ctx.edges(length, length / PULSE_EDGES)?;
     let h = length / n as f64;
     let mut sys = straight(ctx.elastic(), &vec![h; n]);
-    sys.twist = false;
+    sys.twist = Twist::Off;
     for i in 0..=n {
         let z = (sys.rod.x[i].x / length - 0.3) / PULSE_WIDTH;
         sys.rod.v[i].x = PULSE_SPEED * libm::exp(-0.5 * z * z);

@@ -7,7 +7,7 @@ use crate::contact::{ContactLaw, Contacts, LineContact};
 use crate::core_shape::{Shape, Surface, Touch, TriMesh, generate};
 use crate::freeze::{FrozenNode, SIDES, Tube};
 use crate::integrate::{
-    Implicit, Scheme, Support, System, VERLET_LIMIT, highest_frequency, verlet,
+    Implicit, Scheme, Support, System, Twist, VERLET_LIMIT, highest_frequency, verlet,
 };
 use crate::math::V3;
 use crate::rod::{Rod, Section, align, frame_along};
@@ -138,7 +138,7 @@ impl Bench {
             .collect();
         let mut sys = System::new(section.clone(), Rod::through(&points, None));
         // the section does not turn: nothing in these checks rolls
-        sys.twist = false;
+        sys.twist = Twist::Off;
         let implicit = ctx.integrator == Integrator::Implicit;
         if implicit {
             let floor = Shape::RoundedBox {

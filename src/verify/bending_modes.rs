@@ -4,7 +4,7 @@ use super::equilibrium::follow;
 use super::modes::{Motion, lowest};
 use super::wire::{heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Support, System};
+use crate::integrate::{Support, System, Twist};
 use crate::math::V3;
 
 /// Edges over the wire's length, at least and at most.
@@ -45,7 +45,7 @@ fn stretched(ctx: &Context) -> Result<System, VerifyError> {
     // the length is meant under tension
     let rest = length / (1.0 + tension / section.ea);
     let mut sys = straight(section, &vec![rest / n as f64; n]);
-    sys.twist = false;
+    sys.twist = Twist::Off;
     let frame = |clamps: bool| clamps.then(|| heading(0.0));
     sys.support = [
         Support {

@@ -7,7 +7,7 @@
 use super::equilibrium::follow;
 use super::wire::{angle, curvature, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::Support;
+use crate::integrate::{Support, Twist};
 use crate::math::V3;
 
 /// Slope of the small response, rad: its square is the departure from the linear answer.
@@ -37,7 +37,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         },
     ];
     // the pinned ends leave the wire free to roll about its axis
-    sys.twist = false;
+    sys.twist = Twist::Off;
     follow(ctx, &mut sys, |sys, s| {
         sys.loads.nodal = vec![(n, V3::x() * (pull * s))];
     })?;

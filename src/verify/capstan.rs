@@ -9,7 +9,7 @@ use super::{Answer, Answers, Context, VerifyError};
 use crate::contact::{Contacts, LineContact};
 use crate::core_shape::Shape;
 use crate::core_shape::generate::cylinder;
-use crate::integrate::{Support, System, verlet};
+use crate::integrate::{Support, System, Twist, verlet};
 use crate::math::V3;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
@@ -111,7 +111,7 @@ impl Capstan {
             .collect();
         let mut sys = System::new(section.clone(), Rod::through(&points, Some(rest)));
         // plane, so untwisted
-        sys.twist = false;
+        sys.twist = Twist::Off;
         let stiffness = hold / (bend * bend * DEPTH);
         let law = law(stiffness, 1.0, mu);
         let (count, r) = (points.len(), section.radius());

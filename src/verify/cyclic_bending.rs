@@ -5,7 +5,7 @@
 use super::equilibrium::{method, no_answer};
 use super::wire::{heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::Support;
+use crate::integrate::{Support, Twist};
 use crate::math::V3;
 use crate::scene::Integrator;
 
@@ -29,7 +29,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         let angle = -curvature * sys.rod.voronoi(0);
         sys.support[0].frame = Some(heading(angle));
         if ctx.integrator == Integrator::Implicit {
-            sys.twist = false;
+            sys.twist = Twist::Off;
             // before the path goes on the moment is the work of the step; the shear couple carries it
             moments.push(-method.forces(&mut sys)[1].y * edge);
             method.settle(&mut sys).map_err(no_answer)?;

@@ -3,8 +3,9 @@
 //! One turn, its ends clamped in place, direction and roll as on the helix, the rest free to find
 //! its equilibrium; the wrench is what the clamp at the far end puts into the wire.
 
+use super::equilibrium::settle_with_twist;
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, Support, System, relax};
+use crate::integrate::{Support, System};
 use crate::math::{Quat, V3};
 use crate::rod::Rod;
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
@@ -74,7 +75,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         Support::clamped(points[0], helix.frame(0.0)),
         Support::clamped(points[n], helix.frame(TAU)),
     ];
-    relax(&mut sys, &Limits::default())?;
+    settle_with_twist(ctx, &mut sys)?;
     let force = -sys.load.force[n];
     let couple = sys.load.clamp_moment[1] + points[n].cross(&force);
     Ok(vec![

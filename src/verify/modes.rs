@@ -53,7 +53,6 @@ pub(super) fn lowest(
             Motion::Roll => sys.section.spin_inertia_per_length() * sys.rod.rest[i],
         })
         .collect();
-    // twist is not the production method's yet
     let mut forces: Forces = match motion {
         Motion::Along(a) if ctx.integrator == Integrator::Implicit => {
             let mut method = method(sys);
@@ -63,6 +62,10 @@ pub(super) fn lowest(
             sys.evaluate(None);
             along(&sys.load.force, a)
         }),
+        Motion::Roll if ctx.integrator == Integrator::Implicit => {
+            let mut method = method(sys);
+            Box::new(move |sys| method.out_of_balance(sys).1)
+        }
         Motion::Roll => Box::new(|sys| {
             sys.evaluate(None);
             sys.load.torque.clone()

@@ -13,7 +13,7 @@ use crate::contact::{Contacts, LineContact};
 use crate::core_shape::Shape;
 use crate::core_shape::generate::cylinder;
 use crate::feed::{Feed, FeedSpec};
-use crate::integrate::{Implicit, Scheme, Spindle, Support, System, rk4};
+use crate::integrate::{Implicit, Scheme, Spindle, Support, System, Twist, rk4};
 use crate::math::{V3, spin_velocity};
 use crate::rod::{Rod, Section, frame_along};
 use crate::scene::Integrator;
@@ -125,7 +125,7 @@ fn ring(ctx: &Context, section: &Section, radius: f64, pull: f64) -> System {
         };
     }
     // a plane ring carries no twist
-    sys.twist = false;
+    sys.twist = Twist::Off;
     sys
 }
 

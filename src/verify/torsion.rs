@@ -1,9 +1,10 @@
 //! Static twist and torsion modes of a straight wire.
 
+use super::equilibrium::follow_with_twist;
 use super::modes::{Motion, lowest};
 use super::wire::{clamp_along_x, straight, twist};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Limits, Support, ramp};
+use crate::integrate::Support;
 use crate::math::V3;
 
 /// Edges along the wire.
@@ -21,7 +22,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let both = lowest(ctx, &mut sys, Motion::Roll, 1)?;
 
     sys.support[1] = Support::free();
-    ramp(&mut sys, &Limits::default(), |sys, share| {
+    follow_with_twist(ctx, &mut sys, |sys, share| {
         sys.loads.moments = vec![(n - 1, V3::x() * (torque * share))];
     })?;
     let edges: f64 = (0..n).map(|i| twist(&sys, i) * sys.rod.voronoi(i)).sum();

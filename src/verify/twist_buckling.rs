@@ -5,10 +5,12 @@
 //! made symmetric) is positive definite. The torque is read at the clamp. Rolls of the edges are
 //! left out: to first order they do not couple with sideways motion of a straight wire.
 
+use super::equilibrium::method;
 use super::{Answer, Answers, Context, VerifyError};
 use crate::integrate::{Support, System};
 use crate::math::V3;
 use crate::rod::{Rod, Section, align, frame_along};
+use crate::scene::Integrator;
 use nalgebra::DMatrix;
 
 /// Fewest edges, and edges per bending length `sqrt(EI/T)`; the error falls with the square.
@@ -24,7 +26,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let section = ctx.elastic();
     let bending_lengths = length * (pull.max(0.0) / section.ei).sqrt();
     let edges = EDGES.max(PER_BENDING_LENGTH * bending_lengths).min(400.0) as usize;
-    let stable = |rotation: f64| Straight::new(&section, length, pull, rotation, edges).stable();
+    let stable = |rotation: f64| Straight::new(&section, length, pull, rotation, edges).stable(ctx);
     let mut low = 0.0;
     let mut high = 1.0;
     while stable(high) {
@@ -86,7 +88,15 @@ impl Straight {
     }
 
     /// Whether small displacements are driven back.
-    fn stable(mut self) -> bool {
+    fn stable(mut self, ctx: &Context) -> bool {
+        let mut method = method(&self.sys);
+        let mut forces = |sys: &mut System| {
+            if ctx.integrator == Integrator::Implicit {
+                return method.forces(sys);
+            }
+            sys.evaluate(None);
+            sys.load.force.clone()
+        };
         let nodes = self.sys.rod.nodes();
         // all coordinates of the inner nodes, and the sliding of the end
         let place: Vec<(usize, usize)> = (1..nodes - 1)
@@ -100,12 +110,12 @@ impl Straight {
             for side in [1.0, -1.0] {
                 let home = self.sys.rod.x[i][a];
                 self.sys.rod.x[i][a] = home + side * step;
-                self.sys.evaluate(None);
+                let force = forces(&mut self.sys);
                 self.sys.rod.x[i][a] = home;
                 // a node's force reaches two nodes to either side
                 for (row, &(k, b)) in place.iter().enumerate() {
                     if k.abs_diff(i) <= 2 {
-                        stiffness[(row, column)] -= side * self.sys.load.force[k][b] / (2.0 * step);
+                        stiffness[(row, column)] -= side * force[k][b] / (2.0 * step);
                     }
                 }
             }

@@ -1,24 +1,24 @@
 //! Taking a converged step over as the new state, and the books of it.
 
-use super::Implicit;
 use super::model::{point_length, spline_point};
 use super::scheme::{Past, Scheme, Step};
 use super::tensioner::{NozzleEdge, advance};
+use super::{Implicit, Work};
 use crate::contact::{LineContact, own_wire};
 use crate::integrate::{Spindle, Support, System};
 use crate::math::{Spin, V3};
 use crate::rod::Rod;
 
 impl Implicit {
-    pub(super) fn commit(
+    pub(super) fn commit<const D: usize>(
         &mut self,
+        w: &mut Work<D>,
         sys: &mut System,
         step: &Step,
         spindle: Spindle,
         support: &[Support; 2],
         nozzle: Option<NozzleEdge>,
     ) {
-        let w = &mut self.work;
         let h = step.h;
         w.force.clone_from(&sys.load.force);
         let spin = Spin::new(spindle.angle);
@@ -32,6 +32,10 @@ impl Implicit {
             sys.torque_on_core,
             sys.load.tension.last().copied(),
         );
+        if Work::<D>::ROLLS {
+            w.rolls.keep_torques(sys);
+            w.rolls.hand_over(sys, self.scheme, step);
+        }
         let (fed, grown) = self::feed(sys, step, nozzle, &w.q);
         for i in 0..nodes {
             let x = spin.to_lab(w.q[i]);
@@ -88,6 +92,9 @@ impl Implicit {
         for i in sys.free_nodes() {
             work += 0.5 * (sys.load.force[i] + w.force[i]).dot(&(sys.rod.x[i] - w.start[i]));
         }
+        if Work::<D>::ROLLS {
+            work += w.rolls.work(sys);
+        }
         let gained = if feeds {
             0.5 * inflow * sys.rod.v[sys.rod.edges() - 1].norm_squared()
         } else {
@@ -139,6 +146,9 @@ impl System {
             if let Some((_, f)) = &self.feed {
                 self.past.fed = [f.fed; 2];
                 (self.past.paid, self.past.paid_rate) = (f.paid, f.paid_rate);
+            }
+            if self.twist.is_carried() {
+                self.past.forget_rolls(self.rod.edges());
             }
             self.place_points();
         }

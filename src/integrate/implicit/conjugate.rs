@@ -24,8 +24,8 @@ pub(super) struct Scratch {
 
 /// Solves (banded + couplings) x = b in place; `matrix` is factored.
 #[inline(never)]
-pub(super) fn solve(
-    matrix: &Banded<3>,
+pub(super) fn solve<const D: usize>(
+    matrix: &Banded<D>,
     cross: &[Cross],
     held: [[bool; 3]; 2],
     b: &mut [f64],
@@ -45,8 +45,8 @@ pub(super) fn solve(
     let stop = rz * CLOSE * CLOSE;
     for _ in 0..MOST_STEPS {
         s.y.copy_from_slice(&s.banded);
-        add_cross(cross, &s.p, &mut s.y);
-        for (end, first) in [(0, 0), (1, n - 3)] {
+        add_cross::<D>(cross, &s.p, &mut s.y);
+        for (end, first) in [(0, 0), (1, n - D)] {
             for a in 0..3 {
                 if held[end][a] {
                     s.y[first + a] = s.p[first + a];

@@ -8,6 +8,7 @@ mod commit;
 mod conjugate;
 mod model;
 mod newton;
+mod roll;
 mod scheme;
 mod settle;
 mod tensioner;
@@ -15,10 +16,11 @@ mod tensioner;
 pub(in crate::integrate) use model::{point_length, spline_point};
 pub use scheme::{Past, Scheme};
 
-use super::{Banded, Spindle, Support, System, turn_about_y};
+use super::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, Spin, V3};
 use crate::rod::{Joint, Knee, align, rotate};
 use model::Model;
+use roll::{Rolls, WITH_ROLL};
 use scheme::{Step, extrapolation};
 use tensioner::NozzleEdge;
 
@@ -50,7 +52,9 @@ pub struct Implicit {
     pub flat: bool,
     /// what it took so far
     pub effort: Effort,
-    work: Work,
+    work: Work<3>,
+    /// the same where twist is carried
+    twisted: Work<WITH_ROLL>,
 }
 
 /// Counts since the start.
@@ -72,9 +76,9 @@ pub struct Effort {
     pub rounds: u64,
 }
 
-/// Scratch arrays of a step, core frame.
-#[derive(Clone, Debug)]
-struct Work {
+/// Scratch arrays of a step with `D` unknowns a node, core frame.
+#[derive(Clone, Debug, Default)]
+struct Work<const D: usize> {
     q: Vec<V3>,
     start: Vec<V3>,
     guess: Vec<V3>,
@@ -96,12 +100,28 @@ struct Work {
     load: Vec<f64>,
     /// the update without a look ahead
     plain: Vec<f64>,
-    matrix: Banded<3>,
+    matrix: Banded<D>,
+    rolls: Rolls,
     gradients: conjugate::Scratch,
     force: Vec<V3>,
     evaluations: u64,
     solves: u64,
     cuts: u64,
+}
+
+impl<const D: usize> Work<D> {
+    /// Whether edges roll, so that twist is carried.
+    const ROLLS: bool = D == WITH_ROLL;
+
+    /// The update of node `i`'s place.
+    #[inline]
+    fn update_of(&self, i: usize) -> V3 {
+        V3::new(
+            self.update[D * i],
+            self.update[D * i + 1],
+            self.update[D * i + 2],
+        )
+    }
 }
 
 /// An edge's stretch as Newton's method sees it.
@@ -161,34 +181,31 @@ impl Implicit {
             scheme,
             flat: false,
             effort: Effort::default(),
-            work: Work {
-                q: Vec::new(),
-                start: Vec::new(),
-                guess: Vec::new(),
-                target: Vec::new(),
-                star: [Vec::new(), Vec::new()],
-                mass: Vec::new(),
-                set: Vec::new(),
-                axial: Vec::new(),
-                base: Vec::new(),
-                expected: Vec::new(),
-                knees: Vec::new(),
-                gradient: Vec::new(),
-                update: Vec::new(),
-                load: Vec::new(),
-                plain: Vec::new(),
-                matrix: Banded::new(),
-                gradients: conjugate::Scratch::default(),
-                force: Vec::new(),
-                evaluations: 0,
-                solves: 0,
-                cuts: 0,
-            },
+            work: Work::default(),
+            twisted: Work::default(),
         }
     }
 
     /// Takes one step of at most `most` seconds; returns its length.
     pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, Stopped> {
+        if sys.twist == Twist::Off {
+            let mut work = std::mem::take(&mut self.work);
+            let taken = self.step_with(&mut work, sys, most);
+            self.work = work;
+            return taken;
+        }
+        let mut work = std::mem::take(&mut self.twisted);
+        let taken = self.step_with(&mut work, sys, most);
+        self.twisted = work;
+        taken
+    }
+
+    fn step_with<const D: usize>(
+        &mut self,
+        work: &mut Work<D>,
+        sys: &mut System,
+        most: f64,
+    ) -> Result<f64, Stopped> {
         sys.begin_past();
         let mut h = self.fixed.unwrap_or(self.next).min(self.longest);
         if h >= most {
@@ -201,8 +218,8 @@ impl Implicit {
             let step = Step::new(self.scheme, &sys.past, h);
             let spindle = sys.spindle.after(step.share * h);
             let support = moved(&sys.support, step.share * h);
-            let nozzle = self.prepare(sys, &step, &spindle, &support);
-            let share = self.share_of_way(sys);
+            let nozzle = work.prepare(sys, &step, &spindle, &support, true);
+            let share = work.share_of_way(sys);
             if share < 1.0 && h > self.shortest && self.fixed.is_none() {
                 h = (share * h).max(self.shortest);
                 continue;
@@ -210,27 +227,27 @@ impl Implicit {
             if let Some(line) = &mut sys.line {
                 line.begin_attempt();
                 if let Some(b) = &mut line.between {
-                    let guess = &self.work.guess;
-                    b.list(&sys.past.q[0], guess, &sys.rod.rest, sys.section.diameter);
+                    let (from, guess) = (&sys.past.q[0], &work.guess);
+                    b.list(from, guess, &sys.rod.rest, sys.section.diameter);
                 }
             }
             let mut model = model_of(sys, &step, &spindle, &support, nozzle);
             let solved = newton::solve(
                 &mut model,
-                &mut self.work,
+                work,
                 CLOSE * self.tolerance,
                 newton::Reach {
                     damped: self.scheme == Scheme::Bdf2,
                     ..newton::Reach::STEP
                 },
             );
-            self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
-            self.effort.solves += std::mem::take(&mut self.work.solves);
-            self.effort.cuts += std::mem::take(&mut self.work.cuts);
-            self.effort.rounds += std::mem::take(&mut self.work.gradients.rounds);
+            self.effort.evaluations += std::mem::take(&mut work.evaluations);
+            self.effort.solves += std::mem::take(&mut work.solves);
+            self.effort.cuts += std::mem::take(&mut work.cuts);
+            self.effort.rounds += std::mem::take(&mut work.gradients.rounds);
             let missed = sys.line.as_ref().and_then(|l| {
                 let between = l.between.as_ref()?;
-                between.missed(&sys.past.q[0], &self.work.q)
+                between.missed(&sys.past.q[0], &work.q)
             });
             let retry = match solved {
                 // farther than the pairs of wire were looked for
@@ -239,10 +256,10 @@ impl Implicit {
                     0.5 * h
                 }
                 Ok(_) => {
-                    let error = step.error * self.difference();
+                    let error = step.error * work.difference();
                     let factor = (AIM * self.tolerance / error.max(1e-30)).cbrt();
                     if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
-                        self.commit(sys, &step, spindle, &support, nozzle);
+                        self.commit(work, sys, &step, spindle, &support, nozzle);
                         self.effort.steps += 1;
                         // a step cut short by the end of the interval says nothing against a longer one
                         let allowed = h * factor;
@@ -275,12 +292,50 @@ impl Implicit {
         }
     }
 
-    /// Share of the guess's way that takes no node deeper than its radius into core or frozen wire: error estimate and contact search
+    /// Hands `with` the evaluation of potential, gradient and Hessian at the guess of a step of `h`, to
+    /// be measured as often as it likes; nothing is committed.
+    #[doc(hidden)]
+    pub fn evaluating(
+        &mut self,
+        sys: &mut System,
+        h: f64,
+        with: impl FnOnce(&mut dyn FnMut() -> f64),
+    ) {
+        if sys.twist == Twist::Off {
+            evaluating_with(self.scheme, &mut self.work, sys, h, with);
+        } else {
+            evaluating_with(self.scheme, &mut self.twisted, sys, h, with);
+        }
+    }
+}
+
+fn evaluating_with<const D: usize>(
+    scheme: Scheme,
+    work: &mut Work<D>,
+    sys: &mut System,
+    h: f64,
+    with: impl FnOnce(&mut dyn FnMut() -> f64),
+) {
+    sys.begin_past();
+    let step = Step::new(scheme, &sys.past, h);
+    let (spindle, support) = (
+        sys.spindle.after(step.share * h),
+        moved(&sys.support, step.share * h),
+    );
+    let nozzle = work.prepare(sys, &step, &spindle, &support, true);
+    let mut model = model_of(sys, &step, &spindle, &support, nozzle);
+    newton::expect_nothing(&model, work);
+    with(&mut || model.evaluate(work).now);
+}
+
+impl<const D: usize> Work<D> {
+    /// Share of the guess's way that takes no node deeper than its radius into core or frozen wire: error
+    /// estimate and contact search
     /// both know nothing of a surface that lies between the ends of a step.
     fn share_of_way(&self, sys: &System) -> f64 {
         let Some(line) = &sys.line else { return 1.0 };
         let mut share: f64 = 1.0;
-        for (q, guess) in sys.past.q[0].iter().zip(&self.work.guess) {
+        for (q, guess) in sys.past.q[0].iter().zip(&self.guess) {
             let way = (guess - q).norm();
             if way > line.radius {
                 let room = (line.shape.lower_bound(*q) - line.height).max(line.radius);
@@ -291,28 +346,8 @@ impl Implicit {
         if share < 1.0 { 0.9 * share } else { 1.0 }
     }
 
-    /// Hands `with` the evaluation of potential, gradient and Hessian at the guess of a step of `h`, to
-    /// be measured as often as it likes; nothing is committed.
-    #[doc(hidden)]
-    pub fn evaluating(
-        &mut self,
-        sys: &mut System,
-        h: f64,
-        with: impl FnOnce(&mut dyn FnMut() -> f64),
-    ) {
-        sys.begin_past();
-        let step = Step::new(self.scheme, &sys.past, h);
-        let (spindle, support) = (
-            sys.spindle.after(step.share * h),
-            moved(&sys.support, step.share * h),
-        );
-        let nozzle = self.prepare(sys, &step, &spindle, &support);
-        let mut model = model_of(sys, &step, &spindle, &support, nozzle);
-        newton::expect_nothing(&model, &mut self.work);
-        with(&mut || model.evaluate(&mut self.work).now);
-    }
-
-    /// Fills guess, inertial target, masses and plastic curvature for a step.
+    /// Fills guess, inertial target, masses, and plastic curvature or frames for a step; rolls are
+    /// without inertia where not `inert`.
     #[inline(never)]
     fn prepare(
         &mut self,
@@ -320,8 +355,9 @@ impl Implicit {
         step: &Step,
         spindle: &Spindle,
         support: &[Support; 2],
+        inert: bool,
     ) -> Option<NozzleEdge> {
-        let w = &mut self.work;
+        let w = &mut *self;
         let (rod, past) = (&sys.rod, &sys.past);
         let nodes = rod.nodes();
         let spin = Spin::new(spindle.angle);
@@ -364,7 +400,11 @@ impl Implicit {
             }
         }
         w.q.clone_from(&w.guess);
-        self.turn_plastic_curvature(sys, spindle, support);
+        if Self::ROLLS {
+            self.rolls.prepare(sys, step, spindle, support, inert);
+        } else {
+            self.turn_plastic_curvature(sys, spindle, support);
+        }
         let (spec, feed) = sys.feed.as_ref()?;
         let last = rod.edges() - 1;
         Some(NozzleEdge::new(
@@ -384,7 +424,7 @@ impl Implicit {
 
     /// Plastic curvature of each joint as a vector in the core frame, turned along with the guess.
     fn turn_plastic_curvature(&mut self, sys: &System, spindle: &Spindle, support: &[Support; 2]) {
-        let w = &mut self.work;
+        let w = &mut *self;
         let rod = &sys.rod;
         let back = turn_about_y(-spindle.angle);
         w.set.clear();
@@ -418,11 +458,14 @@ impl Implicit {
 
     /// Root mean square over the wire of what Newton's method moved the guess by, m.
     fn difference(&self) -> f64 {
-        let w = &self.work;
+        let w = self;
         let (mut sum, mut mass) = (0.0, 0.0);
         for ((q, g), m) in w.q.iter().zip(&w.guess).zip(&w.mass) {
             sum += m * (q - g).norm_squared();
             mass += m;
+        }
+        if Self::ROLLS {
+            sum += w.rolls.difference();
         }
         (sum / mass).sqrt()
     }

@@ -1,11 +1,13 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
 use super::tensioner::NozzleEdge;
-use super::{Axial, Work};
+use super::{Axial, Work, roll};
 use crate::contact::{LineContact, own_wire};
-use crate::integrate::Loads;
+use crate::integrate::{Banded, Loads};
 use crate::math::V3;
-use crate::rod::{Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched, turning};
+use crate::rod::{
+    Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched, turning, twisted,
+};
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {
@@ -54,12 +56,16 @@ const NO_JOINT: Bent = Bent {
 
 impl Model<'_> {
     /// Evaluates at `work.q` into `work.gradient` and `work.matrix`.
-    pub(super) fn evaluate(&mut self, work: &mut Work) -> Value {
+    pub(super) fn evaluate<const D: usize>(&mut self, work: &mut Work<D>) -> Value {
         work.evaluations += 1;
         let nodes = work.q.len();
         work.gradient.clear();
         work.gradient.resize(nodes, V3::zeros());
         work.matrix.reset(nodes);
+        if Work::<D>::ROLLS {
+            work.rolls.gradient.clear();
+            work.rolls.gradient.resize(nodes, 0.0);
+        }
         let mut energy = self.inertia_and_loads(work);
         let (bending, stretch) = self.rod_forces(work);
         energy += bending;
@@ -75,6 +81,9 @@ impl Model<'_> {
             matrix.pin(i, a);
             gradient[i][a] = 0.0;
         });
+        if Work::<D>::ROLLS {
+            work.rolls.pin(&mut work.matrix);
+        }
         value
     }
 
@@ -94,7 +103,7 @@ impl Model<'_> {
         }
     }
 
-    fn inertia_and_loads(&self, work: &mut Work) -> f64 {
+    fn inertia_and_loads<const D: usize>(&self, work: &mut Work<D>) -> f64 {
         let weight = 1.0 / (self.gamma * self.gamma);
         let gravity = self.back.to_core(self.loads.gravity);
         let mut energy = 0.0;
@@ -117,20 +126,30 @@ impl Model<'_> {
                 }
             }
         }
+        if Work::<D>::ROLLS {
+            let drag = self.loads.drag;
+            energy += work.rolls.add_inertia(self.gamma, drag, &mut work.matrix);
+        }
         for (i, f) in &self.loads.nodal {
             let f = self.back.to_core(*f);
             energy -= f.dot(&work.q[*i]);
             work.gradient[*i] -= f;
         }
         for (j, m) in &self.loads.moments {
-            // only what turns the edge: twist is not carried. The work is that of turning from the
-            // guess, exact in a plane; in space a dead moment has no potential
+            // The work is that of turning from the guess, exact in a plane; in space a dead moment has no
+            // potential. Without twist it turns the edge and does not roll it
             let m = self.back.to_core(*m);
             let d = work.q[j + 1] - work.q[*j];
             let (length, from) = (d.norm(), work.guess[j + 1] - work.guess[*j]);
             let t = d / length;
             energy -= m.dot(&turning([&(from / from.norm()), &t]));
-            let couple = m.cross(&t) / length;
+            let mut couple = m.cross(&t) / length;
+            if Work::<D>::ROLLS {
+                let about = m.dot(&t);
+                couple = work.rolls.edge(*j, t, 1.0 / length).derivative(&m).0;
+                energy -= about * (work.rolls.angle[*j] - work.rolls.guess[*j]);
+                work.rolls.gradient[*j] -= about;
+            }
             work.gradient[j + 1] -= couple;
             work.gradient[*j] += couple;
         }
@@ -138,13 +157,17 @@ impl Model<'_> {
     }
 
     /// Energy of bending, and of stretch.
-    fn rod_forces(&self, work: &mut Work) -> (f64, Value) {
+    fn rod_forces<const D: usize>(&self, work: &mut Work<D>) -> (f64, Value) {
         let edges = work.q.len() - 1;
         work.knees.clear();
         let mut energy = 0.0;
         let mut axial = Value::default();
         // edge in hand, the joint at its start, the cross block there
         let mut before = (self.clamp[0], 0.0);
+        let mut frame_before = None;
+        if Work::<D>::ROLLS {
+            frame_before = work.rolls.clamp(0);
+        }
         let mut at_start = NO_JOINT;
         let mut stretch = [0.0; 6];
         // what the edge before puts on the node in hand
@@ -153,14 +176,36 @@ impl Model<'_> {
         let mut pull = V3::zeros();
         for j in 0..=edges {
             let (mut after, mut length) = ((self.clamp[1], 0.0), 0.0);
+            let mut frame_after = None;
             if j < edges {
                 let d = work.q[j + 1] - work.q[j];
                 length = d.norm();
                 let il = 1.0 / length;
                 after = (Some(d * il), il);
+                if Work::<D>::ROLLS {
+                    frame_after = Some(work.rolls.edge(j, d * il, il));
+                }
+            } else if Work::<D>::ROLLS {
+                frame_after = work.rolls.clamp(1);
             }
             let mut joint = NO_JOINT;
-            if let (Some(p), Some(n)) = (&before.0, &after.0) {
+            if Work::<D>::ROLLS {
+                if let (Some(p), Some(n)) = (&frame_before, &frame_after) {
+                    let rolled;
+                    (joint, rolled) = twisted(
+                        self.laws,
+                        &self.rod.bend[j],
+                        &self.rod.twist[j],
+                        self.rod.voronoi(j),
+                        [p, n],
+                    );
+                    energy += joint.energy;
+                    roll::spread(work, j, &rolled, [j > 0, j < edges]);
+                    if let Some(knee) = joint.knee {
+                        work.knees.push((j as u32, knee));
+                    }
+                }
+            } else if let (Some(p), Some(n)) = (&before.0, &after.0) {
                 joint = bent(
                     &self.laws.bend,
                     &work.set[j],
@@ -256,12 +301,15 @@ impl Model<'_> {
                 add_square(&mut stretch, &t, s.stiffness - across);
             }
             before = after;
+            if Work::<D>::ROLLS {
+                frame_before = frame_after;
+            }
             at_start = joint;
         }
         (energy, axial)
     }
 
-    fn contact(&mut self, work: &mut Work, value: &mut Value) {
+    fn contact<const D: usize>(&mut self, work: &mut Work<D>, value: &mut Value) {
         let Some(line) = self.line.as_deref_mut() else {
             return;
         };
@@ -340,9 +388,9 @@ pub(in crate::integrate) fn point_length(rod: &Rod, point: usize) -> f64 {
 }
 
 /// Adds a point's gradient and Hessian to three neighbouring nodes.
-fn spread_block(
+fn spread_block<const D: usize>(
     gradient: &mut [V3],
-    matrix: &mut crate::integrate::Banded<3>,
+    matrix: &mut Banded<D>,
     (nodes, weights): &([usize; 3], [f64; 3]),
     g: &V3,
     block: &Block,
@@ -354,8 +402,8 @@ fn spread_block(
 }
 
 /// Adds a point's Hessian to three neighbouring nodes.
-pub(super) fn add_block(
-    matrix: &mut crate::integrate::Banded<3>,
+pub(super) fn add_block<const D: usize>(
+    matrix: &mut Banded<D>,
     (nodes, weights): &([usize; 3], [f64; 3]),
     block: &Block,
 ) {
@@ -380,7 +428,14 @@ pub(in crate::integrate) fn spline_point(q: &[V3], i: usize) -> V3 {
     (q[i - 1] + q[i + 1]) * 0.125 + q[i] * 0.75
 }
 
-fn spread(work: &mut Work, first: usize, weight: &[f64], gradient: &V3, hessian: &Block) {
+#[inline]
+fn spread<const D: usize>(
+    work: &mut Work<D>,
+    first: usize,
+    weight: &[f64],
+    gradient: &V3,
+    hessian: &Block,
+) {
     for (a, wa) in weight.iter().enumerate() {
         work.gradient[first + a] += gradient * *wa;
         let own = combine(|r, c| hessian[r][c] * (wa * wa));
@@ -392,7 +447,7 @@ fn spread(work: &mut Work, first: usize, weight: &[f64], gradient: &V3, hessian:
     }
 }
 
-#[inline]
+#[inline(always)]
 fn combine(entry: impl Fn(usize, usize) -> f64) -> Block {
     std::array::from_fn(|r| std::array::from_fn(|c| entry(r, c)))
 }

@@ -1,8 +1,9 @@
 //! Newton's method on the incremental potential, with line search.
 
 use super::model::{Model, add_block};
-use super::{Work, conjugate};
+use super::{Work, conjugate, roll};
 use crate::contact::{Triple, point_weights};
+use crate::integrate::Banded;
 use crate::math::V3;
 use crate::rod::{Block, Law, add_outer};
 
@@ -39,13 +40,19 @@ impl Reach {
     };
 
     /// Share of an update that is within reach, at most 1.
-    fn share(&self, work: &Work, update: f64) -> f64 {
+    fn share<const D: usize>(&self, work: &Work<D>, update: f64) -> f64 {
         let mut share = (self.longest / update).min(1.0);
         if self.turn.is_finite() {
             for j in 0..work.q.len() - 1 {
-                let u = &work.update[3 * j..3 * j + 6];
-                let change = V3::new(u[3] - u[0], u[4] - u[1], u[5] - u[2]);
+                let change = work.update_of(j + 1) - work.update_of(j);
                 share = share.min(self.turn * work.axial[j].length / change.norm());
+            }
+            if Work::<D>::ROLLS {
+                // a joint must stay clear of half a turn
+                for j in 1..work.q.len() - 1 {
+                    let twist = work.update[D * j + 3] - work.update[D * j - 1];
+                    share = share.min(self.turn / twist.abs());
+                }
             }
         }
         share
@@ -65,9 +72,9 @@ pub(super) struct Stuck {
 
 /// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
 #[inline(never)]
-pub(super) fn solve(
+pub(super) fn solve<const D: usize>(
     model: &mut Model,
-    work: &mut Work,
+    work: &mut Work<D>,
     close: f64,
     reach: Reach,
 ) -> Result<usize, Stuck> {
@@ -77,12 +84,16 @@ pub(super) fn solve(
     hold_limits(model, false);
     // inertia bounds the update from above: a guess that is good enough costs no solve
     let weight = model.gamma * model.gamma;
-    let bound = work
+    let radius = 0.5 * model.diameter;
+    let mut bound = work
         .gradient
         .iter()
         .zip(&work.mass)
         .map(|(g, m)| g.amax() * weight / m)
         .fold(0.0, f64::max);
+    if Work::<D>::ROLLS {
+        bound = bound.max(work.rolls.bound(model.gamma, radius));
+    }
     // (the midpoint rule keeps what is wrong with a guess for ever)
     if bound < close && reach.damped {
         return Ok(0);
@@ -103,9 +114,11 @@ pub(super) fn solve(
         }
         let (mut update, mut node) = (0.0, 0);
         for (k, u) in work.update.iter().enumerate() {
-            let size = if u.is_nan() { f64::INFINITY } else { u.abs() };
+            // a roll counts by the way of the wire's surface
+            let size = if k % D < 3 { u.abs() } else { u.abs() * radius };
+            let size = if size.is_nan() { f64::INFINITY } else { size };
             if size > update {
-                (update, node) = (size, k / 3);
+                (update, node) = (size, k / D);
             }
         }
         if !update.is_finite() {
@@ -118,6 +131,7 @@ pub(super) fn solve(
         let mut share = reach.share(work, update);
         work.start.clone_from(&work.q);
         work.base.clone_from(&work.axial);
+        work.rolls.start.clone_from(&work.rolls.angle);
         // near the end each step shrinks the update by the same factor or better
         let next = if last_update.is_finite() {
             update * (update / last_update).min(1.0)
@@ -170,11 +184,14 @@ fn hold_limits(model: &mut Model, hold: bool) {
 
 /// The update from gradient and Hessian, with tangents of contact that fit where it leads.
 #[inline(never)]
-fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
+fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result<(), usize> {
     let nodes = work.q.len();
     work.load.clear();
-    for g in &work.gradient {
+    for (i, g) in work.gradient.iter().enumerate() {
         work.load.extend_from_slice(&[-g.x, -g.y, -g.z]);
+        if Work::<D>::ROLLS {
+            work.load.push(-work.rolls.gradient[i]);
+        }
     }
     for look in 0.. {
         work.matrix.factor().map_err(|loose| loose.node)?;
@@ -207,7 +224,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
         let move_of = |(at, weight): &Triple| {
             let mut d = V3::zeros();
             for (i, w) in at.iter().zip(weight) {
-                d += V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]) * *w;
+                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * *w;
             }
             d
         };
@@ -215,7 +232,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
             add_block(matrix, triple, stiffness);
             for (i, w) in triple.0.iter().zip(triple.1) {
                 for a in 0..3 {
-                    load[3 * i + a] -= w * gradient[a];
+                    load[D * i + a] -= w * gradient[a];
                 }
             }
         };
@@ -228,7 +245,7 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
             if let Some(between) = &mut line.between {
                 there.clear();
                 for (i, p) in q.iter().enumerate() {
-                    there.push(p + V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]));
+                    there.push(p + V3::new(update[D * i], update[D * i + 1], update[D * i + 2]));
                 }
                 any |= between.foresee(
                     (&line.law, line.onset, model.diameter),
@@ -245,15 +262,21 @@ fn solve_linear(model: &mut Model, work: &mut Work) -> Result<(), usize> {
         }
         model.pinned(nodes, |i, a| {
             work.matrix.pin(i, a);
-            work.load[3 * i + a] = 0.0;
+            work.load[D * i + a] = 0.0;
         });
+        if Work::<D>::ROLLS {
+            for i in work.rolls.pinned().into_iter().flatten() {
+                work.matrix.pin(i, 3);
+                work.load[D * i + 3] = 0.0;
+            }
+        }
         work.solves += 1;
     }
     Ok(())
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
-fn foresee_knees(law: &Law, work: &mut Work) -> bool {
+fn foresee_knees<const D: usize>(law: &Law, work: &mut Work<D>) -> bool {
     let Work {
         knees,
         update,
@@ -261,18 +284,30 @@ fn foresee_knees(law: &Law, work: &mut Work) -> bool {
         matrix,
         ..
     } = work;
-    let nodes = update.len() / 3;
+    let nodes = update.len() / D;
     let mut any = false;
 
     for (joint, knee) in knees {
         let j = *joint as usize;
-        let of = |i: usize| V3::new(update[3 * i], update[3 * i + 1], update[3 * i + 2]);
+        let of = |i: usize| V3::new(update[D * i], update[D * i + 1], update[D * i + 2]);
         let mut angle = 0.0;
         if j > 0 {
             angle += knee.rows[0].dot(&(of(j) - of(j - 1)));
         }
         if j + 1 < nodes {
             angle += knee.rows[1].dot(&(of(j + 1) - of(j)));
+        }
+        // derivative of the angle by the rolls, which stand with the first nodes of their edges
+        let mut rolls = [0.0; 3];
+        if Work::<D>::ROLLS {
+            if j > 0 {
+                rolls[0] = knee.rolls[0];
+                angle += rolls[0] * update[D * j - 1];
+            }
+            if j + 1 < nodes {
+                rolls[1] = knee.rolls[1];
+                angle += rolls[1] * update[D * j + 3];
+            }
         }
         let Some((stiffness, moment)) = knee.foresee(law, angle) else {
             continue;
@@ -288,24 +323,29 @@ fn foresee_knees(law: &Law, work: &mut Work) -> bool {
             rows[1] -= knee.rows[1];
             rows[2] += knee.rows[1];
         }
+        let none = |a: usize| rows[a] == V3::zeros() && rolls[a] == 0.0;
         for a in 0..3 {
-            if rows[a] == V3::zeros() {
+            if none(a) {
                 continue;
             }
             let i = j + a - 1;
             for k in 0..3 {
-                load[3 * i + k] -= moment * rows[a][k];
+                load[D * i + k] -= moment * rows[a][k];
+            }
+            if Work::<D>::ROLLS {
+                load[D * i + 3] -= moment * rolls[a];
             }
             for b in a..3 {
-                if rows[b] == V3::zeros() {
+                if none(b) {
                     continue;
                 }
                 let mut block = Block::default();
                 add_outer(&mut block, &(rows[a] * stiffness), &rows[b]);
-                if a == b {
-                    matrix.add_diagonal(i, &block);
-                } else {
-                    matrix.add(i, b - a, &block);
+                add_at(matrix, i, b - a, &block);
+                if Work::<D>::ROLLS {
+                    let (own, other) = (rolls[a] * stiffness, rolls[b] * stiffness);
+                    let edge = roll::framed(rows[a] * other, rows[b] * own, own * rolls[b]);
+                    add_at(matrix, i, b - a, &edge);
                 }
             }
         }
@@ -313,8 +353,23 @@ fn foresee_knees(law: &Law, work: &mut Work) -> bool {
     any
 }
 
+/// Adds a block between nodes `i` and `i + k`.
+#[inline(always)]
+fn add_at<const D: usize, const B: usize>(
+    matrix: &mut Banded<D>,
+    i: usize,
+    k: usize,
+    block: &[[f64; B]; B],
+) {
+    if k == 0 {
+        matrix.add_diagonal(i, block);
+    } else {
+        matrix.add(i, k, block);
+    }
+}
+
 /// At the start tensions are expected to stay what they were at the last accepted instant.
-pub(super) fn expect_nothing(model: &Model, work: &mut Work) {
+pub(super) fn expect_nothing<const D: usize>(model: &Model, work: &mut Work<D>) {
     work.expected.clear();
     for j in 0..model.rod.edges() {
         let tension = model.tension.get(j).copied().unwrap_or(0.0);
@@ -330,10 +385,11 @@ pub(super) fn expect_nothing(model: &Model, work: &mut Work) {
 
 /// What the update promises for the stretch of each edge.
 #[inline(never)]
-fn expect_tension(work: &mut Work, share: f64) {
+fn expect_tension<const D: usize>(work: &mut Work<D>, share: f64) {
+    let update = &work.update;
     for (j, (e, a)) in work.expected.iter_mut().zip(&work.base).enumerate() {
-        let u = &work.update[3 * j..3 * j + 6];
-        let change = V3::new(u[3] - u[0], u[4] - u[1], u[5] - u[2]) * share;
+        let (u, v) = (&update[D * j..], &update[D * (j + 1)..]);
+        let change = V3::new(v[0] - u[0], v[1] - u[1], v[2] - u[2]) * share;
         let longer = a.along.dot(&change);
         e.length = a.length + longer;
         e.tension = a.tension + a.stiffness * longer;
@@ -342,17 +398,27 @@ fn expect_tension(work: &mut Work, share: f64) {
 }
 
 /// Slope of the potential along the update.
-fn slope(work: &Work) -> f64 {
+fn slope<const D: usize>(work: &Work<D>) -> f64 {
     work.gradient
         .iter()
-        .zip(work.update.chunks_exact(3))
-        .map(|(g, u)| g.x * u[0] + g.y * u[1] + g.z * u[2])
+        .zip(work.update.chunks_exact(D))
+        .enumerate()
+        .map(|(i, (g, u))| {
+            let places = g.x * u[0] + g.y * u[1] + g.z * u[2];
+            if Work::<D>::ROLLS {
+                places + work.rolls.gradient[i] * u[3]
+            } else {
+                places
+            }
+        })
         .sum()
 }
 
-fn take(work: &mut Work, share: f64) {
-    for (i, q) in work.q.iter_mut().enumerate() {
-        let u = &work.update[3 * i..3 * i + 3];
-        *q = work.start[i] + V3::new(u[0], u[1], u[2]) * share;
+fn take<const D: usize>(work: &mut Work<D>, share: f64) {
+    for i in 0..work.q.len() {
+        work.q[i] = work.start[i] + work.update_of(i) * share;
+    }
+    for (j, angle) in work.rolls.angle.iter_mut().enumerate() {
+        *angle = work.rolls.start[j] + work.update[D * j + 3] * share;
     }
 }

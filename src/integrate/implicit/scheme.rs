@@ -19,8 +19,8 @@ pub struct Past {
     pub v: Vec<V3>,
     /// core-frame positions now, one back and two back
     pub q: [Vec<V3>; 3],
-    /// twist of each edge's frame against parallel transport in the last step, rad
-    pub roll: Vec<f64>,
+    /// twist of each edge's frame against parallel transport in the last step and in the one before, rad
+    pub roll: [Vec<f64>; 2],
     /// spin of each edge one instant back, rad/s
     pub spin: Vec<f64>,
     /// wire passed by one and two instants back, m
@@ -63,14 +63,15 @@ impl Past {
             self.x.insert(j + 1, spin.to_lab(self.q[1][j + 1]));
             self.v.insert(j + 1, V3::zeros());
         }
-        if self.roll.len() > j {
-            self.roll.insert(j + 1, self.roll[j]);
-            self.spin.insert(j + 1, self.spin[j]);
+        for a in self.roll.iter_mut().chain([&mut self.spin]) {
+            if a.len() > j {
+                a.insert(j + 1, a[j]);
+            }
         }
     }
 
-    /// Node `i` was taken out.
-    pub(in crate::integrate) fn merge(&mut self, i: usize) {
+    /// Node `i` was taken out; `share` is that of the edge after it in the joined edge.
+    pub(in crate::integrate) fn merge(&mut self, i: usize, share: f64) {
         for q in &mut self.q {
             if q.len() > i {
                 q.remove(i);
@@ -80,9 +81,11 @@ impl Past {
             self.x.remove(i);
             self.v.remove(i);
         }
-        if self.roll.len() > i {
-            self.roll.remove(i);
-            self.spin.remove(i);
+        for a in self.roll.iter_mut().chain([&mut self.spin]) {
+            if a.len() > i {
+                let gone = a.remove(i);
+                a[i - 1] += (gone - a[i - 1]) * share;
+            }
         }
     }
 
@@ -111,8 +114,9 @@ impl Past {
         for a in [&mut self.x, &mut self.v] {
             a.drain(..count.min(a.len()));
         }
-        self.roll.drain(..count.min(self.roll.len()));
-        self.spin.drain(..count.min(self.spin.len()));
+        for a in self.roll.iter_mut().chain([&mut self.spin]) {
+            a.drain(..count.min(a.len()));
+        }
     }
 }
 

@@ -7,8 +7,8 @@
 use super::model::Model;
 use super::newton::{self, Reach};
 use super::scheme::Step;
-use super::{CLOSE, Implicit, Stopped, clamp_directions};
-use crate::integrate::System;
+use super::{CLOSE, Implicit, Stopped, Work, clamp_directions};
+use crate::integrate::{System, Twist};
 use crate::math::{Spin, V3};
 
 /// Time over which forces act in a static solve, s: inertia is then 1e-10 of the softest wire's stiffness.
@@ -75,19 +75,16 @@ impl Implicit {
     /// Forces on the nodes at the present state as the method sees them, lab frame, N; held
     /// coordinates count as free.
     pub fn forces(&mut self, sys: &mut System) -> Vec<V3> {
-        let step = still(sys);
-        self.prepare(sys, &step, &sys.spindle.clone(), &sys.support.clone());
-        let mut model = model_at_rest(sys);
-        model.held = [[false; 3]; 2];
-        newton::expect_nothing(&model, &mut self.work);
-        // the tensions that are there are no surprise
-        for (j, e) in self.work.expected.iter_mut().enumerate() {
-            e.length = (self.work.q[j + 1] - self.work.q[j]).norm();
+        self.out_of_balance(sys).0
+    }
+
+    /// The same, and the torques on the edges about themselves, N m; none where twist is off.
+    pub fn out_of_balance(&mut self, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
+        if sys.twist == Twist::Off {
+            forces_with(&mut self.work, sys)
+        } else {
+            forces_with(&mut self.twisted, sys)
         }
-        model.evaluate(&mut self.work);
-        let spin = Spin::new(sys.spindle.angle);
-        let forces = self.work.gradient.iter().map(|g| -spin.to_lab(*g));
-        forces.collect()
     }
 
     /// Returns the solver's steps.
@@ -97,9 +94,28 @@ impl Implicit {
         moved: &[V3],
         share: f64,
     ) -> Result<usize, Stopped> {
+        if sys.twist == Twist::Off {
+            let mut work = std::mem::take(&mut self.work);
+            let taken = self.equilibrium_with(&mut work, sys, moved, share);
+            self.work = work;
+            return taken;
+        }
+        let mut work = std::mem::take(&mut self.twisted);
+        let taken = self.equilibrium_with(&mut work, sys, moved, share);
+        self.twisted = work;
+        taken
+    }
+
+    fn equilibrium_with<const D: usize>(
+        &mut self,
+        work: &mut Work<D>,
+        sys: &mut System,
+        moved: &[V3],
+        share: f64,
+    ) -> Result<usize, Stopped> {
         let step = still(sys);
         let (spindle, support) = (sys.spindle, sys.support);
-        self.prepare(sys, &step, &spindle, &support);
+        work.prepare(sys, &step, &spindle, &support, false);
         let spin = Spin::new(spindle.angle);
         let last = sys.rod.nodes() - 1;
         for (i, d) in moved.iter().enumerate() {
@@ -107,36 +123,43 @@ impl Implicit {
             for a in 0..3 {
                 let held = i == 0 && support[0].hold[a] || i == last && support[1].hold[a];
                 if !held {
-                    self.work.guess[i][a] += d[a];
+                    work.guess[i][a] += d[a];
                 }
             }
         }
         let reach = Reach {
-            steps: 40,
+            // wire bent and twisted far from its free shape converges by a factor, not by squares: what the
+            // Hessian leaves out is not small there
+            steps: if Work::<D>::ROLLS { 200 } else { 40 },
             longest: f64::INFINITY,
             turn: 0.4,
             damped: true,
         };
         let mut taken = 0;
         for _ in 0..PASSES {
-            self.work.q.clone_from(&self.work.guess);
-            self.turn_plastic_curvature(sys, &spindle, &support);
+            work.q.clone_from(&work.guess);
+            if !Work::<D>::ROLLS {
+                work.turn_plastic_curvature(sys, &spindle, &support);
+            }
             let mut model = model_at_rest(sys);
             model.flat = self.flat;
-            let solved = newton::solve(&mut model, &mut self.work, CLOSE * self.tolerance, reach);
+            let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, reach);
             let steps = solved.map_err(|stuck| {
                 self.effort.stalls += 1;
                 Stopped::at(LONG, &stuck)
             })?;
             taken = taken.max(steps);
-            self.work.guess.clone_from(&self.work.q);
+            work.guess.clone_from(&work.q);
         }
         self.effort.steps += 1;
-        self.effort.evaluations += std::mem::take(&mut self.work.evaluations);
-        self.effort.solves += std::mem::take(&mut self.work.solves);
-        self.effort.cuts += std::mem::take(&mut self.work.cuts);
-        for (x, q) in sys.rod.x.iter_mut().zip(&self.work.q) {
+        self.effort.evaluations += std::mem::take(&mut work.evaluations);
+        self.effort.solves += std::mem::take(&mut work.solves);
+        self.effort.cuts += std::mem::take(&mut work.cuts);
+        for (x, q) in sys.rod.x.iter_mut().zip(&work.q) {
             *x = spin.to_lab(*q);
+        }
+        if Work::<D>::ROLLS {
+            sys.roll.clone_from(&work.rolls.angle);
         }
         sys.place_supports();
         sys.settle_forces(f64::INFINITY, true);
@@ -148,6 +171,7 @@ impl Implicit {
 /// Brings everything to rest; the step that a static solve is.
 fn still(sys: &mut System) -> Step {
     sys.rod.v.fill(V3::zeros());
+    sys.rod.spin.fill(0.0);
     sys.past.forget();
     sys.begin_past();
     Step {
@@ -157,6 +181,25 @@ fn still(sys: &mut System) -> Step {
         weight: [1.0, 0.0],
         error: 0.0,
     }
+}
+
+fn forces_with<const D: usize>(work: &mut Work<D>, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
+    let step = still(sys);
+    let (spindle, support) = (sys.spindle, sys.support);
+    work.prepare(sys, &step, &spindle, &support, false);
+    let mut model = model_at_rest(sys);
+    model.held = [[false; 3]; 2];
+    newton::expect_nothing(&model, work);
+    // the tensions that are there are no surprise
+    for (j, e) in work.expected.iter_mut().enumerate() {
+        e.length = (work.q[j + 1] - work.q[j]).norm();
+    }
+    model.evaluate(work);
+    let spin = Spin::new(sys.spindle.angle);
+    let forces = work.gradient.iter().map(|g| -spin.to_lab(*g));
+    let rolls = work.rolls.angle.len();
+    let torques = work.rolls.gradient.iter().take(rolls).map(|g| -g);
+    (forces.collect(), torques.collect())
 }
 
 fn model_at_rest(sys: &mut System) -> Model<'_> {
@@ -208,7 +251,7 @@ mod tests {
         let points: Vec<V3> = (0..=30).map(|i| along * (1e-3 * f64::from(i))).collect();
         let mut sys = System::new(section, Rod::through(&points, None));
         sys.support[0] = Support::clamped(points[0], frame_along(&along, None));
-        sys.twist = false;
+        sys.twist = Twist::Off;
         sys
     }
 

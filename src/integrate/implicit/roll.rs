@@ -1,0 +1,252 @@
+//! The rolls of the edges about themselves, the unknowns that carry twist.
+//!
+//! A roll counts from the frame that the edge had at the last accepted instant, carried along the
+//! shortest way onto the iterate's edge: that is how the explicit methods turn their frames, so a
+//! converged step is committed by them. The unknown of edge `j` stands with node `j`; the last node
+//! has none. With inertia the roll follows the scheme of the positions, without it every edge is
+//! where its torques balance. Contact acts on the centreline: friction puts no moment on the wire
+//! about its own axis, neither here nor in the explicit methods.
+
+use super::Work;
+use super::scheme::{Past, Scheme, Step, extrapolation};
+use crate::integrate::{Banded, Spindle, Support, System, Twist, turn_about_y};
+use crate::math::{Quat, V3};
+use crate::rod::{Rolled, Turned};
+
+/// Unknowns of a node with twist: place and roll.
+pub(super) const WITH_ROLL: usize = 4;
+
+/// Rolls of a step, rad, one per edge; all empty where no twist is carried.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rolls {
+    pub(super) angle: Vec<f64>,
+    pub(super) start: Vec<f64>,
+    pub(super) guess: Vec<f64>,
+    /// where rolls would go without torques
+    target: Vec<f64>,
+    /// roll and spin that the scheme makes of history
+    star: [Vec<f64>; 2],
+    /// moment of inertia of each edge about itself, kg m^2; 0: quasi-static
+    inertia: Vec<f64>,
+    /// derivative of the potential, N m, one per node
+    pub(super) gradient: Vec<f64>,
+    /// frames at the last accepted instant, turned with the core to the present one
+    frame: Vec<Quat>,
+    clamp: [Option<Quat>; 2],
+    /// nothing says how the wire as a whole is rolled
+    loose: bool,
+    /// torques at the last accepted instant, N m
+    before: Vec<f64>,
+}
+
+impl Rolls {
+    /// Guess and history for a step of twist at the level `sys.twist`; `inert`: with the inertia that
+    /// the level asks for.
+    pub(super) fn prepare(
+        &mut self,
+        sys: &System,
+        step: &Step,
+        spindle: &Spindle,
+        support: &[Support; 2],
+        inert: bool,
+    ) {
+        let (rod, past) = (&sys.rod, &sys.past);
+        let back = turn_about_y(-spindle.angle);
+        let e = extrapolation(step.share * step.h, past);
+        let dynamic = inert && sys.twist == Twist::Dynamic;
+        let [star, rate] = &mut self.star;
+        for v in [
+            &mut self.guess,
+            &mut self.target,
+            &mut self.inertia,
+            star,
+            rate,
+        ] {
+            v.clear();
+        }
+        self.frame.clear();
+        self.frame.extend(rod.frame.iter().map(|f| back * f));
+        self.clamp = [0, 1].map(|end| {
+            let s = &support[end];
+            s.frame.map(|f| if s.turning { f } else { back * f })
+        });
+        let density = sys.section.spin_inertia_per_length();
+        for j in 0..rod.edges() {
+            let (roll, spin) = if step.weight[1] == 0.0 {
+                (0.0, rod.spin[j])
+            } else {
+                let before = -past.roll[0][j];
+                (
+                    step.blend(0.0, before),
+                    step.blend(rod.spin[j], past.spin[j]),
+                )
+            };
+            star.push(roll);
+            rate.push(spin);
+            self.target.push(roll + spin * step.gamma);
+            self.guess.push(match past.known {
+                0 => rod.spin[j] * step.share * step.h,
+                1 => -past.roll[0][j] * e[1],
+                _ => -past.roll[0][j] * e[1] - (past.roll[0][j] + past.roll[1][j]) * e[2],
+            });
+            self.inertia
+                .push(if dynamic { density * rod.rest[j] } else { 0.0 });
+        }
+        self.loose = !dynamic && self.clamp == [None; 2];
+        self.angle.clone_from(&self.guess);
+    }
+
+    /// Edge `j` in the direction `along`, of inverse length `inverse`.
+    #[inline]
+    pub(super) fn edge(&self, j: usize, along: V3, inverse: f64) -> Turned {
+        Turned::edge(&self.frame[j], along, inverse, self.angle[j])
+    }
+
+    pub(super) fn clamp(&self, end: usize) -> Option<Turned> {
+        self.clamp.get(end).copied().flatten().map(Turned::clamp)
+    }
+
+    /// Adds inertia and drag of the rolls; returns their potential.
+    pub(super) fn add_inertia<const D: usize>(
+        &mut self,
+        gamma: f64,
+        drag: f64,
+        matrix: &mut Banded<D>,
+    ) -> f64 {
+        let mut energy = 0.0;
+        for j in 0..self.angle.len() {
+            let (d, way) = (
+                self.angle[j] - self.target[j],
+                self.angle[j] - self.star[0][j],
+            );
+            let k = self.inertia[j] / (gamma * gamma);
+            let c = drag * self.inertia[j] / gamma;
+            energy += 0.5 * (k * d * d + c * way * way);
+            self.gradient[j] += k * d + c * way;
+            matrix.add_to_entry(j, 3, k + c);
+        }
+        energy
+    }
+
+    /// Holds what is no unknown.
+    pub(super) fn pin<const D: usize>(&mut self, matrix: &mut Banded<D>) {
+        for i in self.pinned().into_iter().flatten() {
+            matrix.pin(i, 3);
+            self.gradient[i] = 0.0;
+        }
+    }
+
+    /// Nodes whose roll is no unknown: the last has none, the first is held where nothing else says how the
+    /// wire is rolled.
+    pub(super) fn pinned(&self) -> [Option<usize>; 2] {
+        [Some(self.angle.len()), self.loose.then_some(0)]
+    }
+
+    /// Largest move of an edge's surface that the torques allow, m; without inertia nothing bounds it.
+    pub(super) fn bound(&self, gamma: f64, radius: f64) -> f64 {
+        let weight = gamma * gamma * radius;
+        (self.gradient.iter().zip(&self.inertia))
+            .map(|(g, i)| g.abs() * weight / i)
+            .fold(0.0, f64::max)
+    }
+
+    /// Sum of inertia times the square of what the guess was off by, kg m^2.
+    pub(super) fn difference(&self) -> f64 {
+        (self.angle.iter().zip(&self.guess).zip(&self.inertia))
+            .map(|((a, g), i)| i * (a - g) * (a - g))
+            .sum()
+    }
+
+    /// Keeps the torques of the present instant for the books of the step to come.
+    pub(super) fn keep_torques(&mut self, sys: &System) {
+        self.before.clone_from(&sys.load.torque);
+    }
+
+    /// Hands rolls and spins over to the rod, whose frames turn with the next evaluation, and moves history on.
+    pub(super) fn hand_over(&mut self, sys: &mut System, scheme: Scheme, step: &Step) {
+        let past = &mut sys.past;
+        past.spin.clone_from(&sys.rod.spin);
+        for j in 0..self.angle.len() {
+            let (roll, spin) = match scheme {
+                Scheme::Bdf2 => (
+                    self.angle[j],
+                    (self.angle[j] - self.star[0][j]) / step.gamma,
+                ),
+                Scheme::Midpoint => (
+                    2.0 * self.angle[j],
+                    self.angle[j] * (4.0 / step.h) - sys.rod.spin[j],
+                ),
+            };
+            sys.roll[j] = roll;
+            // without inertia a rate means nothing and would count as motion energy
+            sys.rod.spin[j] = if self.inertia[j] > 0.0 { spin } else { 0.0 };
+        }
+        past.roll.rotate_right(1);
+        past.roll[0].clone_from(&sys.roll);
+    }
+
+    /// Work of the torques in the step just committed, J.
+    pub(super) fn work(&self, sys: &System) -> f64 {
+        (self.before.iter().zip(&sys.load.torque))
+            .zip(&sys.past.roll[0])
+            .map(|((a, b), roll)| 0.5 * (a + b) * roll)
+            .sum()
+    }
+}
+
+impl Past {
+    /// Rolls before the present instant are not known.
+    pub(in crate::integrate) fn forget_rolls(&mut self, edges: usize) {
+        for v in self.roll.iter_mut().chain([&mut self.spin]) {
+            v.clear();
+            v.resize(edges, 0.0);
+        }
+    }
+}
+
+/// Adds the rolls' part of the joint at node `i`; `sides` tells which of its edges may roll.
+pub(super) fn spread<const D: usize>(
+    work: &mut Work<D>,
+    i: usize,
+    rolled: &Rolled,
+    sides: [bool; 2],
+) {
+    let zero = V3::zeros();
+    let (w, own, t) = (&rolled.with, &rolled.own, &rolled.torque);
+    let m = &mut work.matrix;
+    if sides[0] {
+        // its roll is an unknown of the node before; edge vectors are differences of places
+        work.rolls.gradient[i - 1] += t[0];
+        m.add_diagonal(i - 1, &framed(zero, -w[0][0], own[0]));
+        let across = if sides[1] {
+            framed(-w[1][0], w[0][0] - w[0][1], own[1])
+        } else {
+            framed(zero, w[0][0], 0.0)
+        };
+        m.add(i - 1, 1, &across);
+    }
+    if sides[1] {
+        work.rolls.gradient[i] += t[1];
+        let here = if sides[0] {
+            w[1][0] - w[1][1]
+        } else {
+            -w[1][1]
+        };
+        m.add_diagonal(i, &framed(zero, here, own[2]));
+        m.add(i, 1, &framed(zero, w[1][1], 0.0));
+    }
+    if sides == [true; 2] {
+        m.add(i - 1, 2, &framed(zero, w[0][1], 0.0));
+    }
+}
+
+/// A block of nothing but a last column, a last row and their corner.
+#[inline]
+pub(super) fn framed(column: V3, row: V3, corner: f64) -> [[f64; WITH_ROLL]; WITH_ROLL] {
+    [
+        [0.0, 0.0, 0.0, column.x],
+        [0.0, 0.0, 0.0, column.y],
+        [0.0, 0.0, 0.0, column.z],
+        [row.x, row.y, row.z, corner],
+    ]
+}
