@@ -35,6 +35,7 @@ python=$(scripts/venv.sh)
 "$python" -m fmpy validate "$target/fmu/CoilWinding.fmu"
 
 step exact answers
+"$target/release/coilwind" verify
 "$target/release/coilwind" verify --preset paper
 
 step Rust tests
