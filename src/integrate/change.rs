@@ -10,7 +10,7 @@ use crate::math::{Quat, Spin, V3, spin_velocity};
 use crate::rod::{Bend, Joint, Scalar, align, rotate};
 
 /// A frozen node with the edge after it: all it takes to let them move again where they lie.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Dormant {
     /// place, core frame, m
     place: V3,
@@ -292,7 +292,7 @@ impl System {
             c.nodes.splice(0..0, fresh);
         }
         if let Some(l) = &mut self.line {
-            l.insert_front(back.iter().map(|d| d.memory));
+            l.insert_front(back.into_iter().map(|d| d.memory));
         }
         let before = self.spindle.before(self.past.h[0]);
         self.past
