@@ -567,8 +567,8 @@ fn the_integrator_decides_how_twist_is_carried_unless_it_is_set() {
     assert_eq!(twist("[wire]\nelastic = true"), Ok(Twist::Off));
     let skipped = |text: &str| parse(text).unwrap().build().unwrap().skipped;
     let twist_of = |text: &str| {
-        let decisions = skipped(text).into_iter();
-        decisions.rfind(|d| d.name == "solver.twist")
+        let mut decisions = skipped(text).into_iter();
+        decisions.find(|d| d.name == "solver.twist")
     };
     let decision = twist_of("").unwrap();
     assert_eq!(

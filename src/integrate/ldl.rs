@@ -233,6 +233,59 @@ impl<const D: usize> Banded<D> {
         }
     }
 
+    /// Adds a block between node `i` and node `i + k` (0, 1 or 2) that is nothing but a last `column`, a last
+    /// `row` of as many entries, and their `corner`; of the column of a node with itself nothing is read.
+    #[inline]
+    pub fn add_border<const B: usize>(
+        &mut self,
+        i: usize,
+        k: usize,
+        column: &[f64; B],
+        row: &[f64; B],
+        corner: f64,
+    ) {
+        assert!(B + 1 == D, "a border of {B} and a corner");
+        match self.place(i, i + k) {
+            Place::Step(step, lane) => {
+                let step = &mut self.steps[step];
+                let kept = match k {
+                    0 => &mut step.own,
+                    1 => &mut step.near,
+                    _ => &mut step.far,
+                };
+                kept[B][B].0[lane] += corner;
+                if k == 0 {
+                    for b in 0..B {
+                        kept[B][b].0[lane] += row[b];
+                    }
+                } else if lane == 0 {
+                    for b in 0..B {
+                        kept[B][b].0[0] += row[b];
+                        kept[b][B].0[0] += column[b];
+                    }
+                } else {
+                    for b in 0..B {
+                        kept[b][B].0[1] += row[b];
+                        kept[B][b].0[1] += column[b];
+                    }
+                }
+            }
+            Place::Middle(first, second) => {
+                self.middle[second + B][first + B] += corner;
+                if k == 0 {
+                    for b in 0..B {
+                        self.middle[second + B][first + b] += row[b];
+                    }
+                } else {
+                    for b in 0..B {
+                        self.middle[second + b][first + B] += row[b];
+                        self.middle[second + B][first + b] += column[b];
+                    }
+                }
+            }
+        }
+    }
+
     /// Adds to the diagonal entry of unknown `a` of node `i`.
     #[inline]
     pub fn add_to_entry(&mut self, i: usize, a: usize, value: f64) {

@@ -15,7 +15,7 @@ use super::forces::Laws;
 use super::joint::{Joint, align, rotate};
 use super::knee::Knee;
 use super::plasticity::{Bend, Scalar, respond_scalar};
-use crate::math::{Quat, V3};
+use crate::math::{M3, Quat, V3};
 
 /// An edge and its frame at an iterate, or the frame of a clamp, which does not move.
 #[derive(Clone, Copy, Debug)]
@@ -30,15 +30,14 @@ pub struct Turned {
 }
 
 impl Turned {
-    /// An edge of direction `along`, rolled by `roll` since it had the frame `from`.
+    /// An edge of direction `along`, rolled by `roll` since it had the frame `from` and the direction `start`.
     #[inline]
-    pub fn edge(from: &Quat, along: V3, inverse: f64, roll: f64) -> Self {
-        let start = rotate(from, &V3::z());
+    pub fn edge(from: &Quat, start: &V3, along: V3, inverse: f64, roll: f64) -> Self {
         Self {
             frame: align(from, &along, roll),
             along,
             inverse,
-            detour: along.cross(&start) / (1.0 + start.dot(&along)),
+            detour: along.cross(start) / (1.0 + start.dot(&along)),
         }
     }
 
@@ -50,6 +49,28 @@ impl Turned {
             inverse: 0.0,
             detour: V3::zeros(),
         }
+    }
+
+    /// Columns: the axes of the frame.
+    #[inline]
+    fn frame_matrix(&self) -> M3 {
+        let Quat { coords: q } = self.frame;
+        let (x, y, z, w) = (q.x, q.y, q.z, q.w);
+        let (x2, y2, z2) = (x + x, y + y, z + z);
+        let (xx, yy, zz) = (x * x2, y * y2, z * z2);
+        let (xy, xz, yz) = (x * y2, x * z2, y * z2);
+        let (wx, wy, wz) = (w * x2, w * y2, w * z2);
+        M3::new(
+            1.0 - yy - zz,
+            xy - wz,
+            xz + wy,
+            xy + wz,
+            1.0 - xx - zz,
+            yz - wx,
+            xz - wy,
+            yz + wx,
+            1.0 - xx - yy,
+        )
     }
 
     /// Derivative of an angle with respect to edge vector and roll, where `row` is that with
@@ -93,46 +114,51 @@ pub fn twisted(
     } else {
         laws.twist.modulus
     };
-    // derivatives of the angles with respect to the rotation of the edge after against the one before
-    let row = |m: [f64; 2], t: f64| rotate(&before.frame, &joint.moment(m, t));
-    let rows = [
-        row([1.0, 0.0], 0.0),
-        row([0.0, 1.0], 0.0),
-        row([0.0; 2], 1.0),
-    ];
-    let moment = rows[0] * m.x + rows[1] * m.y + rows[2] * t;
-    let (g0, t0) = before.derivative(&moment);
-    let (g1, t1) = after.derivative(&moment);
+    // derivatives of the angles with respect to the rotation of the edge after against the one before, for bending
+    // along the moment and across it
+    let rows = joint.rows();
+    let n = trial.norm();
+    let d = if n > 0.0 { trial / n } else { V3::x() };
+    let turn = before.frame_matrix();
+    let lead = turn * (rows[0] * d.x + rows[1] * d.y);
+    let side = turn * (rows[1] * d.x - rows[0] * d.y);
+    let about = turn * rows[2];
+    // a joint whose edges roll alike sees its curvature turn: the energy curves by `curved (curved - elastic)` there
+    let curved = (joint.bend[0] * d.x + joint.bend[1] * d.y) * inv;
+    let kept = (curved * (curved - n / laws.bend.modulus)).max(0.0).sqrt();
+    let free = if n > 0.0 {
+        0.5 * lv * (curved - kept.copysign(curved))
+    } else {
+        0.0
+    };
+    // gradients by edge vectors and rolls, first edge with its sign
+    let pair = |row: &V3, free: f64| {
+        let ((w0, r0), (w1, r1)) = (before.derivative(row), after.derivative(row));
+        [
+            (before.detour * (free * before.inverse) - w0, free - r0),
+            (w1 + after.detour * (free * after.inverse), r1 + free),
+        ]
+    };
+    let lead = pair(&lead, 0.0);
+    let side = pair(&side, free);
+    let about = pair(&about, 0.0);
+    let push = m.dot(&d);
     let mut bent = Bent {
         energy: (energy + 0.5 * t * t / laws.twist.modulus + work) * lv,
-        before: -g0,
-        after: g1,
+        before: lead[0].0 * push + about[0].0 * t,
+        after: lead[1].0 * push + about[1].0 * t,
         own: [Symmetric::default(); 2],
         cross: [[0.0; 3]; 3],
         knee: None,
     };
     let mut rolled = Rolled {
-        torque: [-t0, t1],
+        torque: [0, 1].map(|k| lead[k].1 * push + about[k].1 * t),
         ..Rolled::default()
     };
-    let (mut lead, mut side, mut free) = (rows[0], rows[1], 0.0);
-    let n = trial.norm();
-    if n > 0.0 {
-        // along the moment and across it
-        let d = trial / n;
-        lead = rows[0] * d.x + rows[1] * d.y;
-        side = rows[1] * d.x - rows[0] * d.y;
-        // rolled alike, edges see their curvature turn: the energy curves by `curved (curved - elastic)` there
-        let curved = (joint.bend[0] * d.x + joint.bend[1] * d.y) * inv;
-        let elastic = n / laws.bend.modulus;
-        let kept = (curved * (curved - elastic)).max(0.0).sqrt();
-        free = 0.5 * lv * (curved - kept.copysign(curved));
-    }
     if dir != V3::zeros() {
-        let ((w0, r0), (w1, r1)) = (before.derivative(&-lead), after.derivative(&lead));
         bent.knee = Some(Knee {
-            rows: [w0, w1],
-            rolls: [r0, r1],
+            rows: [lead[0].0, lead[1].0],
+            rolls: [lead[0].1, lead[1].1],
             trial: n,
             length: lv,
             rise: bend.rise,
@@ -141,14 +167,11 @@ pub fn twisted(
             branch: i8::from(along != laws.bend.modulus),
         });
     }
-    let free = [before.along * free, after.along * free];
-    for ([first, second], c) in [
-        ([-lead, lead], along * inv),
-        ([free[0] - side, free[1] + side], across * inv),
-        ([-rows[2], rows[2]], stiffness * inv),
+    for ([(w0, r0), (w1, r1)], c) in [
+        (lead, along * inv),
+        (side, across * inv),
+        (about, stiffness * inv),
     ] {
-        let (w0, r0) = before.derivative(&first);
-        let (w1, r1) = after.derivative(&second);
         add_square(&mut bent.own[0], &w0, c);
         add_square(&mut bent.own[1], &w1, c);
         add_outer(&mut bent.cross, &(w0 * c), &w1);
@@ -223,7 +246,8 @@ mod tests {
             [0, 1].map(|k| {
                 let d = V3::new(p[4 * k], p[4 * k + 1], p[4 * k + 2]);
                 let l = d.norm();
-                Turned::edge(&self.frames[k], d / l, 1.0 / l, p[4 * k + 3])
+                let start = rotate(&self.frames[k], &V3::z());
+                Turned::edge(&self.frames[k], &start, d / l, 1.0 / l, p[4 * k + 3])
             })
         }
 
@@ -402,7 +426,7 @@ mod tests {
         let l = 5e-4;
         let frame = frame_along(&V3::x(), None);
         let d = V3::new(1.0, 0.3, -0.2).normalize();
-        let edge = Turned::edge(&frame, d, 1.0 / l, 0.2);
+        let edge = Turned::edge(&frame, &rotate(&frame, &V3::z()), d, 1.0 / l, 0.2);
         let (bent, rolled) = twisted(
             &laws(false),
             &Bend::default(),

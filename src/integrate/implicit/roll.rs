@@ -11,7 +11,7 @@ use super::Work;
 use super::scheme::{Past, Scheme, Step, extrapolation};
 use crate::integrate::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, V3};
-use crate::rod::{Rolled, Turned};
+use crate::rod::{Rolled, Turned, rotate};
 
 /// Unknowns of a node with twist: place and roll.
 pub(super) const WITH_ROLL: usize = 4;
@@ -30,8 +30,9 @@ pub(super) struct Rolls {
     inertia: Vec<f64>,
     /// derivative of the potential, N m, one per node
     pub(super) gradient: Vec<f64>,
-    /// frames at the last accepted instant, turned with the core to the present one
+    /// frames at the last accepted instant, turned with the core to the present one, and their edges' directions
     frame: Vec<Quat>,
+    along: Vec<V3>,
     clamp: [Option<Quat>; 2],
     /// nothing says how the wire as a whole is rolled
     loose: bool,
@@ -66,6 +67,9 @@ impl Rolls {
         }
         self.frame.clear();
         self.frame.extend(rod.frame.iter().map(|f| back * f));
+        self.along.clear();
+        let directions = self.frame.iter().map(|f| rotate(f, &V3::z()));
+        self.along.extend(directions);
         self.clamp = [0, 1].map(|end| {
             let s = &support[end];
             s.frame.map(|f| if s.turning { f } else { back * f })
@@ -99,7 +103,8 @@ impl Rolls {
     /// Edge `j` in the direction `along`, of inverse length `inverse`.
     #[inline]
     pub(super) fn edge(&self, j: usize, along: V3, inverse: f64) -> Turned {
-        Turned::edge(&self.frame[j], along, inverse, self.angle[j])
+        let from = (&self.frame[j], &self.along[j]);
+        Turned::edge(from.0, from.1, along, inverse, self.angle[j])
     }
 
     pub(super) fn clamp(&self, end: usize) -> Option<Turned> {
@@ -211,19 +216,21 @@ pub(super) fn spread<const D: usize>(
     rolled: &Rolled,
     sides: [bool; 2],
 ) {
-    let zero = V3::zeros();
+    let zero = [0.0; 3];
+    let row = |v: V3| [v.x, v.y, v.z];
     let (w, own, t) = (&rolled.with, &rolled.own, &rolled.torque);
     let m = &mut work.matrix;
     if sides[0] {
         // its roll is an unknown of the node before; edge vectors are differences of places
         work.rolls.gradient[i - 1] += t[0];
-        m.add_diagonal(i - 1, &framed(zero, -w[0][0], own[0]));
-        let across = if sides[1] {
-            framed(-w[1][0], w[0][0] - w[0][1], own[1])
+        m.add_border(i - 1, 0, &zero, &row(-w[0][0]), own[0]);
+        if sides[1] {
+            let across = row(w[0][0] - w[0][1]);
+            m.add_border(i - 1, 1, &row(-w[1][0]), &across, own[1]);
+            m.add_border(i - 1, 2, &zero, &row(w[0][1]), 0.0);
         } else {
-            framed(zero, w[0][0], 0.0)
-        };
-        m.add(i - 1, 1, &across);
+            m.add_border(i - 1, 1, &zero, &row(w[0][0]), 0.0);
+        }
     }
     if sides[1] {
         work.rolls.gradient[i] += t[1];
@@ -232,11 +239,8 @@ pub(super) fn spread<const D: usize>(
         } else {
             -w[1][1]
         };
-        m.add_diagonal(i, &framed(zero, here, own[2]));
-        m.add(i, 1, &framed(zero, w[1][1], 0.0));
-    }
-    if sides == [true; 2] {
-        m.add(i - 1, 2, &framed(zero, w[0][1], 0.0));
+        m.add_border(i, 0, &zero, &row(here), own[2]);
+        m.add_border(i, 1, &zero, &row(w[1][1]), 0.0);
     }
 }
 
