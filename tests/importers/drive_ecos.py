@@ -1,4 +1,4 @@
-"""Winds with Ecos: `drive_ecos.py FMU`; prints a JSON list of one object per step."""
+"""Winds with Ecos: `drive_ecos.py FMU RESULT.json`; one object per step."""
 
 import ctypes
 import json
@@ -14,7 +14,7 @@ def load_tbb():
         ctypes.CDLL(str(Path(sys.prefix) / "lib" / "libtbb.so.12"), mode=ctypes.RTLD_GLOBAL)
 
 
-def main(fmu):
+def main(fmu, result):
     load_tbb()
     from ecospy import EcosSimulation, EcosSimulationStructure
 
@@ -33,7 +33,7 @@ def main(fmu):
                     name: as_text(simulation.get_real(f"winder::{name}")) for name in OUTPUTS
                 })
             simulation.terminate()
-    print(json.dumps(rows))
+    Path(result).write_text(json.dumps(rows))
 
 
-main(sys.argv[1])
+main(*sys.argv[1:])

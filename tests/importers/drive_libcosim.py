@@ -1,7 +1,8 @@
-"""Winds with libcosim: `drive_libcosim.py FMU`; prints a JSON list of one object per step."""
+"""Winds with libcosim: `drive_libcosim.py FMU RESULT.json`; one object per step."""
 
 import json
 import sys
+from pathlib import Path
 
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimManipulator import CosimManipulator
@@ -10,7 +11,7 @@ from libcosimpy.CosimSlave import CosimLocalSlave
 from short_wind import OUTPUTS, SCENE, STEP, STEPS, as_text, inputs_at
 
 
-def main(fmu):
+def main(fmu, result):
     # libcosim counts nanoseconds.
     execution = CosimExecution.from_step_size(step_size=round(STEP * 1e9))
     slave = execution.add_local_slave(CosimLocalSlave(fmu_path=fmu, instance_name="winder"))
@@ -34,7 +35,7 @@ def main(fmu):
             raise SystemExit(f"step {k} failed: {execution.status()}")
         values = observer.last_real_values(slave, [references[name] for name in OUTPUTS])
         rows.append({name: as_text(value) for name, value in zip(OUTPUTS, values)})
-    print(json.dumps(rows))
+    Path(result).write_text(json.dumps(rows))
 
 
-main(sys.argv[1])
+main(*sys.argv[1:])
