@@ -462,13 +462,19 @@ impl Simulation {
 
     /// Takes over the tunable parameters of another version of the scene.
     pub fn retune(&mut self, scene: &Scene) {
+        if self.scene.friction != scene.friction {
+            // What holds at rest with one friction may slide with another.
+            self.quiet = 0.0;
+        }
         self.scene.defects = scene.defects;
         self.scene.friction = scene.friction;
         self.coil.set_limits(scene.defects);
-        if let Some(c) = &mut self.sys.contacts {
-            c.law.mu_static = scene.friction.static_;
-            c.law.mu_kinetic = scene.friction.kinetic;
-            c.law.slip_speed = scene.friction.slip_speed;
+        let spheres = self.sys.contacts.as_mut().map(|c| &mut c.law);
+        let line = self.sys.line.as_mut().map(|line| &mut line.law);
+        for law in spheres.into_iter().chain(line) {
+            law.mu_static = scene.friction.static_;
+            law.mu_kinetic = scene.friction.kinetic;
+            law.slip_speed = scene.friction.slip_speed;
         }
     }
 
