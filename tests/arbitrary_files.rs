@@ -68,7 +68,7 @@ fn the_good_files_are_good() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
     fn scenes_of_any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..300)) {

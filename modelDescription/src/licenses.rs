@@ -296,7 +296,7 @@ mod tests {
         );
         assert_eq!(text.matches("One text.").count(), 1);
         assert!(text.contains("Standard library and runtime"));
-        for absent in ["tool", "derive 1", "helper", "Two.", "ours 1"] {
+        for absent in ["tool 1", "derive 1", "helper 1", "Two.", "ours 1"] {
             assert!(!text.contains(absent), "{absent}");
         }
     }
