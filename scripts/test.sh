@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Every check: format, lints, documentation, packaging, exact answers, Rust tests, fmpy tests.
+# Every check: format, lints, documentation, packaging, exact answers, Rust tests, tests of the FMU.
 #
 #     scripts/test.sh
 #
-# Needs Rust, a C linker and Python 3.10 or later. Stops at the first failure; the summaries of
-# cargo test and pytest come last.
+# Needs Rust, a C linker and Python 3.10 or later. Stages that need more say SKIPPED, with what is
+# missing, where it is not there; scripts/install_tools.sh installs it. Stops at the first failure;
+# the summaries of cargo test and pytest come last.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,6 +16,11 @@ fi
 
 target=$(mkdir -p "${CARGO_TARGET_DIR:-target}" && cd "${CARGO_TARGET_DIR:-target}" && pwd)
 began=$SECONDS
+skipped=
+skip() {
+    printf '\n== SKIPPED %s, because on this machine\n%s\n' "$1" "$2"
+    skipped+=$(printf 'SKIPPED %s:\n%s' "$1" "$2")$'\n'
+}
 step() { printf '\n== %s (at %d s)\n' "$*" $((SECONDS - began)); }
 
 step format
@@ -30,9 +36,23 @@ step command and FMU
 cargo build --locked --release --bin coilwind
 scripts/build_fmu.sh
 
+missing=$(scripts/missing_tools.sh portable)
+if [ -z "$missing" ]; then
+    # From here on the FMU is the portable one.
+    step portable FMU
+    scripts/build_fmu.sh --portable
+    step portable FMU from another directory
+    scripts/check_reproducible.sh
+else
+    skip "portable FMU" "$missing"
+fi
+
 step Python
 python=$(scripts/venv.sh)
 "$python" -m fmpy validate "$target/fmu/CoilWinding.fmu"
+# Where their packages cannot run they need not be fetched; the tests say so.
+importers=
+if [ -z "$(scripts/missing_tools.sh importers)" ]; then importers=$(scripts/venv.sh importers); fi
 
 step exact answers
 "$target/release/coilwind" verify
@@ -41,7 +61,14 @@ step exact answers
 step Rust tests
 cargo test --locked --workspace
 
-step fmpy tests
+step tests of the FMU
+for stage in c sanitizer valgrind wine importers; do
+    missing=$(scripts/missing_tools.sh $stage)
+    if [ -n "$missing" ]; then skip "tests that need: $stage" "$missing"; fi
+done
+if [ -n "$skipped" ]; then printf '\nNot everything is tested here.\n%s' "$skipped"; fi
+# -rs names the tests that were skipped, with the reason.
 exec env COILWIND_COMMAND="$target/release/coilwind" \
     COILWIND_FMU="$target/fmu/CoilWinding.fmu" \
-    "$python" -m pytest -q tests/fmpy
+    COILWIND_IMPORTERS_PYTHON="$importers" \
+    "$python" -m pytest -q -rs tests/fmpy

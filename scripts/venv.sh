@@ -1,14 +1,29 @@
 #!/usr/bin/env bash
-# Makes target/venv with requirements.txt, unless it is there, and prints its Python.
+# Makes a virtual environment, unless it is there, and prints its Python.
+#
+#     scripts/venv.sh [build | importers]
+#
+# Without a word: target/venv with requirements.txt (tests and demonstration). build: target/venv-build
+# with requirements-build.txt (the linker of portable libraries). importers: target/venv-importers with
+# requirements-importers.txt (other people's FMU importers, which may want other versions of things).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-venv=${CARGO_TARGET_DIR:-target}/venv
+case ${1-} in
+    '') suffix= ;;
+    build | importers) suffix=-$1 ;;
+    *)
+        echo "venv.sh: unknown environment $1 (there are build and importers, or none)" >&2
+        exit 2
+        ;;
+esac
+requirements=requirements$suffix.txt
+venv=${CARGO_TARGET_DIR:-target}/venv$suffix
 stamp=$venv/requirements.txt
 # Windows has Scripts, everybody else bin.
 python_of() { if [ -x "$venv/Scripts/python.exe" ]; then echo "$venv/Scripts/python.exe"; else echo "$venv/bin/python"; fi; }
 
-if cmp -s requirements.txt "$stamp" && "$(python_of)" -c '' 2>/dev/null; then
+if cmp -s "$requirements" "$stamp" && "$(python_of)" -c '' 2>/dev/null; then
     python_of
     exit
 fi
@@ -33,7 +48,7 @@ fi
 echo "making $venv with $("$system" --version)" >&2
 rm -rf "$venv"
 "$system" -m venv "$venv"
-"$(python_of)" -m pip install --quiet --disable-pip-version-check --requirement requirements.txt >&2
+"$(python_of)" -m pip install --quiet --disable-pip-version-check --requirement "$requirements" >&2
 # Last, so that an install that was cut short is made anew.
-cp requirements.txt "$stamp"
+cp "$requirements" "$stamp"
 python_of

@@ -219,6 +219,24 @@ fn a_standing_spindle_lets_wire_settle_and_costs_nothing() {
     assert!((m.out().wire_tension - 15.0).abs() < 0.01);
 }
 
+/// A friction coefficient that is tuned between steps counts from the next step on.
+#[test]
+fn tuned_friction_moves_the_wire() {
+    let mut plain = Machine::new(&[]);
+    let mut tuned = Machine::new(&[]);
+    for m in [&mut plain, &mut tuned] {
+        m.turn(0.35, 100.0);
+    }
+    let rough = fig8(&[("friction.static", "0.6"), ("friction.kinetic", "0.5")]);
+    tuned.sim.retune(&rough);
+    assert_eq!(plain.out(), tuned.out());
+    for m in [&mut plain, &mut tuned] {
+        m.turn(0.25, 100.0);
+    }
+    assert_ne!(plain.out().spindle_torque, tuned.out().spindle_torque);
+    assert_ne!(plain.out().fed_length, tuned.out().fed_length);
+}
+
 #[test]
 fn slack_wire_is_told_and_taken_up_again() {
     let mut m = Machine::new(&[]);

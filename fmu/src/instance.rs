@@ -45,7 +45,9 @@ pub(crate) struct Instance {
     /// inputs that the importer set before the start, by reference
     start_inputs: BTreeMap<u32, f64>,
     /// made when first needed in initialization mode, thrown away when something is set there
-    run: Option<Run>,
+    ///
+    /// Boxed: a simulation is large, and every call would move it.
+    run: Option<Box<Run>>,
     /// strings handed out by the last call
     strings: Vec<CString>,
     filter: Filter,
@@ -311,14 +313,14 @@ impl Instance {
                     Simulation::starting_with(&scene, inputs).map_err(Refusal::Start)?;
                 self.messages
                     .extend(warnings.iter().map(message_of_warning));
-                Run {
+                Box::new(Run {
                     simulation,
                     inputs,
                     recording: None,
-                }
+                })
             }
         };
-        Ok(self.run.insert(run))
+        Ok(self.run.insert(run).as_mut())
     }
 
     fn value(&mut self, variable: &Variable) -> Result<Value, Refusal> {

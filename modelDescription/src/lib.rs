@@ -6,16 +6,20 @@
 #![forbid(unsafe_code)]
 
 mod categories;
+mod document;
 mod error;
 mod guid;
+mod licenses;
 mod pack;
 mod structure;
 mod units;
 mod xml;
 
 pub use categories::{CATEGORIES, Category};
+pub use document::document;
 pub use error::{DescriptionError, PackError};
 pub use guid::guid;
+pub use licenses::{LicenseError, third_party};
 pub use pack::{Contents, pack, platform_of};
 pub use xml::model_description;
 

@@ -1,5 +1,6 @@
 //! The FMU: a zip archive that depends on nothing but its contents.
 
+use crate::document::{PICTURES, document};
 use crate::{MODEL_IDENTIFIER, PackError, model_description};
 use std::fs;
 use std::io::{Cursor, Write};
@@ -7,13 +8,21 @@ use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
-/// What goes into the archive besides the description.
+/// The licence of coilwind itself.
+const LICENSE: &str = include_str!("../../LICENSE");
+
+/// What importers show for the model.
+const ICON: &[u8] = include_bytes!("../documentation/model.png");
+
+/// What goes into the archive besides description and documentation.
 #[derive(Clone, Debug, Default)]
 pub struct Contents {
     /// shared libraries, one per platform; the extension tells which
     pub libraries: Vec<PathBuf>,
     /// directory whose `*.toml` become `resources/scenes/`; left out when it does not exist
     pub scenes: Option<PathBuf>,
+    /// licences of what is linked in, see [`third_party`](crate::third_party)
+    pub third_party: String,
 }
 
 /// One file of the archive.
@@ -21,6 +30,16 @@ struct Entry {
     name: String,
     bytes: Vec<u8>,
     permissions: u32,
+}
+
+impl Entry {
+    fn file(name: impl Into<String>, bytes: impl Into<Vec<u8>>) -> Self {
+        Self {
+            name: name.into(),
+            bytes: bytes.into(),
+            permissions: 0o644,
+        }
+    }
 }
 
 /// FMI's name of a library's platform and the library's extension, from its file name.
@@ -46,22 +65,28 @@ pub fn pack(contents: &Contents, out: &Path) -> Result<(), PackError> {
     {
         entries.extend(scenes(directory)?);
     }
+    entries.extend(documentation(&contents.third_party)?);
     entries.sort_by(|a, b| a.name.cmp(&b.name));
-    let description = model_description()?.into_bytes();
-    let name = "modelDescription.xml".to_owned();
-    entries.insert(
-        0,
-        Entry {
-            name,
-            bytes: description,
-            permissions: 0o644,
-        },
-    );
+    let description = model_description()?;
+    entries.insert(0, Entry::file("modelDescription.xml", description));
     let bytes = archive(&entries).map_err(|source| PackError::Archive {
         path: out.to_owned(),
         source,
     })?;
     write_whole(out, &bytes)
+}
+
+/// What people read: the page with its pictures, the licences, the icon.
+fn documentation(third_party: &str) -> Result<Vec<Entry>, PackError> {
+    let mut entries = vec![
+        Entry::file("documentation/index.html", document()?),
+        Entry::file("documentation/licenses/license.txt", LICENSE),
+        Entry::file("documentation/licenses/third-party.txt", third_party),
+        Entry::file("model.png", ICON),
+    ];
+    entries
+        .extend(PICTURES.map(|(name, bytes)| Entry::file(format!("documentation/{name}"), bytes)));
+    Ok(entries)
 }
 
 fn libraries(paths: &[PathBuf]) -> Result<Vec<Entry>, PackError> {
@@ -97,12 +122,10 @@ fn scenes(directory: &Path) -> Result<Vec<Entry>, PackError> {
             continue;
         };
         if name.ends_with(".toml") {
-            let name = format!("resources/scenes/{name}");
-            entries.push(Entry {
-                name,
-                bytes: read(&path)?,
-                permissions: 0o644,
-            });
+            entries.push(Entry::file(
+                format!("resources/scenes/{name}"),
+                read(&path)?,
+            ));
         }
     }
     Ok(entries)

@@ -1,6 +1,6 @@
 //! The archive holds what FMI wants where FMI wants it, and its bytes depend on nothing else.
 
-use coilwind_model_description::{Contents, PackError, model_description, pack};
+use coilwind_model_description::{Contents, PackError, document, model_description, pack};
 use std::fs;
 use std::io::Read;
 use std::path::PathBuf;
@@ -16,6 +16,7 @@ fn contents(directory: &std::path::Path) -> Contents {
     Contents {
         libraries: vec![library],
         scenes: Some(scenes),
+        third_party: "what others wrote".to_owned(),
     }
 }
 
@@ -39,16 +40,38 @@ fn archive_has_the_fmi_layout() {
         [
             "modelDescription.xml",
             "binaries/linux64/CoilWinding.so",
+            "documentation/coil.png",
+            "documentation/index.html",
+            "documentation/licenses/license.txt",
+            "documentation/licenses/third-party.txt",
+            "model.png",
             "resources/scenes/a.toml",
             "resources/scenes/b.toml"
         ]
     );
-    let mut text = String::new();
-    zip.by_name("modelDescription.xml")
-        .expect("description")
-        .read_to_string(&mut text)
-        .expect("text");
-    assert_eq!(text, model_description().expect("description"));
+    let mut read = |name: &str| {
+        let mut bytes = Vec::new();
+        let mut entry = zip.by_name(name).expect("entry");
+        entry.read_to_end(&mut bytes).expect("bytes");
+        bytes
+    };
+    let text = |bytes| String::from_utf8(bytes).expect("text");
+    assert_eq!(
+        text(read("modelDescription.xml")),
+        model_description().expect("description")
+    );
+    assert_eq!(
+        text(read("documentation/index.html")),
+        document().expect("page")
+    );
+    assert_eq!(
+        text(read("documentation/licenses/third-party.txt")),
+        "what others wrote"
+    );
+    assert!(text(read("documentation/licenses/license.txt")).contains("MIT"));
+    for picture in ["model.png", "documentation/coil.png"] {
+        assert!(read(picture).starts_with(b"\x89PNG"), "{picture}");
+    }
 }
 
 #[test]

@@ -33,7 +33,7 @@ const DOUBLING: f64 = 0.25 * std::f64::consts::TAU;
 impl FreezePolicy {
     /// Largest displacement over the window of wire at rest that lies `behind` lift-off, rad; m.
     pub fn limit(&self, behind: f64) -> f64 {
-        self.displacement * ((behind - self.patience) / DOUBLING).max(0.0).exp2()
+        self.displacement * libm::exp2(((behind - self.patience) / DOUBLING).max(0.0))
     }
 }
 

@@ -462,6 +462,10 @@ impl Simulation {
 
     /// Takes over the tunable parameters of another version of the scene.
     pub fn retune(&mut self, scene: &Scene) {
+        if self.scene.friction != scene.friction {
+            // What holds at rest with one friction may slide with another.
+            self.quiet = 0.0;
+        }
         self.scene.defects = scene.defects;
         self.scene.friction = scene.friction;
         self.coil.set_limits(scene.defects);

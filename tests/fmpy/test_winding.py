@@ -163,3 +163,25 @@ def test_inputs_of_initialization_mode_shape_the_start(slave):
         assert slave.get("wire_tension") == pytest.approx(tension, rel=1e-3)
     slave.fmu.exitInitializationMode()
     assert slave.get("wire_tension") == pytest.approx(12.0, rel=1e-3)
+
+
+def test_a_parameter_tuned_between_steps_counts_from_the_next_step_on(make_slave):
+    """Friction moves the wire and limits raise flags, each from where it was set, not before."""
+    tuned, plain, rough = make_slave("tuned"), make_slave("plain"), make_slave("rough")
+    signals, size = signals_of(300, plain, turns=0.3, n=12)
+    plain_rows = run(plain, signals, size, scene__file=SCENE)
+    rough_rows = run(rough, signals, size, scene__file=SCENE, friction__static=0.6, friction__kinetic=0.5)
+    change = 6
+    start(tuned, signals, scene__file=SCENE)
+    rows = [tuned.outputs()]
+    for k in range(len(signals) - 1):
+        if k == change:
+            tuned.set(friction__static=0.6, friction__kinetic=0.5)
+            assert tuned.get("friction.static") == 0.6
+        step(tuned, signals, k, size)
+        rows.append(tuned.outputs())
+    assert rows[: change + 1] == plain_rows[: change + 1]
+    assert rows[-1] != plain_rows[-1]
+    assert rows[-1] != rough_rows[-1]
+    for row in rows:
+        assert all(math.isfinite(value) for value in row.values())

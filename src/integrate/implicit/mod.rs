@@ -257,7 +257,7 @@ impl Implicit {
                 }
                 Ok(_) => {
                     let error = step.error * work.difference();
-                    let factor = (AIM * self.tolerance / error.max(1e-30)).cbrt();
+                    let factor = libm::cbrt(AIM * self.tolerance / error.max(1e-30));
                     if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
                         self.commit(work, sys, &step, spindle, &support, nozzle);
                         self.effort.steps += 1;

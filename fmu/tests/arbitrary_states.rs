@@ -1,0 +1,22 @@
+//! Bytes that are no state, given to `fmi2DeSerializeFMUstate`: the entry of the fuzz target.
+#![allow(non_snake_case)]
+
+use proptest::prelude::*;
+
+#[path = "../../fuzz/state_entry.rs"]
+mod state_entry;
+
+#[test]
+fn no_bytes_at_all() {
+    state_entry::deserialize(&[]);
+}
+
+proptest! {
+    // Each case starts a simulation.
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn any_bytes(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        state_entry::deserialize(&bytes);
+    }
+}
