@@ -65,6 +65,8 @@ pub struct Simulation {
     quiet: f64,
     /// farthest nozzle position of this pass, m, and its direction along y
     pass: (f64, f64),
+    /// steps that may be tried from the start on
+    most_attempts: u64,
 }
 
 impl Simulation {
@@ -147,6 +149,7 @@ impl Simulation {
             was_slack: false,
             quiet: 0.0,
             pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
+            most_attempts: u64::MAX,
         };
         sim.sys.spindle.speed = inputs.spindle_speed;
         sim.sys.place_supports();
@@ -162,6 +165,12 @@ impl Simulation {
             nozzle_position: self.sys.support[1].point.y,
             tension_setpoint: self.sys.set_tension,
         }
+    }
+
+    /// Lets the run end with an error once this many steps have been tried since the start, whether or not they
+    /// were taken: a bound on the work that does not depend on the clock.
+    pub fn limit_attempts(&mut self, most: u64) {
+        self.most_attempts = most;
     }
 
     /// Starts over with other inputs; only before the first step.
@@ -307,10 +316,19 @@ impl Simulation {
                 None => e.to_string(),
             },
         })?;
+        let effort = method.effort;
         self.last_step = taken;
         self.steps += 1;
         self.watch_tension();
         self.keep_house(taken)?;
+        let tried = effort.steps + effort.rejects + effort.stalls;
+        if tried > self.most_attempts {
+            return Err(SimError {
+                time: self.sys.time,
+                node: None,
+                reason: format!("{tried} steps tried, {} were allowed", self.most_attempts),
+            });
+        }
         let still =
             self.sys.spindle.speed == 0.0 && self.sys.rod.v.iter().all(|v| v.amax() < QUIET);
         self.quiet = if still { self.quiet + taken } else { 0.0 };
