@@ -130,7 +130,7 @@ fn feed(
     let last = sys.rod.edges() - 1;
     let length = (q[last + 1] - q[last]).norm();
     let grown = nozzle.rest(length) - sys.rod.rest[last];
-    let line = nozzle.stretched(length).tension / sys.exit_grip();
+    let line = nozzle.line(length);
     let next = advance(spec, feed, &sys.past, step, (grown, line, sys.set_tension));
     let past = &mut sys.past;
     past.fed = [feed.fed, past.fed[0]];
