@@ -14,7 +14,6 @@ const MOST_STILL: f64 = 1200.0;
 /// Communication step, s, and the inputs of each, the last of which only ends the run.
 pub(super) fn draw(dice: &mut Dice, kind: Kind, scene: &Scene) -> (f64, Vec<Inputs>) {
     let top = scene.spindle.speed;
-    let direction = if dice.chance(0.1) { -1.0 } else { 1.0 };
     // a controller looks every 0.3 to 6 degrees of its core
     let step = dice.log(0.005, 0.1) / top;
     let plan = Plan::new(dice, kind, scene, step);
@@ -28,13 +27,17 @@ pub(super) fn draw(dice: &mut Dice, kind: Kind, scene: &Scene) -> (f64, Vec<Inpu
     let mut wait = 0.0;
     while turned < scene.spindle.turns * TAU && inputs.len() < MOST && !plan.is_over(wait) {
         let time = inputs.len() as f64 * step;
-        let mut speed = direction * top * plan.speed(turned, time, &mut wait);
+        let mut speed = top * plan.speed(turned, time, &mut wait);
         let mut tension = scene.tensioner.tension * plan.tension(turned, wait);
         if plan.jumps.first().is_some_and(|first| turned > first.0) || jumped != 0.0 {
             let passed = plan.jumps.iter().filter(|j| turned > j.0);
             jumped = passed.map(|j| j.1).sum();
         }
         let mut nozzle = scene.nozzle.y_start + scene.traverse.per_turn * angle / TAU + jumped;
+        if angle + speed * step < 0.0 {
+            // unwound: farther back the wire would fold at its clamp, which looks the other way
+            break;
+        }
         if kind == Kind::Noise {
             speed *= 1.0 + plan.noise * dice.even(-1.0, 1.0);
             tension *= 1.0 + plan.noise * dice.even(-1.0, 1.0);
