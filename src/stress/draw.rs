@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 /// Draws until a scene is valid; nine of ten are at once, so this many never all fail.
 const DRAWS: usize = 200;
 /// Edges of one turn on the core that a scene may ask for: bounds the cost of a case, not its kind.
-const EDGES_PER_TURN: f64 = 500.0;
+const EDGES_PER_TURN: f64 = 300.0;
 
 /// Case `number` of `seed`, or what the rules had against the last draw.
 pub fn case(seed: u64, number: u64) -> Result<Case, String> {
@@ -75,7 +75,11 @@ fn scene(dice: &mut Dice) -> (SceneSettings, Option<Prism>) {
     contact(dice, &mut s);
     freeze(dice, &mut s);
 
-    s.spindle.speed = dice.log(1.0, 2000.0);
+    // a turn at 1 rad/s takes as long as a hundred at 100: a few of those will do
+    s.spindle.speed = match dice.chance(0.05) {
+        true => dice.log(1.0, 8.0),
+        false => dice.log(8.0, 2000.0),
+    };
     s.spindle.turns = dice.even(0.25, 2.0);
     s.spindle.ramp_turns = s.spindle.turns * dice.even(0.05, 0.3);
     s.traverse.per_turn = match dice.even(0.0, 1.0) {
@@ -170,19 +174,14 @@ fn spacing(dice: &mut Dice, s: &mut SceneSettings, room: f64, perimeter: f64) {
     let d = s.wire.diameter;
     let v = &mut s.solver;
     if dice.chance(0.5) {
-        v.tolerance = dice.log(1e-7, 2e-5);
+        v.tolerance = dice.log(1e-7, (0.1 * d).min(2e-5));
     }
-    v.twist = dice
-        .pick(&[
-            "auto",
-            "auto",
-            "auto",
-            "auto",
-            "off",
-            "quasi-static",
-            "dynamic",
-        ])
-        .to_owned();
+    let pick = dice.pick(&["auto", "auto", "auto", "off", "quasi-static", "dynamic"]);
+    // without twist the set of wire that yields turns into nothing that balances
+    v.twist = match s.wire.elastic || pick != "off" {
+        true => pick.to_owned(),
+        false => "auto".to_owned(),
+    };
     let coarsest = (10.0 * d).min(1.5e-3).min(room / 4.0);
     if dice.chance(0.4) {
         v.spacing_near = dice.log((0.1 * d).max(0.1e-3).min(coarsest), coarsest);

@@ -1,9 +1,11 @@
 //! Runs a case and judges it at every communication point.
 
 use super::{Case, Invariant, Measures, Outcome, Verdict};
+use crate::math::{Spin, V3};
+use crate::measure::{polar_angle, wrap_to_pi};
 use crate::scene::{Core, Scene};
 use crate::simulation::{EventKind, SimError, Simulation};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// Energy that the books may leave unexplained, as a share of what went through them and of the work that
@@ -12,13 +14,17 @@ const ENERGY: f64 = 0.05;
 /// Centreline may be deeper in the core than its contact says by this share of the diameter: it is
 /// looked at between the points that touch.
 const SUNK: f64 = 0.3;
+/// Wire may be deeper in wire than its contact says by this share of the diameter.
+const CROSSED: f64 = 0.5;
 /// Friction may be above its limit by this share: rounding, and a node put in or taken out since.
 const CONE: f64 = 1e-2;
 /// Wire that is there may differ from what was fed by this share: where a node goes, the edge over it is
 /// the chord of the two, which are straight to 10 mrad (1.3e-5).
 const LENGTH: f64 = 5e-5;
-/// Steps tried that are enough for a turn, and for the start or a stop, which turn nothing.
-const STEPS_PER_TURN: f64 = 100_000.0;
+/// Steps tried that are enough for a turn, and half of them for the start or a stop, which turn nothing; ...
+const STEPS_PER_TURN: f64 = 30_000.0;
+/// ... with so many nodes (more nodes, fewer steps: the bound is on the work).
+const NODES: f64 = 200.0;
 /// Communication points between looks at every frozen node.
 const LOOK: usize = 16;
 
@@ -56,17 +62,19 @@ fn wind(case: &Case, measures: &mut Measures) -> Outcome {
         end = (k + 1) as f64 * case.step;
         let turned = (inputs.spindle_speed * (end - start)).abs() / TAU;
         // one step is always allowed: the bound grows with what is turned, and this is not yet
-        sim.limit_attempts(steps_allowed(measures.turns + turned) as u64);
+        sim.limit_work(work_allowed(measures.turns + turned));
         let advanced = sim.advance(*inputs, end - start);
         measures.turns += turned;
         measures.time = end;
         watch.measure(&sim, measures);
         if let Err(e) = advanced {
-            if measures.attempts() as f64 >= steps_allowed(measures.turns) {
+            if sim.work() > work_allowed(measures.turns) {
                 let text = format!(
-                    "{} steps tried in {:.3} turns",
+                    "{} steps tried in {:.3} turns, {} live nodes, {:.3} m of wire fed",
                     measures.attempts(),
-                    measures.turns
+                    measures.turns,
+                    sim.system().rod.nodes(),
+                    sim.outputs().fed_length
                 );
                 return broken(e.time, Invariant::Steps, text);
             }
@@ -88,9 +96,9 @@ fn wind(case: &Case, measures: &mut Measures) -> Outcome {
     Outcome::Completed
 }
 
-/// Steps tried that are enough for so many turns.
-fn steps_allowed(turns: f64) -> f64 {
-    STEPS_PER_TURN * (0.5 + turns)
+/// Node steps that are enough for so many turns.
+fn work_allowed(turns: f64) -> u64 {
+    (STEPS_PER_TURN * NODES * (0.5 + turns)) as u64
 }
 
 fn broken(time: f64, what: Invariant, text: String) -> Outcome {
@@ -122,7 +130,7 @@ struct Watch {
     /// plastic work so far, J
     plastic: f64,
     /// frozen wire at the last look, core frame, m
-    frozen: Vec<crate::math::V3>,
+    frozen: Vec<V3>,
     looks: usize,
     /// sums of what the spindle and the feed did, either way, J
     through: f64,
@@ -165,14 +173,16 @@ impl Watch {
         self.energy(sim, m)?;
         self.plastic_work(sim)?;
         self.wire(sim)?;
-        tension(sim)?;
-        // nodes put in or taken out move the points that touch, and the next step brings friction in line
+        // nodes put in or taken out move the points that touch and share out tension; the next step brings
+        // that in line
         let nodes = (sim.system().rod.nodes(), sim.centreline().frozen);
         if std::mem::replace(&mut self.nodes, nodes) == nodes {
             cone(sim, m)?;
+            tension(sim)?;
         }
         if last || self.looks.is_multiple_of(LOOK) {
             penetration(sim, scene, m)?;
+            wire_in_wire(sim, scene, m)?;
         }
         self.frozen_wire(sim)
     }
@@ -301,7 +311,7 @@ fn cone(sim: &Simulation, m: &mut Measures) -> Found {
 fn penetration(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
     let sys = sim.system();
     let (r, d) = (scene.wire.radius(), scene.wire.diameter);
-    let spin = crate::math::Spin::new(sys.spindle.angle);
+    let spin = Spin::new(sys.spindle.angle);
     // the stiffness allows for so much where the wire is drawn round the tightest bend
     let bend = match scene.core {
         Core::RoundedBox { corner_radius, .. } => corner_radius + r,
@@ -324,4 +334,53 @@ fn penetration(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
         }
     }
     Ok(())
+}
+
+/// Wire through wire: every live node against all that lies half a turn or more behind it, whatever the
+/// method's own search found.
+fn wire_in_wire(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
+    let sys = sim.system();
+    let Some(line) = &sys.line else {
+        return Ok(());
+    };
+    let d = scene.wire.diameter;
+    let spin = Spin::new(sys.spindle.angle);
+    let frozen = line.tube.points();
+    let live = (0..sys.rod.nodes()).map(|i| spin.to_core(sys.rod.x[i]));
+    let all: Vec<V3> = frozen.iter().copied().chain(live).collect();
+    // polar angle along the wire from its end
+    let mut turned = vec![0.0];
+    for pair in all.windows(2) {
+        let step = wrap_to_pi(polar_angle(pair[1]) - polar_angle(pair[0]));
+        turned.push(turned[turned.len() - 1] + step);
+    }
+    for i in frozen.len().max(1)..all.len() - 1 {
+        let p = spin.to_core(sys.centre(i - frozen.len()));
+        for j in 1..i {
+            if (turned[i] - turned[j]).abs() < PI {
+                break;
+            }
+            // far away for the length of an edge: the wire between is straight enough
+            let (a, b) = ((all[j - 1] + all[j]) * 0.5, (all[j] + all[j + 1]) * 0.5);
+            let depth = d - distance_to_segment(p, a, b);
+            m.crossed = m.crossed.max(depth / d);
+            if depth > CROSSED * d {
+                let text = format!(
+                    "live node {} is {:.2} d in the wire {:.2} turns behind it",
+                    i - frozen.len(),
+                    depth / d,
+                    (turned[i] - turned[j]).abs() / TAU
+                );
+                return Err((Invariant::Crossing, text));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Distance of a point from a segment, m.
+fn distance_to_segment(p: V3, a: V3, b: V3) -> f64 {
+    let along = b - a;
+    let share = (p - a).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+    (p - a - along * share.clamp(0.0, 1.0)).norm()
 }

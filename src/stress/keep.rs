@@ -1,6 +1,8 @@
 //! A case as files: a scene, its inputs, and its mesh if it winds on one.
 
-use super::Case;
+use super::{Case, Kind};
+use crate::scene::SceneSettings;
+use crate::simulation::Inputs;
 use std::fmt::Write;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -74,6 +76,32 @@ impl Files {
             None => Ok(()),
         }
     }
+}
+
+/// Reads a kept case back; seed, number and kind of its signals are not kept.
+pub fn read(scene: &Path) -> Result<Case, String> {
+    let bad = |what: &dyn std::fmt::Display| format!("{}: {what}", scene.display());
+    let settings = SceneSettings::load(&scene.to_string_lossy()).map_err(|e| bad(&e))?;
+    let mut reader = csv::Reader::from_path(scene.with_extension("csv")).map_err(|e| bad(&e))?;
+    let mut rows: Vec<[f64; 4]> = Vec::new();
+    for row in reader.deserialize() {
+        rows.push(row.map_err(|e| bad(&e))?);
+    }
+    let inputs = rows.iter().map(|row| Inputs {
+        spindle_speed: row[1],
+        nozzle_position: row[2],
+        tension_setpoint: row[3],
+    });
+    Ok(Case {
+        seed: 0,
+        number: 0,
+        kind: Kind::Ramp,
+        settings,
+        prism: None,
+        // samples are whole multiples of it
+        step: rows.get(1).ok_or_else(|| bad(&"fewer than two samples"))?[0],
+        inputs: inputs.collect(),
+    })
 }
 
 /// Inputs as the command line reads them back to the bit: a sample at each communication point.

@@ -169,6 +169,8 @@ pub enum Invariant {
     Energy,
     /// wire stays out of the core
     Penetration,
+    /// wire stays out of wire
+    Crossing,
     /// friction within its limit
     Cone,
     /// wire between clamp and nozzle is what there was and what was fed
@@ -190,6 +192,7 @@ impl fmt::Display for Invariant {
             Self::Finite => "finite state",
             Self::Energy => "energy balance",
             Self::Penetration => "penetration",
+            Self::Crossing => "wire in wire",
             Self::Cone => "friction cone",
             Self::Length => "wire length",
             Self::PlasticWork => "plastic work",
@@ -234,6 +237,8 @@ pub struct Measures {
     pub depth: f64,
     /// deepest place of the centreline in the core, as measured beside it, diameters
     pub sunk: f64,
+    /// deepest place in other wire, as measured beside the method, diameters
+    pub crossed: f64,
     /// friction over its limit, at worst
     pub cone: f64,
 }

@@ -41,7 +41,7 @@ pub(super) fn draw(dice: &mut Dice, kind: Kind, scene: &Scene) -> (f64, Vec<Inpu
         if kind == Kind::Noise {
             speed *= 1.0 + plan.noise * dice.even(-1.0, 1.0);
             tension *= 1.0 + plan.noise * dice.even(-1.0, 1.0);
-            nozzle += plan.noise * scene.wire.diameter * dice.even(-1.0, 1.0);
+            nozzle += 0.1 * plan.noise * scene.wire.diameter * dice.even(-1.0, 1.0);
         }
         // as far beside the core as scenes let a nozzle start
         nozzle = nozzle.clamp(-half - reach, half + reach);
