@@ -58,6 +58,8 @@ pub struct System {
     pub twist: Twist,
     /// unstretched length from the clamp to the first live node, m
     pub arc0: f64,
+    /// wire lost to chords where nodes went, m: arcs became that much shorter
+    pub joined_away: f64,
     /// energy books
     pub books: Books,
     /// deepest penetration met, m
@@ -96,6 +98,7 @@ impl System {
             set_tension: 0.0,
             twist: Twist::Dynamic,
             arc0: 0.0,
+            joined_away: 0.0,
             books: Books::default(),
             deepest: 0.0,
             torque_on_core: 0.0,

@@ -18,9 +18,10 @@ const SUNK: f64 = 0.3;
 const CROSSED: f64 = 0.5;
 /// Friction may be above its limit by this share: rounding, and a node put in or taken out since.
 const CONE: f64 = 1e-2;
-/// Wire that is there may differ from what was fed by this share: where a node goes, the edge over it is
-/// the chord of the two, which are straight to 10 mrad (1.3e-5).
-const LENGTH: f64 = 5e-5;
+/// Wire that is there may differ from what was fed by this share: rounding of sums; ...
+const LENGTH: f64 = 1e-9;
+/// ... and so much of it may have gone where arcs became chords, node by node.
+const JOINED: f64 = 2e-4;
 /// Steps tried that are enough for a turn, and half of them for the start or a stop, which turn nothing; ...
 const STEPS_PER_TURN: f64 = 30_000.0;
 /// ... with so many nodes (more nodes, fewer steps: the bound is on the work).
@@ -214,8 +215,13 @@ impl Watch {
 
     fn wire(&self, sim: &Simulation) -> Found {
         let (is, fed) = (wire_length(sim), sim.outputs().fed_length);
-        let off = is - self.length - fed;
-        if off.abs() > LENGTH * (self.length + fed.abs()) {
+        let joined = sim.system().joined_away;
+        let all = self.length + fed.abs();
+        if joined > JOINED * all {
+            let text = format!("{joined:.3e} m of {all:.3e} m lost where nodes went");
+            return Err((Invariant::Length, text));
+        }
+        if (is + joined - self.length - fed).abs() > LENGTH * all {
             let text = format!(
                 "{is:.9} m of wire, {:.9} m at the start and {fed:.9} m fed",
                 self.length
