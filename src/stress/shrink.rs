@@ -19,7 +19,7 @@ pub fn shrink(case: &Case, verdict: &Verdict) -> (Case, Verdict, usize) {
     };
     best.cut();
     for change in CHANGES {
-        best.attempt(|case| change(case));
+        best.attempt(change);
     }
     best.cut();
     (best.case, best.verdict, best.runs)
