@@ -318,14 +318,14 @@ fn penetration(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
     let sys = sim.system();
     let (r, d) = (scene.wire.radius(), scene.wire.diameter);
     let spin = Spin::new(sys.spindle.angle);
-    // the stiffness allows for so much where the wire is drawn round the tightest bend
+    // the stiffness allows for so much where the wire is drawn round the tightest bend, within reason
     let bend = match scene.core {
         Core::RoundedBox { corner_radius, .. } => corner_radius + r,
         Core::Cylinder { radius, .. } => radius + r,
         Core::Mesh { .. } => r,
     };
     let pull = sys.load.tension.iter().copied().fold(0.0, f64::max);
-    let soft = pull / bend / scene.contact.stiffness;
+    let soft = (pull / bend / scene.contact.stiffness).min(0.2 * d);
     let allowed = SUNK * d + soft;
     for i in 1..sys.rod.nodes() - 1 {
         let depth = r - sys.distance_to_core(spin.to_core(sys.centre(i)));
