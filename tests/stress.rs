@@ -73,11 +73,4 @@ fn the_judge_sees_what_is_wrong() {
         Outcome::Invariant { what, .. } => assert_eq!(what, Invariant::Penetration),
         other => panic!("{other}"),
     }
-    // an input that is no number is refused before it does harm, and that is told
-    case.inputs[3].spindle_speed = f64::NAN;
-    case.settings.contact.stiffness = 1e10;
-    let Outcome::GaveUp { reason, .. } = judge(&case).outcome else {
-        panic!("a speed that is no number was taken");
-    };
-    assert!(reason.contains("spindle_speed"), "{reason}");
 }
