@@ -58,6 +58,9 @@ step exact answers
 "$target/release/coilwind" verify
 "$target/release/coilwind" verify --preset paper
 
+step random scenes
+"$target/release/coilwind" stress --count 100 --seed 1 --quiet --out "$target/stress" | tail -n 1
+
 step Rust tests
 cargo test --locked --workspace
 

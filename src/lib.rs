@@ -17,5 +17,6 @@ pub mod output;
 pub mod rod;
 pub mod scene;
 pub mod simulation;
+pub mod stress;
 pub mod variables;
 pub mod verify;

@@ -425,3 +425,29 @@ fn a_benchmark_that_makes_no_sense_is_bad_input() {
         assert!(said.contains(expected), "{arguments:?}: {said}");
     }
 }
+
+/// The same lines and tables whatever the number of threads.
+#[test]
+fn stress_does_not_depend_on_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |threads: &str| {
+        let out = folder.path().join(threads);
+        let out = out.to_str().unwrap();
+        let arguments = [
+            "stress", "--count", "6", "--seed", "4", "--quiet", "--out", out,
+        ];
+        let mut command = coilwind(&[&arguments[..], &["--threads", threads]].concat());
+        let output = command.output().unwrap();
+        (
+            output.status.code(),
+            String::from_utf8(output.stdout).unwrap(),
+        )
+    };
+    let (one, three) = (run("1"), run("3"));
+    assert_eq!(one, three);
+    assert_eq!(one.0, Some(0), "{}", one.1);
+    assert_eq!(one.1.lines().take(6).count(), 6);
+    assert!(one.1.ends_with("0 broke an invariant\n"), "{}", one.1);
+    let table = std::fs::read_to_string(folder.path().join("1/stability.md")).unwrap();
+    assert!(table.contains("| wire diameter, mm |"), "{table}");
+}

@@ -84,6 +84,26 @@ pub(super) enum Failure {
         /// why
         reason: String,
     },
+    /// No scene could be drawn.
+    #[error("stress: {reason}")]
+    Draw {
+        /// which, and why
+        reason: String,
+    },
+    /// Ctrl-C during `stress`.
+    #[error("interrupted; what failed so far is in {directory}")]
+    Stopped {
+        /// where the files are
+        directory: String,
+    },
+    /// `stress` found what must not be.
+    #[error("{count} of the scenes broke an invariant; their files are in {directory}")]
+    Invariant {
+        /// how many
+        count: u64,
+        /// where the files are
+        directory: String,
+    },
     /// A number is out of tolerance.
     #[error("not every number is right")]
     Verify,
@@ -107,7 +127,7 @@ impl Failure {
     /// 1 defect or wrong number, 2 bad input, 3 solver, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
-            Self::Defect { .. } | Self::Verify => 1,
+            Self::Defect { .. } | Self::Verify | Self::Invariant { .. } => 1,
             Self::Scene(_)
             | Self::Start { .. }
             | Self::Cell { .. }
@@ -115,9 +135,10 @@ impl Failure {
             | Self::Write { .. }
             | Self::Output(_)
             | Self::Cases(_)
-            | Self::Bench(_) => 2,
+            | Self::Bench(_)
+            | Self::Draw { .. } => 2,
             Self::Solver { .. } | Self::BenchStopped { .. } => 3,
-            Self::Interrupted { .. } => 130,
+            Self::Interrupted { .. } | Self::Stopped { .. } => 130,
         }
     }
 

@@ -7,6 +7,7 @@ mod frames;
 mod progress;
 mod run;
 mod signals;
+mod stress;
 mod variables;
 mod verify;
 
@@ -14,6 +15,8 @@ use clap::{Args, Parser, Subcommand};
 use coilwind::scene::{SceneError, SceneSettings, assignment};
 use failure::Failure;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Simulation of wire winding: an elastic-plastic rod on a turning core.
 ///
@@ -40,6 +43,8 @@ enum Command {
     Verify(coilwind::verify::VerifyArgs),
     /// Time a known problem or a whole scene and print error and cost as one line of JSON
     Bench(coilwind::bench::BenchArgs),
+    /// Wind random valid scenes, judge them by what must always hold, keep what fails
+    Stress(stress::StressArgs),
 }
 
 /// A scene and what to change in it.
@@ -71,6 +76,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Variables(args) => variables::variables(&args),
         Command::Verify(args) => verify::verify(&args),
         Command::Bench(args) => bench::bench(&args),
+        Command::Stress(args) => stress::stress(&args),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
@@ -79,6 +85,21 @@ pub(crate) fn main() -> ExitCode {
             failure.exit_code()
         }
     }
+}
+
+/// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
+fn stop_flag() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = Arc::clone(&flag);
+    let handler = ctrlc::set_handler(move || {
+        if raised.swap(true, Ordering::SeqCst) {
+            std::process::exit(130);
+        }
+    });
+    if handler.is_err() {
+        eprintln!("warning: Ctrl-C will end the run without results");
+    }
+    flag
 }
 
 /// Writes to standard output; a reader that has seen enough (`| head`) is no failure.

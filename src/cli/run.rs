@@ -4,13 +4,12 @@ use super::failure::Failure;
 use super::frames::Frames;
 use super::progress::Progress;
 use super::signals::{Grid, Signals};
-use super::{SceneArgs, print};
+use super::{SceneArgs, print, stop_flag};
 use clap::Args;
 use coilwind::output::{Ending, History, OutputError, Snapshot, write_results};
 use coilwind::scene::{Scene, SceneSettings};
 use coilwind::simulation::{Inputs, Outputs, SimError, Simulation};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -138,21 +137,6 @@ fn prepare(args: &RunArgs, settings: &SceneSettings) -> Result<PathBuf, Failure>
     let path = directory.join("scene.toml");
     std::fs::write(&path, settings.to_toml()).map_err(|e| Failure::write(&path, e))?;
     Ok(directory)
-}
-
-/// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
-fn stop_flag() -> Arc<AtomicBool> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&flag);
-    let handler = ctrlc::set_handler(move || {
-        if raised.swap(true, Ordering::SeqCst) {
-            std::process::exit(130);
-        }
-    });
-    if handler.is_err() {
-        eprintln!("warning: Ctrl-C will end the run without results");
-    }
-    flag
 }
 
 /// The verdict, and exit code 1 where defects were asked to fail.

@@ -729,6 +729,27 @@ impl LineContact {
             .map(move |t| t.normal * (k_n * onset_law(t.depth, self.onset).1))
     }
 
+    /// The contact point whose bristle pulls hardest against what friction may hold there at rest, and its pull
+    /// over that limit (both go with the length of wire the point stands for, which so drops out).
+    pub fn friction_over_limit(&self) -> (usize, f64) {
+        let mut worst = (0, 0.0);
+        for (k, point) in self.points.iter().enumerate() {
+            for t in &point.touch[..=point.passages] {
+                if t.depth > 0.0 && t.held {
+                    let b = point.last - t.anchor;
+                    let b = b - t.normal * b.dot(&t.normal);
+                    let limit = self.law.mu_static * onset_law(t.depth, self.onset).1;
+                    let pull = TANGENTIAL_SHARE * b.norm();
+                    // a bristle shorter than rounding of places pulls on nothing
+                    if pull > limit * worst.1 && b.norm() > 1e-15 {
+                        worst = (k, pull / limit);
+                    }
+                }
+            }
+        }
+        worst
+    }
+
     /// Energy stored in the touches of point `k` standing for `length`, J.
     pub fn stored(&self, k: usize, length: f64) -> f64 {
         let k_n = self.law.stiffness * length;

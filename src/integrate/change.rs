@@ -406,6 +406,8 @@ impl System {
             self.past.fed.iter_mut().for_each(|fed| *fed += lost);
             self.past.paid += lost;
             self.books.inflow += self.kinetic() - kinetic;
+        } else {
+            self.joined_away += a + b - joined;
         }
     }
 

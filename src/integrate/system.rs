@@ -58,6 +58,8 @@ pub struct System {
     pub twist: Twist,
     /// unstretched length from the clamp to the first live node, m
     pub arc0: f64,
+    /// wire lost to chords where nodes went, m: arcs became that much shorter
+    pub joined_away: f64,
     /// energy books
     pub books: Books,
     /// deepest penetration met, m
@@ -96,6 +98,7 @@ impl System {
             set_tension: 0.0,
             twist: Twist::Dynamic,
             arc0: 0.0,
+            joined_away: 0.0,
             books: Books::default(),
             deepest: 0.0,
             torque_on_core: 0.0,
@@ -223,9 +226,10 @@ impl System {
         x.z * f.x - x.x * f.z - self.load.clamp_moment[0].y
     }
 
-    /// Tension after over tension before the nozzle's exit, by friction over the deflection there.
+    /// Tension after over tension before the nozzle's exit while wire comes out, by friction over the
+    /// deflection there.
     pub(super) fn exit_grip(&self) -> f64 {
-        let Some((spec, feed)) = &self.feed else {
+        let Some((spec, _)) = &self.feed else {
             return 1.0;
         };
         if spec.exit_friction == 0.0 {
@@ -235,7 +239,7 @@ impl System {
         let d = self.rod.x[n] - self.rod.x[n - 1];
         let out = V3::new(self.rod.x[n].x, 0.0, self.rod.x[n].z).normalize();
         let deflection = libm::acos((d.dot(&out) / d.norm()).clamp(-1.0, 1.0));
-        libm::exp(spec.exit_friction * deflection * if feed.rate >= 0.0 { 1.0 } else { -1.0 })
+        libm::exp(spec.exit_friction * deflection)
     }
 
     /// Whether node `i` touches core or frozen wire.

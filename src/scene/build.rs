@@ -321,6 +321,15 @@ impl SceneSettings {
         if near > coarsest {
             return Err(self.impossible("solver.spacing_near", "too coarse for this wire", range));
         }
+        // Contact of stiffness 1e10 N/m2 that is wrong by so much pushes harder than most wire is pulled.
+        let most = 0.1 * d;
+        if solver.tolerance > most * (1.0 + 1e-9) && solver.integrator == Integrator::Implicit {
+            return Err(self.impossible(
+                "solver.tolerance",
+                "steps may be wrong by more than a tenth of the wire's diameter",
+                format!("at most {} m", si(most)),
+            ));
+        }
         let span = self.nozzle.distance - extent.turning_radius;
         let free = solver.spacing_free;
         if free < near || 3.0 * free > span {
@@ -383,6 +392,15 @@ impl SceneSettings {
                 si(wire.n_y)
             );
             warn("tensioner.tension", message);
+        }
+        if solver.twist == Twist::Off
+            && solver.integrator == Integrator::Implicit
+            && wire.m_y.is_finite()
+        {
+            let message = "the set of wire that yields turns with its roll; without twist its bends do not come to \
+                           rest, and the method adds energy where they are sharp"
+                .to_owned();
+            warn("solver.twist", message);
         }
         let corner = match *core {
             Core::RoundedBox { corner_radius, .. } => Some(corner_radius),

@@ -13,6 +13,10 @@ const FEWEST_NODES: usize = 4;
 /// 1.3e-5 shorter than they are.
 const STRAIGHT: f64 = 0.99995;
 
+/// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
+/// turn back.
+const WHOLE: f64 = 0.85;
+
 impl Simulation {
     pub(super) fn keep_house(&mut self, dt: f64) -> Result<(), SimError> {
         let look = self.implicit.is_some() || self.steps.is_multiple_of(HOUSE_STEPS);
@@ -147,9 +151,15 @@ impl Simulation {
     /// Live wire meets live wire where lift-off comes round before the wire there is at rest. A whole
     /// flat can land at once, so the pairs are watched from half a turn on.
     fn watch_live_wire(&mut self) {
+        // wire too stiff for its tension stands off and touches nothing: there all of a turn counts
+        let turn = std::f64::consts::TAU;
+        let whole = self.sys.rod.nodes() - 1;
         let watched = match self.scene.solver.parts.live_contact {
             LiveContact::Always => true,
-            LiveContact::WhenHalfATurnIsLive => self.laid_angle() > 0.5 * std::f64::consts::TAU,
+            LiveContact::WhenHalfATurnIsLive => {
+                self.angle_of_wire(self.lift_off()) > 0.5 * turn
+                    || self.angle_of_wire(whole) > WHOLE * turn
+            }
             LiveContact::Never => false,
         };
         if watched {
@@ -164,12 +174,12 @@ impl Simulation {
         }
     }
 
-    /// Polar angle that the live wire covers from the clamp to lift-off, rad.
-    fn laid_angle(&self) -> f64 {
+    /// Polar angle that the live wire covers from the clamp to a node, rad.
+    fn angle_of_wire(&self, end: usize) -> f64 {
         let spin = Spin::new(self.sys.spindle.angle);
         let x = &self.sys.rod.x;
         let mut last = (0.0, polar_angle(spin.to_core(x[0])));
-        for x in &x[..=self.lift_off()] {
+        for x in &x[..=end] {
             let polar = polar_angle(spin.to_core(*x));
             last = (last.0 + wrap_to_pi(polar - last.1), polar);
         }

@@ -65,6 +65,9 @@ pub struct Simulation {
     quiet: f64,
     /// farthest nozzle position of this pass, m, and its direction along y
     pass: (f64, f64),
+    /// steps tried so far, each counted as often as it had nodes, and how much of that may be
+    work: u64,
+    most_work: u64,
 }
 
 impl Simulation {
@@ -147,6 +150,8 @@ impl Simulation {
             was_slack: false,
             quiet: 0.0,
             pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
+            work: 0,
+            most_work: u64::MAX,
         };
         sim.sys.spindle.speed = inputs.spindle_speed;
         sim.sys.place_supports();
@@ -162,6 +167,17 @@ impl Simulation {
             nozzle_position: self.sys.support[1].point.y,
             tension_setpoint: self.sys.set_tension,
         }
+    }
+
+    /// Lets the run end with an error once so many steps have been tried since the start, taken or not, each counted
+    /// as often as it had nodes: a bound on the work that does not depend on the clock.
+    pub fn limit_work(&mut self, most: u64) {
+        self.most_work = most;
+    }
+
+    /// What [`Self::limit_work`] counts.
+    pub fn work(&self) -> u64 {
+        self.work
     }
 
     /// Starts over with other inputs; only before the first step.
@@ -297,6 +313,8 @@ impl Simulation {
             return Ok(most);
         };
         let fixed = method.fixed;
+        let tried = |m: &Implicit| m.effort.steps + m.effort.rejects + m.effort.stalls;
+        let before = tried(method);
         let taken = method.step(&mut self.sys, most).map_err(|e| SimError {
             time: self.sys.time,
             node: Some(e.node),
@@ -307,10 +325,21 @@ impl Simulation {
                 None => e.to_string(),
             },
         })?;
+        self.work += (tried(method) - before) * self.sys.rod.nodes() as u64;
         self.last_step = taken;
         self.steps += 1;
         self.watch_tension();
         self.keep_house(taken)?;
+        if self.work > self.most_work {
+            return Err(SimError {
+                time: self.sys.time,
+                node: None,
+                reason: format!(
+                    "the work allowed ({} node steps) is used up",
+                    self.most_work
+                ),
+            });
+        }
         let still =
             self.sys.spindle.speed == 0.0 && self.sys.rod.v.iter().all(|v| v.amax() < QUIET);
         self.quiet = if still { self.quiet + taken } else { 0.0 };

@@ -69,6 +69,10 @@ impl Implicit {
             // the node before the nozzle gains mass that moves as it does
             sys.books.inflow += 0.5 * inflow * sys.rod.v[last].norm_squared();
         }
+        if let Some(line) = &mut sys.line {
+            // late Newton steps hold the friction limits of the iterate before; what is accepted goes by its own
+            line.hold_limits = false;
+        }
         sys.settle_forces(h, true);
         // books: work of forces at both ends of the step
         let turned = sys.spindle.angle - before.0.angle;
@@ -126,7 +130,7 @@ fn feed(
     let last = sys.rod.edges() - 1;
     let length = (q[last + 1] - q[last]).norm();
     let grown = nozzle.rest(length) - sys.rod.rest[last];
-    let line = nozzle.stretched(length).tension / sys.exit_grip();
+    let line = nozzle.line(length);
     let next = advance(spec, feed, &sys.past, step, (grown, line, sys.set_tension));
     let past = &mut sys.past;
     past.fed = [feed.fed, past.fed[0]];

@@ -10,9 +10,12 @@ use crate::feed::{Feed, FeedSpec};
 use crate::rod::Stretched;
 
 /// The edge at the nozzle during one solve.
+///
+/// Friction at the exit holds back whichever way the wire moves: the tension is `grip` times the line's where
+/// wire comes out in this step, the line's over `grip` where it goes back, and between the two none passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct NozzleEdge {
-    /// tension at the nozzle is `a + b * rest`, N and N/m
+    /// the line's tension is `a + b * rest`, N and N/m
     a: f64,
     b: f64,
     /// elastic modulus, N, and `1 + plastic stretch`
@@ -20,11 +23,25 @@ pub(super) struct NozzleEdge {
     set: f64,
     /// rest length at which the line goes slack, m
     slack: f64,
+    /// rest length at the start of the step, m
+    start: f64,
+    /// tension after over tension before the exit while wire comes out, 1 or more
+    grip: f64,
+}
+
+/// Which way wire passes the nozzle in a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Way {
+    /// either way, and the tension is the line's times this
+    Free(f64),
+    /// held by friction
+    Stuck,
 }
 
 impl NozzleEdge {
     /// `rest` is the edge's unstretched length now, `pull` the tensioner's force, `grip` the ratio of
-    /// tension after to before the exit, `ea` the wire's modulus, `plastic` its plastic stretch.
+    /// tension after to before the exit where wire comes out, `ea` the wire's modulus, `plastic` its plastic
+    /// stretch.
     pub(super) fn new(
         spec: &FeedSpec,
         feed: &Feed,
@@ -34,32 +51,106 @@ impl NozzleEdge {
     ) -> Self {
         let (t0, slope) = line_over_fed(spec, feed, past, step, pull);
         // tension = t0 + slope * fed, fed = feed.fed + rest' - rest
-        let a = grip * (t0 + slope * (feed.fed - rest));
-        let b = grip * slope;
+        let a = t0 + slope * (feed.fed - rest);
         Self {
             a,
-            b,
+            b: slope,
             ea,
             set: 1.0 + plastic,
-            slack: if b > 0.0 { -a / b } else { f64::NEG_INFINITY },
+            slack: if slope > 0.0 {
+                -a / slope
+            } else {
+                f64::NEG_INFINITY
+            },
+            start: rest,
+            grip,
+        }
+    }
+
+    /// The line's tension while no wire passes, N.
+    fn line_at_start(&self) -> f64 {
+        (self.a + self.b * self.start).max(0.0)
+    }
+
+    /// Tension of the edge were no wire to pass, N.
+    fn held(&self, length: f64) -> f64 {
+        self.ea * (length / self.start - self.set)
+    }
+
+    fn way(&self, length: f64) -> Way {
+        if self.grip == 1.0 {
+            return Way::Free(1.0);
+        }
+        let (held, line) = (self.held(length), self.line_at_start());
+        if held > self.grip * line {
+            Way::Free(self.grip)
+        } else if held < line / self.grip {
+            Way::Free(1.0 / self.grip)
+        } else {
+            Way::Stuck
         }
     }
 
     /// Unstretched length of the edge when it is `length` long.
     pub(super) fn rest(&self, length: f64) -> f64 {
-        let c = self.ea * self.set + self.a;
-        let y = if self.b > 0.0 {
+        match self.way(length) {
+            Way::Free(grip) => self.balanced(length, grip),
+            Way::Stuck => self.start,
+        }
+    }
+
+    /// The line's tension when the edge is `length` long, N.
+    pub(super) fn line(&self, length: f64) -> f64 {
+        match self.way(length) {
+            Way::Free(grip) => self.free(length, grip).tension / grip,
+            Way::Stuck => self.line_at_start(),
+        }
+    }
+
+    /// Tension, stiffness and potential at a length.
+    pub(super) fn stretched(&self, length: f64) -> Stretched {
+        let grip = match self.way(length) {
+            Way::Free(grip) => grip,
+            Way::Stuck => return self.stuck(length),
+        };
+        let free = self.free(length, grip);
+        if self.grip == 1.0 {
+            return free;
+        }
+        // the potential goes on where friction let go
+        let end = self.start * (self.set + grip * self.line_at_start() / self.ea);
+        Stretched {
+            energy: free.energy - self.free(end, grip).energy + self.stuck(end).energy,
+            ..free
+        }
+    }
+
+    /// The edge while friction lets no wire pass.
+    fn stuck(&self, length: f64) -> Stretched {
+        let tension = self.held(length);
+        Stretched {
+            tension,
+            stiffness: self.ea / self.start,
+            energy: 0.5 * tension * tension * self.start / self.ea,
+        }
+    }
+
+    /// Unstretched length at which the edge pulls `grip` times as hard as the line.
+    fn balanced(&self, length: f64, grip: f64) -> f64 {
+        let (a, b) = (grip * self.a, grip * self.b);
+        let c = self.ea * self.set + a;
+        let y = if b > 0.0 {
             // b y^2 + c y = EA length, the positive root in the form without cancellation
-            let d = (c * c + 4.0 * self.b * self.ea * length).sqrt();
+            let d = (c * c + 4.0 * b * self.ea * length).sqrt();
             if c > 0.0 {
                 2.0 * self.ea * length / (c + d)
             } else {
-                (d - c) / (2.0 * self.b)
+                (d - c) / (2.0 * b)
             }
         } else {
             self.ea * length / c
         };
-        if y <= self.slack || self.a + self.b * y < 0.0 {
+        if y <= self.slack || a + b * y < 0.0 {
             // the line is slack: the edge is as long as it likes
             length / self.set
         } else {
@@ -67,15 +158,15 @@ impl NozzleEdge {
         }
     }
 
-    /// Tension, stiffness and potential at a length.
-    pub(super) fn stretched(&self, length: f64) -> Stretched {
-        let y = self.rest(length);
-        let tension = self.a + self.b * y;
+    /// The edge where wire passes.
+    fn free(&self, length: f64, grip: f64) -> Stretched {
+        let y = self.balanced(length, grip);
+        let (a, b) = (grip * self.a, grip * self.b);
+        let tension = a + b * y;
         if tension <= 0.0 {
             return Stretched::default();
         }
-        let c = self.ea * self.set + self.a;
-        let (a, b) = (self.a, self.b);
+        let c = self.ea * self.set + a;
         let slope = self.ea / (2.0 * b * y + c);
         // integral of the tension over the length, with d length = (2 b y + c) / EA dy
         let primitive = |y: f64| {
@@ -183,12 +274,14 @@ mod tests {
         let (spec, feed, past, step) = setting();
         let ea = 48_900.0;
         let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.1, ea, 1e-4));
+        // so long that wire comes out
         let length = 3.36e-3 * (1.0 + 3e-4);
         let y = edge.rest(length);
         let s = edge.stretched(length);
         assert!((s.tension - ea * (length / y - 1.0 - 1e-4)).abs() < 1e-6);
         // the line's own law, step by step
-        let line = s.tension / 1.1;
+        let line = edge.line(length);
+        assert!((s.tension / line - 1.1).abs() < 1e-12);
         let next = advance(&spec, &feed, &past, &step, (y - 3e-3, line, 15.0));
         let law = spec.line_stiffness * (next.fed - next.paid)
             + spec.line_damping * (next.rate - next.paid_rate);
@@ -209,6 +302,49 @@ mod tests {
         let s = edge.stretched(1e-3);
         assert_eq!(s.tension, 0.0);
         assert!((edge.rest(1e-3) - 1e-3).abs() < 1e-15);
+    }
+
+    /// Tension is one branch of another with friction at the exit, never jumps, and derives from the potential.
+    #[test]
+    fn friction_at_the_exit_holds_wire_between_two_tensions() {
+        let (spec, mut feed, mut past, step) = setting();
+        // at rest: a moving tensioner would leave the line slack if no wire came
+        (feed.rate, feed.paid_rate) = (0.0, 0.0);
+        past.fed = [feed.fed; 2];
+        (past.paid, past.paid_rate) = (feed.paid, 0.0);
+        let (ea, grip) = (48_900.0, 1.4);
+        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, grip, ea, 1e-4));
+        let line = edge.line_at_start();
+        assert!(line > 5.0, "the line pulls by {line} N");
+        let at = |tension: f64| 3e-3 * (1.0 + 1e-4 + tension / ea);
+        for share in [1.0 / grip + 1e-6, 1.0, grip - 1e-6] {
+            assert_eq!(edge.rest(at(share * line)), 3e-3);
+            assert!((edge.stretched(at(share * line)).tension - share * line).abs() < 1e-9);
+            assert_eq!(edge.line(at(share * line)), line);
+        }
+        assert!(edge.rest(at(2.0 * grip * line)) > 3e-3);
+        assert!(edge.rest(at(0.2 * line)) < 3e-3);
+        let out = at(3.0 * line);
+        assert!((edge.stretched(out).tension / edge.line(out) - grip).abs() < 1e-12);
+        let mut before = edge.stretched(at(-line)).tension;
+        let h = 1e-10;
+        for k in 0..400 {
+            let length = at(-line) + f64::from(k) * 2e-8;
+            let s = edge.stretched(length);
+            let slope =
+                (edge.stretched(length + h).energy - edge.stretched(length - h).energy) / (2.0 * h);
+            assert!(
+                (slope - s.tension).abs() < 1e-2,
+                "{k}: {slope} {}",
+                s.tension
+            );
+            assert!(s.tension >= before && s.tension - before < 0.5);
+            before = s.tension;
+        }
+        assert!(
+            before > 1.02 * grip * line,
+            "the last is well past letting go: {before}"
+        );
     }
 
     #[test]
