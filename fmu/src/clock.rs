@@ -1,5 +1,7 @@
 //! Communication points: the importer's time, which nobody else may drift from.
 
+use serde::{Deserialize, Serialize};
+
 /// Share of the larger of time and step by which two communication points may differ; importers
 /// add steps up or multiply them, and some round to nanoseconds.
 const TOLERANCE: f64 = 1e-9;
@@ -56,7 +58,7 @@ pub(crate) enum TimeError {
 }
 
 /// Start, stop and last communication point, s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Clock {
     start: f64,
     stop: Option<f64>,
@@ -114,6 +116,12 @@ impl Clock {
             }
             _ => Ok(end),
         }
+    }
+
+    /// Whether times are what the constructor lets pass; bytes from elsewhere may hold anything.
+    pub(crate) fn is_sound(&self) -> bool {
+        let sound = Self::new(self.start, self.stop).is_ok() || *self == Self::default();
+        sound && self.now.is_finite()
     }
 
     /// Takes over the importer's number for the end of a step, so that its rounding and ours

@@ -7,10 +7,12 @@ use super::system::System;
 use super::twist::Twist;
 use crate::contact::{Memory, NodeContact};
 use crate::math::{Quat, Spin, V3, spin_velocity};
+use crate::pile::Pile;
 use crate::rod::{Bend, Joint, Scalar, align, rotate};
+use serde::{Deserialize, Serialize};
 
 /// A frozen node with the edge after it: all it takes to let them move again where they lie.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dormant {
     /// place, core frame, m
     place: V3,
@@ -28,6 +30,9 @@ pub struct Dormant {
     twist: Scalar,
     memory: Memory,
 }
+
+/// Frozen wire; a chunk is about half a turn of fine wire.
+pub(super) type Asleep = Pile<Dormant, 64>;
 
 impl System {
     /// Splits edge `j` in two halves at the same stretch.
@@ -105,7 +110,10 @@ impl System {
         }
         if let Some(l) = &mut self.live {
             l.insert(j + 1);
-            self.wire.length.insert(j + 1, half);
+            // (there is none before the first evaluation)
+            if self.wire.length.len() > j {
+                self.wire.length.insert(j + 1, half);
+            }
         }
         if let Some(l) = &mut self.line {
             l.split(j);
@@ -261,7 +269,7 @@ impl System {
         if count == 0 {
             return 0;
         }
-        let back = self.dormant.split_off(self.dormant.len() - count);
+        let back = self.dormant.split_off(count);
         let stored = self.stored();
         let spin = Spin::new(self.spindle.angle);
         let turn = turn_about_y(self.spindle.angle);
