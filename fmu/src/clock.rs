@@ -170,6 +170,27 @@ mod tests {
         assert!(clock.end_of(added, step).is_err(), "stop time is reached");
     }
 
+    /// However an importer counts, a million steps end at the stop time and none is refused.
+    #[test]
+    fn a_million_steps_lead_to_the_stop_time() {
+        const STEPS: u32 = 1_000_000;
+        for step in [1e-6, 1e-4, 1.0 / 3.0] {
+            let stop = 0.7 + f64::from(STEPS) * step;
+            for multiplies in [true, false] {
+                let mut clock = Clock::new(0.7, Some(stop)).expect("valid");
+                let mut added = 0.7;
+                for k in 0..STEPS {
+                    let product = 0.7 + f64::from(k) * step;
+                    let point = if multiplies { product } else { added };
+                    clock.set(clock.end_of(point, step).expect("a step"));
+                    added += step;
+                }
+                assert!(clock.is_over());
+                assert!((clock.now() - stop).abs() < 1e-9 * stop);
+            }
+        }
+    }
+
     #[test]
     fn senseless_steps_are_named() {
         let clock = Clock::new(1.0, Some(2.0)).expect("valid");

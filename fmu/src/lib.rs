@@ -31,5 +31,9 @@ mod pointers;
 mod recording;
 mod refusal;
 mod resources;
+#[cfg(test)]
+mod saving;
 mod scalar;
+#[cfg(test)]
+mod sequences;
 mod state;
