@@ -1,11 +1,11 @@
-//! What a saved state costs on the way through a long wind: bytes, time to save and restore, and memory of
+//! What a saved state costs on the way through a long wind: bytes, CPU time to save and restore, and memory of
 //! copies that share settled wire. `cargo run --release --example saved_states [TURNS]`
 
 use coilwind::scene::SceneSettings;
 use coilwind::simulation::{Inputs, Simulation};
+use cpu_time::ThreadTime;
 use std::error::Error;
 use std::f64::consts::TAU;
-use std::time::Instant;
 
 const SPEED: f64 = 500.0;
 const STEP: f64 = 1e-3;
@@ -43,10 +43,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             continue;
         }
         next = (next * 10.0_f64.sqrt()).min(turns);
-        let began = Instant::now();
+        let began = ThreadTime::now();
         let bytes = sim.to_bytes()?;
         let save = began.elapsed();
-        let began = Instant::now();
+        let began = ThreadTime::now();
         let restored = Simulation::from_bytes(&scene, &bytes)?;
         let restore = began.elapsed();
         assert!(
@@ -55,7 +55,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         drop(restored);
         let before = resident();
-        let began = Instant::now();
+        let began = ThreadTime::now();
         let copies: Vec<Simulation> = (0..COPIES).map(|_| sim.clone()).collect();
         let copy = began.elapsed() / COPIES as u32;
         println!(

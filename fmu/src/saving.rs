@@ -1,5 +1,6 @@
 //! Saved states at the instance: continuation to the bit, refusals, files.
 
+use crate::ffi::{self, Status};
 use crate::instance::Instance;
 use crate::lifecycle::State;
 use crate::refusal::Refusal;
@@ -208,7 +209,8 @@ fn the_history_is_cut_back() {
         instance.enter_initialization_mode().expect("enters");
         instance.exit_initialization_mode().expect("exits");
         work(&mut instance);
-        instance.terminate().expect("terminates");
+        // puts the history on disk; without an end no pictures are drawn
+        instance.snapshot();
         let messages = instance.end_call();
         let text = std::fs::read(directory.join("history.csv")).expect("a history");
         (text, messages)
@@ -222,20 +224,20 @@ fn the_history_is_cut_back() {
         wind(i, 8, 20);
     });
     assert!(plain == back);
-    let (reset, messages) = record("reset", &|i| {
+    let (other, messages) = record("other", &|i| {
         wind(i, 0, 8);
         let data = bytes(&i.snapshot());
         wind(i, 8, 15);
-        i.reset().expect("resets");
+        *i = Instance::for_tests();
         i.restore(&read(&data).expect("a state"));
         wind(i, 8, 20);
     });
-    assert!(plain == reset && messages.is_empty(), "{messages:?}");
+    assert!(plain == other && messages.is_empty(), "{messages:?}");
     // another file is in its place: a new one begins, and the importer is told
     let (anew, messages) = record("anew", &|i| {
         wind(i, 0, 8);
         let data = bytes(&i.snapshot());
-        i.reset().expect("resets");
+        *i = Instance::for_tests();
         std::fs::write(folder.path().join("anew/history.csv"), "mine").expect("written");
         i.restore(&read(&data).expect("a state"));
         wind(i, 8, 20);
@@ -243,4 +245,55 @@ fn the_history_is_cut_back() {
     let rows = |text: &[u8]| text.iter().filter(|b| **b == b'\n').count();
     assert_eq!((rows(&plain), rows(&anew)), (22, 13));
     assert!(messages[0].text.contains("begins anew"), "{messages:?}");
+}
+
+/// A step longer than any solver could take, and no shorter one allowed: `fmi2Discard`, outputs and clock of what
+/// was reached, and a saved state to go on from.
+#[test]
+fn a_failed_step_can_be_taken_back() {
+    let mut instance = Instance::for_tests();
+    set(&mut instance, "solver.step", 0.01);
+    instance.setup_experiment(1.0, None).expect("valid");
+    instance.enter_initialization_mode().expect("enters");
+    instance.exit_initialization_mode().expect("exits");
+    instance.do_step(1.0, 0.02).expect("standing is easy");
+    let saved = instance.snapshot();
+    set(&mut instance, "spindle_speed", 300.0);
+    // half a turn a step cannot go on
+    let (mut time, size) = (1.02, 0.013);
+    let error = loop {
+        match instance.do_step(time, size) {
+            Ok(()) => time += size,
+            Err(error) => break error,
+        }
+        assert!(time < 2.0);
+    };
+    assert_eq!(error.status().0, Status::Discard, "{error}");
+    let text = error.to_string();
+    assert!(text.contains("turn") && text.contains("core at"), "{text}");
+    assert_eq!(instance.state(), State::StepFailed);
+    let reached = instance
+        .real_status(ffi::LAST_SUCCESSFUL_TIME)
+        .expect("a time");
+    assert!(
+        (time - 1e-9..time + size).contains(&reached),
+        "{reached} {time}"
+    );
+    let angle = instance
+        .get::<f64>(&[reference("spindle_angle")])
+        .expect("an output")[0];
+    assert!(
+        (angle - 300.0 * (reached - 1.02)).abs() < 1e-9,
+        "{angle} at {reached}"
+    );
+    assert_eq!(instance.boolean_status(ffi::TERMINATED).ok(), Some(true));
+    // back, and another way
+    instance.restore(&saved);
+    assert_eq!(instance.state(), State::StepComplete);
+    assert_eq!(
+        instance.real_status(ffi::LAST_SUCCESSFUL_TIME).ok(),
+        Some(1.02)
+    );
+    set(&mut instance, "spindle_speed", 0.0);
+    instance.do_step(1.02, 0.02).expect("standing is easy");
 }

@@ -315,13 +315,31 @@ impl LineContact {
 
     /// What a saved state has to hold.
     pub(crate) fn saved(&self) -> SavedLine {
+        // a new field asks here whether it is state
+        let Self {
+            shape: _,
+            tube: _,
+            law: _,
+            onset: _,
+            damping: _,
+            radius: _,
+            loss,
+            hold_limits,
+            height,
+            deepest,
+            between,
+            near: _,
+            points,
+            undo: _,
+            found: _,
+        } = self;
         SavedLine {
-            points: self.points.clone(),
-            loss: self.loss,
-            deepest: self.deepest,
-            height: self.height,
-            hold_limits: self.hold_limits,
-            between: self.between.clone(),
+            points: points.clone(),
+            loss: *loss,
+            deepest: *deepest,
+            height: *height,
+            hold_limits: *hold_limits,
+            between: between.clone(),
         }
     }
 
