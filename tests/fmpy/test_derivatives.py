@@ -2,8 +2,6 @@
 
 import math
 
-import fmpy
-import numpy as np
 import pytest
 from conftest import ERROR
 from fmpy.fmi1 import FMICallException
@@ -40,40 +38,34 @@ def test_a_ramp_within_long_steps(make_slave):
     assert abs(fed[1] - fed[0]) < 0.01 * fed[0] < abs(fed[2] - fed[0])
 
 
-def test_fmpy_interpolates_inputs(fmu_path):
-    time = np.array([0.0, 4e-3])
-    signals = np.core.records.fromarrays([time, RATE * time], names="time,spindle_speed")
-    result = fmpy.simulate_fmu(
-        fmu_path,
-        stop_time=4e-3,
-        output_interval=1e-3,
-        start_values={"scene.file": "fig8"},
-        input=signals,
-        output=["spindle_angle"],
-        set_input_derivatives=True,
-    )
-    assert result["spindle_angle"] == pytest.approx(RATE * result["time"] ** 2 / 2, rel=1e-9)
-
-
 def test_slopes_are_those_of_the_outputs(slave):
     ramp(slave, 40, 1e-4, derivatives=True)
-    names = ["spindle_angle", "fed_length", "wire_tension", "spindle_torque", "feed_speed"]
+    names = [
+        "wire_tension", "spindle_torque", "feed_speed", "free_length", "turns_wound",
+        "layon_position", "layon_angle", "spindle_angle", "fed_length", "gap_width",
+    ]
     references = slave.references(names)
-    slopes = slave.fmu.getRealOutputDerivatives(references, [1] * len(names))
     before = [slave.get(name) for name in names]
-    state = slave.fmu.getFMUstate()
-    assert slopes[0] == slave.get("spindle_speed")
-    assert slopes[1] == slave.get("feed_speed")
-    tiny = 1e-7
+    tiny = 1e-6
     slave.fmu.setRealInputDerivatives(slave.references(["spindle_speed"]), [1], [RATE])
     slave.fmu.doStep(40 * 1e-4, tiny)
-    for name, slope, value in zip(names, slopes, before):
-        ahead = (slave.get(name) - value) / tiny
-        scale = max(abs(ahead), {"wire_tension": 5e3, "spindle_torque": 50, "feed_speed": 500}.get(name, 0))
-        assert abs(slope - ahead) < 0.5 * scale, name
+    slopes = slave.fmu.getRealOutputDerivatives(references, [1] * len(names))
+    after = [slave.get(name) for name in names]
+    # the solver makes one step of a step that short, so changes over either are the same
+    for name, slope, old, new in list(zip(names, slopes, before, after))[:7]:
+        assert slope == pytest.approx((new - old) / tiny, rel=1e-6, abs=1e-6), name
+    assert slopes[7:] == [slave.get("spindle_speed"), slave.get("feed_speed"), 0.0]
+    state = slave.fmu.getFMUstate()
+    slave.fmu.doStep(40 * 1e-4 + tiny, tiny)
     slave.fmu.setFMUstate(state)
     assert slave.fmu.getRealOutputDerivatives(references, [1] * len(names)) == slopes
     slave.fmu.freeFMUstate(state)
+
+
+def test_nothing_has_a_slope_at_the_start(slave):
+    slave.start(scene__file="fig8")
+    references = slave.references(["wire_tension", "spindle_angle", "free_length"])
+    assert slave.fmu.getRealOutputDerivatives(references, [1, 1, 1]) == [0.0, 0.0, 0.0]
 
 
 @pytest.mark.parametrize("order", (0, 2))
