@@ -244,7 +244,8 @@ impl Contacts {
         let mut arc = f64::NEG_INFINITY;
         let mut before = None;
         for node in &saved.frozen {
-            let sound = node.point.amax() < far && node.arc >= arc && before != Some(node.point);
+            let near = node.point.iter().all(|x| x.abs() < far);
+            let sound = near && node.arc >= arc && before != Some(node.point);
             if !sound {
                 return Err("frozen wire is not one");
             }

@@ -225,8 +225,7 @@ impl Coil {
     pub(crate) fn restore(&mut self, saved: SavedCoil, far: f64) -> Result<(), &'static str> {
         let mut fresh = Self::new(self.spec.clone());
         for (node, sense) in saved.nodes {
-            // (written such that NaN is refused)
-            if !(node.position.amax() < far) {
+            if !node.position.iter().all(|x| x.abs() < far) {
                 return Err("settled wire is nowhere near the core");
             }
             fresh.traverse = sense;
