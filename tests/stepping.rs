@@ -83,6 +83,31 @@ fn a_short_step_is_one_solve_from_a_good_guess() {
     assert!((e.rejects + e.stalls) as f64 <= 0.01 * count, "{e:?}");
 }
 
+/// However short: nothing is lost, and nothing fails.
+#[test]
+fn any_positive_step_will_do() {
+    let mut sim = Simulation::new(&fig8()).expect("starts");
+    let mut inputs = sim.inputs();
+    sim.advance(inputs, 1e-300).expect("time begins");
+    sim.advance(inputs, 1e-3).expect("and goes on");
+    inputs.spindle_speed = 300.0;
+    for step in [1e-15, 1e-12, 3e-10, 1e-9, 1e-8, 1e-7] {
+        let start = (sim.time(), sim.outputs().spindle_angle);
+        for _ in 0..500 {
+            sim.advance(inputs, step).expect("goes on");
+        }
+        let passed = sim.time() - start.0;
+        assert!((passed - 500.0 * step).abs() < 1e-16, "{step} {passed}");
+        let turned = sim.outputs().spindle_angle - start.1;
+        // what is not solved for yet is less than a nanosecond
+        assert!(
+            (turned - 300.0 * passed).abs() < 300.0 * 1.01e-9,
+            "{step} {turned}"
+        );
+        assert!((sim.outputs().wire_tension - 15.0).abs() < 5.0);
+    }
+}
+
 #[test]
 fn a_million_steps_do_not_drift() {
     const STEPS: u32 = 1_000_000;

@@ -63,6 +63,7 @@ struct Saved {
     rates: Outputs,
     instant: Instant,
     time_lost: f64,
+    owed: f64,
     events: Vec<Event>,
     rest_depth: f64,
     broken: bool,
@@ -93,6 +94,7 @@ impl Simulation {
             rates,
             instant,
             time_lost,
+            owed,
             events,
             rest_depth,
             broken,
@@ -115,6 +117,7 @@ impl Simulation {
             rates: *rates,
             instant: *instant,
             time_lost: *time_lost,
+            owed: *owed,
             events: events.clone(),
             rest_depth: *rest_depth,
             broken: *broken,
@@ -174,6 +177,7 @@ impl Simulation {
         self.rates = saved.rates;
         self.instant = saved.instant;
         self.time_lost = saved.time_lost;
+        self.owed = saved.owed;
         self.events = saved.events;
         self.rest_depth = saved.rest_depth;
         self.broken = saved.broken;
