@@ -1,5 +1,8 @@
 //! One instance of the FMU in safe Rust: what each FMI function means.
 
+mod derivatives;
+mod restore;
+
 use crate::clock::Clock;
 use crate::ffi::{self, Status};
 use crate::lifecycle::State;
@@ -9,7 +12,6 @@ use crate::recording::{RecordError, Recording};
 use crate::refusal::Refusal;
 use crate::resources;
 use crate::scalar::Scalar;
-use crate::state::{SavedRun, Snapshot};
 use coilwind::output::Ending;
 use coilwind::scene::Warning;
 use coilwind::simulation::{Event, EventKind, Inputs, SimError, Simulation};
@@ -260,7 +262,7 @@ impl Instance {
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<(), Refusal> {
         let end = self.clock.end_of(point, step)?;
         let run = self.start()?;
-        check_way(&run.inputs, &run.rates, step)?;
+        derivatives::check_way(&run.inputs, &run.rates, step)?;
         let began = Instant::now();
         let result = run.simulation.advance_ramped(run.inputs, run.rates, step);
         if let Some(recording) = &mut run.recording {
@@ -286,152 +288,6 @@ impl Instance {
         self.clock.set(end);
         self.record_row();
         Ok(())
-    }
-
-    /// `fmi2SetRealInputDerivatives`: all of them or none; they hold for the next step.
-    pub(crate) fn set_input_derivatives(
-        &mut self,
-        references: &[u32],
-        orders: &[i32],
-        values: &[f64],
-    ) -> Result<(), Refusal> {
-        for ((reference, order), value) in references.iter().zip(orders).zip(values) {
-            let variable = find::<f64>(*reference)?;
-            let name = variable.name;
-            if variable.causality != Causality::Input {
-                return Err(no_derivative(
-                    name,
-                    *order,
-                    "only inputs have one to be set",
-                ));
-            }
-            if *order != 1 {
-                return Err(no_derivative(name, *order, "inputs change evenly, order 1"));
-            }
-            if !value.is_finite() {
-                let value = *value;
-                return Err(Refusal::DerivativeNotFinite { name, value });
-            }
-        }
-        for (reference, value) in references.iter().zip(values) {
-            match self
-                .run
-                .as_mut()
-                .filter(|_| self.state == State::StepComplete)
-            {
-                Some(run) => write_input(&mut run.rates, *reference, *value),
-                None => {
-                    self.start_rates.insert(*reference, *value);
-                    self.run = None;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// `fmi2GetRealOutputDerivatives`
-    pub(crate) fn output_derivatives(
-        &mut self,
-        references: &[u32],
-        orders: &[i32],
-    ) -> Result<Vec<f64>, Refusal> {
-        let run = self.start()?;
-        let both = references.iter().zip(orders);
-        both.map(|(reference, order)| {
-            let variable = find::<f64>(*reference)?;
-            match (variable.access, order) {
-                (Access::Output(get), 1) => match get(run.simulation.output_rates()) {
-                    Value::Real(rate) => Ok(rate),
-                    _ => Err(wrong_type::<f64>(variable)),
-                },
-                (Access::Output(_), _) => {
-                    Err(no_derivative(variable.name, *order, "outputs have order 1"))
-                }
-                _ => Err(no_derivative(variable.name, *order, "it is no output")),
-            }
-        })
-        .collect()
-    }
-
-    /// `fmi2GetFMUstate`
-    pub(crate) fn snapshot(&mut self) -> Snapshot {
-        let mut trouble = None;
-        let run = self.run.as_mut().map(|run| {
-            let recording = run.recording.as_mut();
-            let mark = match recording.map(Recording::mark).transpose() {
-                Ok(mark) => mark.flatten(),
-                Err(reason) => {
-                    trouble = Some(not_written(&reason));
-                    None
-                }
-            };
-            SavedRun {
-                simulation: run.simulation.clone(),
-                inputs: run.inputs,
-                rates: run.rates,
-                mark,
-            }
-        });
-        self.messages.extend(trouble);
-        Snapshot {
-            state: self.state,
-            clock: self.clock,
-            parameters: self.parameters.clone(),
-            start_inputs: self.start_inputs.clone(),
-            start_rates: self.start_rates.clone(),
-            run,
-        }
-    }
-
-    /// `fmi2SetFMUstate`: name, resources and logging stay. The history in `output.directory` is cut back to
-    /// where it stood; other files are written at the end of the run as ever.
-    pub(crate) fn restore(&mut self, saved: &Snapshot) {
-        // what is written is on disk before it is read
-        if let Some(run) = &mut self.run
-            && let Some(mut recording) = run.recording.take()
-            && let Err(reason) = recording.mark()
-        {
-            self.messages.push(not_written(&reason));
-        }
-        let saved = saved.clone();
-        self.state = saved.state;
-        self.clock = saved.clock;
-        self.parameters = saved.parameters;
-        self.start_inputs = saved.start_inputs;
-        self.start_rates = saved.start_rates;
-        self.run = saved.run.map(|run| {
-            let settings = self.parameters.settings();
-            let recording = run.mark.and_then(|mark| {
-                let resumed = Recording::resume(settings, &run.simulation, &mark);
-                match resumed {
-                    Ok((recording, false)) => Some(recording),
-                    Ok((recording, true)) => {
-                        self.messages.push(history_anew(self.clock.now()));
-                        Some(recording)
-                    }
-                    Err(reason) => {
-                        self.messages.push(not_written(&reason));
-                        None
-                    }
-                }
-            });
-            Run {
-                simulation: run.simulation,
-                inputs: run.inputs,
-                rates: run.rates,
-                recording,
-            }
-        });
-    }
-
-    /// `fmi2SerializeFMUstate`
-    pub(crate) fn bytes_of(&self, saved: &Snapshot) -> Result<Vec<u8>, Refusal> {
-        saved.to_bytes(guid()?)
-    }
-
-    /// `fmi2DeSerializeFMUstate`
-    pub(crate) fn snapshot_from(&self, bytes: &[u8]) -> Result<Snapshot, Refusal> {
-        Snapshot::from_bytes(bytes, guid()?)
     }
 
     /// `fmi2GetRealStatus`
@@ -659,44 +515,6 @@ fn wrong_type<T: Scalar>(variable: &Variable) -> Refusal {
 fn write_input(inputs: &mut Inputs, reference: u32, value: f64) {
     if let Some(Access::Input { set, .. }) = by_reference(reference).map(|row| row.access) {
         set(inputs, value);
-    }
-}
-
-fn no_derivative(name: &'static str, order: i32, reason: &'static str) -> Refusal {
-    Refusal::NoDerivative {
-        name,
-        order,
-        reason,
-    }
-}
-
-/// Inputs stay in their ranges until the end of the step; where they change evenly, both ends tell.
-fn check_way(inputs: &Inputs, rates: &Inputs, step: f64) -> Result<(), Refusal> {
-    let end = inputs.after(rates, step);
-    for variable in coilwind_model_description::variables() {
-        let Access::Input { get, .. } = variable.access else {
-            continue;
-        };
-        let value = get(&end);
-        if get(rates) != 0.0 && !variable.admits(&Value::Real(value)) {
-            return Err(Refusal::LeavesRange {
-                name: variable.name,
-                value,
-                allowed: variable.allowed(),
-            });
-        }
-    }
-    Ok(())
-}
-
-/// The rows before a restored state are not there to be gone on with.
-fn history_anew(time: f64) -> Message {
-    Message {
-        status: Status::Warning,
-        category: Category::Warning,
-        text: format!(
-            "output.directory: history.csv is not the one of the restored state and begins anew after {time} s"
-        ),
     }
 }
 
