@@ -186,7 +186,6 @@ proptest! {
 
 /// Wire that is live over more than two turns can land on what lies two turns back.
 #[test]
-#[ignore = "known limit: partners are sought one turn back only, one for each point"]
 fn wire_two_turns_back_is_a_partner_too() {
     let coil = Coil {
         kind: 1,

@@ -110,7 +110,13 @@ impl Recording {
     ) -> Result<(), RecordError> {
         let flushed = self.history.as_mut().map_or(Ok(()), History::flush);
         let wall_s = self.computed.as_secs_f64();
-        let written = write_results(&self.directory, simulation, &self.snapshot, ending, wall_s);
+        let written = write_results(
+            &self.directory,
+            simulation,
+            Some(&self.snapshot),
+            ending,
+            wall_s,
+        );
         Ok(flushed.and(written)?)
     }
 }

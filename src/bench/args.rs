@@ -1,6 +1,7 @@
 //! What a benchmark is asked for, and which combinations make sense.
 
 use super::BenchError;
+use crate::scene::assignment;
 use clap::ValueEnum;
 use std::path::PathBuf;
 
@@ -86,6 +87,9 @@ pub struct BenchArgs {
     /// W: packed name or path of the scene [default: fig8]
     #[arg(long, value_name = "NAME")]
     pub scene: Option<String>,
+    /// W: another value of a scene variable (may be repeated)
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    pub set: Vec<(String, String)>,
     /// W: compare with the converged runs of this file instead of the packed ones
     #[arg(long, value_name = "FILE", conflicts_with = "store")]
     pub against: Option<PathBuf>,
@@ -112,6 +116,7 @@ impl BenchArgs {
             a: None,
             omega: None,
             scene: None,
+            set: Vec::new(),
             against: None,
             store: None,
         }
@@ -191,6 +196,7 @@ impl BenchArgs {
         }
         for (given, name) in [
             (self.scene.is_some(), "--scene"),
+            (!self.set.is_empty(), "--set"),
             (self.against.is_some(), "--against"),
             (self.store.is_some(), "--store"),
         ] {

@@ -11,7 +11,7 @@ mod variables;
 mod verify;
 
 use clap::{Args, Parser, Subcommand};
-use coilwind::scene::{SceneError, SceneSettings};
+use coilwind::scene::{SceneError, SceneSettings, assignment};
 use failure::Failure;
 use std::process::ExitCode;
 
@@ -60,15 +60,6 @@ impl SceneArgs {
             settings.set_text(name, value)?;
         }
         Ok(settings)
-    }
-}
-
-fn assignment(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((name, value)) if !name.trim().is_empty() => {
-            Ok((name.trim().to_owned(), value.to_owned()))
-        }
-        _ => Err("expected NAME=VALUE".to_owned()),
     }
 }
 

@@ -28,6 +28,9 @@ pub(super) struct RunArgs {
     /// Write this many snapshots on the way, in DIR/frames: a picture and the wire as VTP each
     #[arg(long, value_name = "N", default_value_t = 0)]
     frames: u32,
+    /// Leave coil.vtp, core.vtp and coil.png out: many short runs spend most of their time on them
+    #[arg(long, conflicts_with = "frames")]
+    no_geometry: bool,
     /// Sampled inputs (CSV with time, spindle_speed, nozzle_position, tension_setpoint) instead of
     /// the scene's spindle and traverse, as the FMU would see them
     #[arg(long, value_name = "FILE", requires = "step")]
@@ -98,7 +101,7 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
     let written = write_results(
         &directory,
         &simulation,
-        &record.snapshot,
+        (!args.no_geometry).then_some(&record.snapshot),
         &ending,
         clock.elapsed().as_secs_f64(),
     );

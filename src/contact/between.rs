@@ -150,10 +150,13 @@ pub struct Between {
     angle: Vec<f64>,
     #[serde(skip)]
     arc: Vec<f64>,
-    /// for each point, how far it and the older wire may move before a pair may be missing, m, and the
-    /// node of that wire
+    /// points near older wire that make no pair with it, how far both may move before they do, m, and the node
+    /// of that wire
     #[serde(skip)]
-    room: Vec<(f64, u32)>,
+    room: Vec<(u32, f64, u32)>,
+    /// by turns back, where the search along the wire stands
+    #[serde(skip)]
+    downhill: Vec<usize>,
     /// room for the wire in the core frame
     #[serde(skip)]
     pub scratch: Vec<V3>,
@@ -245,12 +248,11 @@ impl Between {
         self.pairs.clear();
         let last_point = 2 * (q.len() - 1);
         // both lists run along the wire
-        let (mut known, mut near) = (0, 0);
+        let mut known = 0;
+        self.downhill.clear();
         for point in 1..last_point {
-            self.room.push((f64::INFINITY, 0));
             let i = point / 2;
-            let back = self.angle[i] - TAU;
-            if back < -WINDOW {
+            if self.angle[i] - TAU < -WINDOW {
                 continue;
             }
             let weights = point_weights(point);
@@ -261,43 +263,53 @@ impl Between {
             if end < 2 {
                 continue;
             }
-            // one turn back along the wire, and downhill from there
-            while near + 1 < end - 1 && self.angle[near] < back {
-                near += 1;
-            }
-            while near > 0 && self.angle[near - 1] >= back {
-                near -= 1;
-            }
-            let foot = Curve(q).foot(p, near as u32);
-            let gap = foot.distance - diameter;
-            let other = foot.segment as usize;
-            if arc[other] > own || (self.angle[other] - back).abs() > WINDOW {
-                continue;
-            }
-            let way = way + (guess[other] - q[other]).norm();
-            if gap > SKIN * diameter + FOLLOW * way {
-                self.room[point - 1] = (gap, foot.segment);
-                continue;
-            }
             while known < self.old.len() && self.old[known].point < point as u32 {
                 known += 1;
             }
-            let before = self
-                .old
-                .get(known)
-                .filter(|o| o.point == point as u32 && o.segment.abs_diff(foot.segment) < 6);
-            self.pairs.push(Pair {
-                point: point as u32,
-                segment: foot.segment,
-                held: before.is_some_and(|o| o.held),
-                bristle: before.map_or(V3::zeros(), |o| o.bristle),
-                lag: before.map_or(0.0, |o| o.kept),
-                kept: before.map_or(0.0, |o| o.kept),
-                fresh: 0.0,
-                depth: before.map_or(0.0, |o| o.depth),
-                share: foot.share,
-                normal: foot.normal,
-            });
+            // every turn back along the wire, and downhill from there
+            for turns in 1.. {
+                let back = self.angle[i] - turns as f64 * TAU;
+                if back < -WINDOW {
+                    break;
+                }
+                if self.downhill.len() < turns {
+                    self.downhill.push(0);
+                }
+                let near = &mut self.downhill[turns - 1];
+                while *near + 1 < end - 1 && self.angle[*near] < back {
+                    *near += 1;
+                }
+                while *near > 0 && self.angle[*near - 1] >= back {
+                    *near -= 1;
+                }
+                let foot = Curve(q).foot(p, *near as u32);
+                let gap = foot.distance - diameter;
+                let other = foot.segment as usize;
+                if arc[other] > own || (self.angle[other] - back).abs() > WINDOW {
+                    continue;
+                }
+                let way = way + (guess[other] - q[other]).norm();
+                if gap > SKIN * diameter + FOLLOW * way {
+                    self.room.push((point as u32, gap, foot.segment));
+                    continue;
+                }
+                let before = self.old[known..]
+                    .iter()
+                    .take_while(|o| o.point == point as u32)
+                    .find(|o| o.segment.abs_diff(foot.segment) < 6);
+                self.pairs.push(Pair {
+                    point: point as u32,
+                    segment: foot.segment,
+                    held: before.is_some_and(|o| o.held),
+                    bristle: before.map_or(V3::zeros(), |o| o.bristle),
+                    lag: before.map_or(0.0, |o| o.kept),
+                    kept: before.map_or(0.0, |o| o.kept),
+                    fresh: 0.0,
+                    depth: before.map_or(0.0, |o| o.depth),
+                    share: foot.share,
+                    normal: foot.normal,
+                });
+            }
         }
     }
 
@@ -305,16 +317,12 @@ impl Between {
     pub fn missed(&self, q: &[V3], now: &[V3]) -> Option<usize> {
         self.room
             .iter()
-            .enumerate()
-            .find_map(|(k, &(room, other))| {
-                if room.is_infinite() {
-                    return None;
-                }
-                let weights = point_weights(k + 1);
-                let other = other as usize;
+            .find(|&&(point, room, other)| {
+                let (weights, other) = (point_weights(point as usize), other as usize);
                 let way = (place(now, &weights) - place(q, &weights)).norm();
-                (way + (now[other] - q[other]).norm() > room).then_some(k.div_ceil(2))
+                way + (now[other] - q[other]).norm() > room
             })
+            .map(|(point, ..)| *point as usize / 2)
     }
 
     /// Whether every pair is one of a wire of so many live nodes: a point and wire nearer to the clamp.

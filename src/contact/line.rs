@@ -186,9 +186,59 @@ mod used {
     }
 }
 
-/// What a node's points of contact remember: places, anchors, passages.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Memory([Point; 2]);
+/// What a node's points of contact remember: places and touches. Most have one touch or none, and there
+/// is one of these for every frozen node.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Memory {
+    last: [V3; 2],
+    placed: [bool; 2],
+    /// touches of the first point, then of the second, with their places in `Point::touch`
+    touches: Box<[(u8, Touch)]>,
+    /// how many of them are of the first
+    first: u8,
+}
+
+impl Memory {
+    fn of(points: &[Point]) -> Self {
+        let known = |p: &'_ Point| {
+            (0..=p.passages as u8)
+                .zip(p.touch)
+                .filter(|(slot, t)| if *slot == 0 { p.core_near } else { true } && *t != NONE)
+                .collect::<Vec<_>>()
+        };
+        let mut touches = known(&points[0]);
+        let first = touches.len() as u8;
+        touches.extend(known(&points[1]));
+        Self {
+            last: [points[0].last, points[1].last],
+            placed: [points[0].placed, points[1].placed],
+            touches: touches.into(),
+            first,
+        }
+    }
+
+    /// Whether [`Self::points`] finds every touch a place; bytes from elsewhere may say anything.
+    pub(crate) fn is_sound(&self) -> bool {
+        let mut slots = self.touches.iter().map(|(slot, _)| *slot as usize);
+        self.first as usize <= self.touches.len() && slots.all(|slot| slot <= PASSAGES)
+    }
+
+    /// The points again; what is near them is looked up anew.
+    fn points(&self) -> [Point; 2] {
+        let (one, two) = self.touches.split_at(self.first as usize);
+        let point = |k: usize, touches: &[(u8, Touch)]| {
+            let mut p = FRESH;
+            (p.last, p.placed) = (self.last[k], self.placed[k]);
+            for &(slot, t) in touches {
+                p.touch[slot as usize] = t;
+                p.core_near |= slot == 0;
+                p.passages = p.passages.max(slot as usize);
+            }
+            p
+        };
+        [point(0, one), point(1, two)]
+    }
+}
 
 /// What the touches of one point add to potential, gradient and Hessian.
 #[derive(Clone, Copy, Debug, Default)]
@@ -401,14 +451,14 @@ impl LineContact {
 
     /// What the two points of node `i` (its own and the middle of the edge after it) remember.
     pub fn memory(&self, i: usize) -> Memory {
-        Memory([self.points[2 * i], self.points[2 * i + 1]])
+        Memory::of(&self.points[2 * i..2 * i + 2])
     }
 
     /// Nodes came back at the front with what their points remembered, clamp first.
     pub fn insert_front(&mut self, nodes: impl DoubleEndedIterator<Item = Memory>) {
         let mut count = 0;
-        for Memory(points) in nodes.rev() {
-            self.points.splice(0..0, points);
+        for memory in nodes.rev() {
+            self.points.splice(0..0, memory.points());
             count += 1;
         }
         if let Some(b) = &mut self.between {

@@ -12,7 +12,7 @@ use crate::rod::{Bend, Joint, Scalar, align, rotate};
 use serde::{Deserialize, Serialize};
 
 /// A frozen node with the edge after it: all it takes to let them move again where they lie.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dormant {
     /// place, core frame, m
     place: V3,
@@ -29,6 +29,13 @@ pub struct Dormant {
     bend: Bend,
     twist: Scalar,
     memory: Memory,
+}
+
+impl Dormant {
+    /// Whether it can come back to life; bytes from elsewhere may say anything.
+    pub(super) fn is_sound(&self) -> bool {
+        self.memory.is_sound()
+    }
 }
 
 /// Frozen wire; a chunk is about half a turn of fine wire.
@@ -300,7 +307,7 @@ impl System {
             c.nodes.splice(0..0, fresh);
         }
         if let Some(l) = &mut self.line {
-            l.insert_front(back.iter().map(|d| d.memory));
+            l.insert_front(back.into_iter().map(|d| d.memory));
         }
         let before = self.spindle.before(self.past.h[0]);
         self.past

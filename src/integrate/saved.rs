@@ -182,6 +182,9 @@ impl SavedSystem {
         if !known || !rolls {
             return Err("the history does not go with the wire");
         }
+        if !self.dormant.iter().all(|node| node.is_sound()) {
+            return Err("frozen wire remembers what cannot be");
+        }
         let live = self.live.as_ref();
         if !live.is_none_or(|l| l.fits(nodes)) || ![0, nodes].contains(&self.wire.length.len()) {
             return Err("a pair is beyond the live wire");

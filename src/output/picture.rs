@@ -20,8 +20,11 @@ const SUPERSAMPLING: u32 = 2;
 const VIEW_ANGLE: f64 = 0.40;
 /// Angle between neighbouring triangles up to which the core is shaded as one round surface, rad.
 const CREASE: f64 = 0.6;
-/// Number of triangles that the wire's smoothness is kept to.
-const WIRE_TRIANGLES: usize = 2_000_000;
+/// Number of triangles that the wire's smoothness is kept to. More of them than pixels shows nothing.
+const WIRE_TRIANGLES: usize = 1_500_000;
+/// Points of a wire's section: no corner shows in a short coil, and a long one has less to show.
+const SIDES: usize = 24;
+const FEWEST_SIDES: usize = 8;
 
 /// Surface of the core in its own frame.
 #[derive(Clone, Copy, Debug)]
@@ -105,8 +108,9 @@ pub fn render(picture: &Picture) -> RgbImage {
     let mut shadow = Raster::new(light.texels, light.texels);
     for (id, triangle) in scene.triangles.iter().enumerate() {
         let id = id as u32;
-        shadow.draw(triangle.points.map(|p| light.project(p)), id);
-        let [a, b, c] = triangle.points.map(|p| camera.project(p));
+        let points = scene.points_of(triangle);
+        shadow.draw(points.map(|p| light.project(p)), id);
+        let [a, b, c] = points.map(|p| camera.project(p));
         if let (Some(a), Some(b), Some(c)) = (a, b, c) {
             seen.draw([a, b, c], id);
         }
@@ -175,21 +179,31 @@ fn framed_points(picture: &Picture) -> Vec<V3> {
     points
 }
 
-/// A triangle with normals at its corners.
+/// A triangle by its corners' numbers.
 struct Triangle {
-    points: [V3; 3],
-    normals: [V3; 3],
+    corners: [u32; 3],
     material: u32,
 }
 
 /// Everything that is drawn.
 #[derive(Default)]
 struct Surface {
+    points: Vec<V3>,
+    /// at the points
+    normals: Vec<V3>,
     triangles: Vec<Triangle>,
     materials: Vec<Material>,
 }
 
 impl Surface {
+    fn points_of(&self, triangle: &Triangle) -> [V3; 3] {
+        triangle.corners.map(|k| self.points[k as usize])
+    }
+
+    fn normals_of(&self, triangle: &Triangle) -> [V3; 3] {
+        triangle.corners.map(|k| self.normals[k as usize])
+    }
+
     fn material(&mut self, material: Material) -> u32 {
         let known = self.materials.iter().position(|&m| m == material);
         let index = known.unwrap_or_else(|| {
@@ -230,9 +244,11 @@ impl Surface {
                 let smooth = same.filter(|area| area.dot(&own) > cos_crease * area.norm());
                 smooth.sum::<V3>().try_normalize(0.0).unwrap_or(own)
             });
+            let first = self.points.len() as u32;
+            self.points.extend(points);
+            self.normals.extend(normals);
             self.triangles.push(Triangle {
-                points,
-                normals,
+                corners: [first, first + 1, first + 2],
                 material,
             });
         }
@@ -240,9 +256,9 @@ impl Surface {
 
     fn add_wire(&mut self, picture: &Picture) {
         let wire = picture.wire;
-        let sides = 24;
-        let budget = WIRE_TRIANGLES / (2 * sides * wire.points.len().max(1));
-        let pieces = budget.clamp(1, 5);
+        let rings = wire.points.len().max(1);
+        let sides = (WIRE_TRIANGLES / (2 * rings)).clamp(FEWEST_SIDES, SIDES);
+        let pieces = (WIRE_TRIANGLES / (2 * sides * rings)).clamp(1, 5);
         let line = smooth_line(&wire.points, pieces);
         let mesh = tube_mesh(&line, picture.radius, sides);
         let turns = turns_of_nodes(&wire.points);
@@ -254,15 +270,16 @@ impl Surface {
             })
             .map(|material| self.material(material))
             .collect();
+        let base = self.points.len() as u32;
+        self.points.extend(&mesh.points);
+        self.normals.extend(&mesh.normals);
         for polygon in mesh.polygons() {
+            let polygon = polygon.as_ref();
             let ring = polygon.iter().copied().min().unwrap_or(0) as usize / sides;
             let node = (ring / pieces).min(materials.len() - 1);
-            let first = polygon[0] as usize;
             for k in 1..polygon.len() - 1 {
-                let corners = [first, polygon[k] as usize, polygon[k + 1] as usize];
                 self.triangles.push(Triangle {
-                    points: corners.map(|i| mesh.points[i]),
-                    normals: corners.map(|i| mesh.normals[i]),
+                    corners: [polygon[0], polygon[k], polygon[k + 1]].map(|i| base + i),
                     material: materials[node],
                 });
             }
@@ -324,7 +341,7 @@ impl View<'_> {
         }
         let triangle = &self.scene.triangles[id as usize];
         let ray = self.camera.ray(x, y);
-        let (point, normal) = hit(triangle, self.camera.eye, ray);
+        let (point, normal) = hit(self.scene, triangle, self.camera.eye, ray);
         let normal = if normal.dot(&ray) > 0.0 {
             -normal
         } else {
@@ -425,8 +442,8 @@ impl Disc {
 }
 
 /// Where a ray meets a triangle's plane, and the normal interpolated there.
-fn hit(triangle: &Triangle, eye: V3, ray: V3) -> (V3, V3) {
-    let [a, b, c] = triangle.points;
+fn hit(scene: &Surface, triangle: &Triangle, eye: V3, ray: V3) -> (V3, V3) {
+    let [a, b, c] = scene.points_of(triangle);
     let (u, v) = (b - a, c - a);
     let plane = u.cross(&v);
     let across = plane.dot(&ray);
@@ -440,7 +457,7 @@ fn hit(triangle: &Triangle, eye: V3, ray: V3) -> (V3, V3) {
     let wc = plane.dot(&u.cross(&(point - a))) / area2;
     // Pixels at an edge may fall a hair outside.
     let (wb, wc) = (wb.clamp(0.0, 1.0), wc.clamp(0.0, 1.0));
-    let [na, nb, nc] = triangle.normals;
+    let [na, nb, nc] = scene.normals_of(triangle);
     let normal = na * (1.0 - wb - wc) + nb * wb + nc * wc;
     (
         point,

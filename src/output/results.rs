@@ -81,15 +81,16 @@ impl Snapshot {
     }
 }
 
-/// Writes `summary.json`, `turns.csv` and `stations.csv` (wire at rest), `coil.vtp`, `core.vtp`
-/// and `coil.png` (all wire) into an existing folder. `wall_s` is the time computed so far, s.
+/// Writes `summary.json`, `turns.csv` and `stations.csv` (wire at rest) and, where there is a snapshot to
+/// write them with, `coil.vtp`, `core.vtp` and `coil.png` (all wire) into an existing folder. `wall_s` is the
+/// time computed so far, s.
 ///
 /// A file that cannot be written keeps none of the others from being written; the first failure is
 /// returned.
 pub fn write_results(
     directory: &Path,
     simulation: &Simulation,
-    snapshot: &Snapshot,
+    snapshot: Option<&Snapshot>,
     ending: &Ending,
     wall_s: f64,
 ) -> Result<(), OutputError> {
@@ -106,7 +107,13 @@ pub fn write_results(
         real_time_factor,
         summary,
     };
-    let core = snapshot.mesh();
+    let geometry = snapshot.map_or(Ok(()), |snapshot| {
+        let core = snapshot.mesh();
+        let surface = write_core_vtp(&directory.join("core.vtp"), core.vertices, core.triangles);
+        snapshot
+            .write(&directory.join("coil"), simulation)
+            .and(surface)
+    });
     [
         turns,
         write_summary(&directory.join("summary.json"), &report),
@@ -114,8 +121,7 @@ pub fn write_results(
             &directory.join("stations.csv"),
             simulation.coil().stations(),
         ),
-        write_core_vtp(&directory.join("core.vtp"), core.vertices, core.triangles),
-        snapshot.write(&directory.join("coil"), simulation),
+        geometry,
     ]
     .into_iter()
     .collect()

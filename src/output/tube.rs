@@ -15,20 +15,39 @@ pub struct TubeMesh {
     pub rings: usize,
 }
 
-impl TubeMesh {
-    /// Sides and end caps as polygons of point indices, outward side counterclockwise.
-    pub fn polygons(&self) -> Vec<Vec<u32>> {
-        let (n, rings) = (self.sides as u32, self.rings as u32);
-        if rings < 2 {
-            return Vec::new();
+/// Point indices of one polygon, outward side counterclockwise.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Polygon {
+    /// between two rings
+    Side([u32; 4]),
+    /// the wire's end
+    Cap(Vec<u32>),
+}
+
+impl AsRef<[u32]> for Polygon {
+    fn as_ref(&self) -> &[u32] {
+        match self {
+            Self::Side(corners) => corners,
+            Self::Cap(corners) => corners,
         }
-        let mut polygons: Vec<Vec<u32>> = (0..rings - 1)
-            .flat_map(|ring| (0..n).map(move |side| (ring * n, side, (side + 1) % n)))
-            .map(|(first, a, b)| vec![first + a, first + b, first + n + b, first + n + a])
-            .collect();
-        polygons.push((0..n).rev().collect());
-        polygons.push((0..n).map(|side| (rings - 1) * n + side).collect());
-        polygons
+    }
+}
+
+impl TubeMesh {
+    /// Sides, ring by ring, then the two end caps: one at a time, for a long wire has millions.
+    pub fn polygons(&self) -> impl Iterator<Item = Polygon> + Clone {
+        let (n, rings) = (self.sides as u32, self.rings as u32);
+        let sides = (0..rings.saturating_sub(1))
+            .flat_map(move |ring| (0..n).map(move |side| (ring * n, side, (side + 1) % n)))
+            .map(move |(first, a, b)| [first + a, first + b, first + n + b, first + n + a])
+            .map(Polygon::Side);
+        let caps = (rings > 1).then(|| {
+            [
+                (0..n).rev().collect(),
+                (0..n).map(|side| (rings - 1) * n + side).collect(),
+            ]
+        });
+        sides.chain(caps.into_iter().flatten().map(Polygon::Cap))
     }
 }
 
@@ -130,8 +149,10 @@ mod tests {
         let mesh = tube_mesh(&helix(), 0.02, 24);
         let volume: f64 = mesh
             .polygons()
-            .iter()
-            .flat_map(|p| (1..p.len() - 1).map(|k| [p[0], p[k], p[k + 1]]))
+            .flat_map(|p| {
+                let p = p.as_ref().to_vec();
+                (1..p.len() - 1).map(move |k| [p[0], p[k], p[k + 1]])
+            })
             .map(|t| t.map(|i| mesh.points[i as usize]))
             .map(|[a, b, c]| a.dot(&b.cross(&c)) / 6.0)
             .sum();
@@ -150,8 +171,8 @@ mod tests {
 
     #[test]
     fn degenerate_wire_makes_no_wrong_numbers() {
-        assert!(tube_mesh(&[], 1.0, 12).polygons().is_empty());
-        assert!(tube_mesh(&[V3::x()], 1.0, 12).polygons().is_empty());
+        assert!(tube_mesh(&[], 1.0, 12).polygons().next().is_none());
+        assert!(tube_mesh(&[V3::x()], 1.0, 12).polygons().next().is_none());
         let folded = [V3::zeros(), V3::x(), V3::zeros(), V3::zeros(), V3::y()];
         let mesh = tube_mesh(&folded, 0.1, 12);
         assert!(mesh.points.iter().all(|p| p.iter().all(|c| c.is_finite())));

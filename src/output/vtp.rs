@@ -15,6 +15,8 @@ use std::path::Path;
 
 /// Points of a wire's section.
 const SIDES: usize = 16;
+/// Characters of an array that are held before they are written.
+const PIECE: usize = 1 << 16;
 
 /// Writes the wire as a tube of `radius` (m) in the core frame.
 ///
@@ -58,7 +60,7 @@ pub fn write_vtp(
         .collect();
     let integers = [("turn", turns), ("frozen", frozen)];
     let active = [("Scalars", "turn"), ("Normals", "Normals")];
-    write_poly_data(path, &mesh.points, &mesh.polygons(), &active, |data| {
+    write_poly_data(path, &mesh.points, mesh.polygons(), &active, |data| {
         data.array(
             "Normals",
             "Float32",
@@ -82,8 +84,7 @@ pub fn write_core_vtp(
     triangles: &[[u32; 3]],
 ) -> Result<(), OutputError> {
     check_mesh(path, vertices, triangles)?;
-    let polygons: Vec<Vec<u32>> = triangles.iter().map(|t| t.to_vec()).collect();
-    write_poly_data(path, vertices, &polygons, &[], |_| Ok(()))
+    write_poly_data(path, vertices, triangles.iter(), &[], |_| Ok(()))
 }
 
 /// An error where a triangle names a vertex that is not there.
@@ -129,7 +130,7 @@ fn components32(v: &V3) -> [f32; 3] {
 fn write_poly_data(
     path: &Path,
     points: &[V3],
-    polygons: &[Vec<u32>],
+    polygons: impl Iterator<Item = impl AsRef<[u32]>> + Clone,
     active: &[(&str, &str)],
     point_data: impl FnOnce(&mut Xml<BufWriter<File>>) -> io::Result<()>,
 ) -> Result<(), OutputError> {
@@ -145,7 +146,10 @@ fn write_poly_data(
         ];
         xml.open("VTKFile", &root)?;
         xml.open("PolyData", &[])?;
-        let (n_points, n_polys) = (points.len().to_string(), polygons.len().to_string());
+        let (n_points, n_polys) = (
+            points.len().to_string(),
+            polygons.clone().count().to_string(),
+        );
         xml.open(
             "Piece",
             &[("NumberOfPoints", &n_points), ("NumberOfPolys", &n_polys)],
@@ -162,14 +166,13 @@ fn write_poly_data(
         )?;
         xml.close("Points")?;
         xml.open("Polys", &[])?;
-        xml.array(
-            "connectivity",
-            "Int64",
-            None,
-            polygons.iter().flatten().copied(),
-        )?;
-        let offsets = polygons.iter().scan(0, |end, polygon| {
-            *end += polygon.len();
+        let mut corners = xml.begin("connectivity", "Int64", None)?;
+        for polygon in polygons.clone() {
+            corners.add(polygon.as_ref())?;
+        }
+        corners.end()?;
+        let offsets = polygons.scan(0, |end, polygon| {
+            *end += polygon.as_ref().len();
             Some(*end)
         });
         xml.array("offsets", "Int64", None, offsets)?;
@@ -196,7 +199,6 @@ impl<W: Write> Xml<W> {
         self.0.write_event(Event::End(BytesEnd::new(name)))
     }
 
-    /// Numbers in the shortest decimal form that reads back to the same number.
     fn array<T: Display>(
         &mut self,
         name: &str,
@@ -204,21 +206,69 @@ impl<W: Write> Xml<W> {
         components: Option<usize>,
         values: impl Iterator<Item = T>,
     ) -> io::Result<()> {
-        let mut text = String::new();
-        for (k, value) in values.enumerate() {
-            let separator = if k % 12 == 0 { '\n' } else { ' ' };
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{separator}{value}");
+        let mut numbers = self.begin(name, kind, components)?;
+        for value in values {
+            numbers.add(&[value])?;
         }
-        text.push('\n');
+        numbers.end()
+    }
+
+    fn begin(
+        &mut self,
+        name: &str,
+        kind: &str,
+        components: Option<usize>,
+    ) -> io::Result<Numbers<'_, W>> {
         let components = components.map(|count| count.to_string());
         let mut attributes = vec![("type", kind), ("Name", name), ("format", "ascii")];
         if let Some(count) = &components {
             attributes.push(("NumberOfComponents", count));
         }
         self.open("DataArray", &attributes)?;
-        self.0
-            .write_event(Event::Text(BytesText::from_escaped(text)))?;
-        self.close("DataArray")
+        Ok(Numbers {
+            xml: self,
+            text: String::new(),
+            count: 0,
+        })
+    }
+}
+
+/// An array being written, a piece at a time: that of a long wire is larger than the run's own state.
+struct Numbers<'a, W: Write> {
+    xml: &'a mut Xml<W>,
+    text: String,
+    count: usize,
+}
+
+impl<W: Write> Numbers<'_, W> {
+    /// Numbers in the shortest decimal form that reads back to the same number.
+    fn add<T: Display>(&mut self, values: &[T]) -> io::Result<()> {
+        for value in values {
+            let separator = if self.count.is_multiple_of(12) {
+                '\n'
+            } else {
+                ' '
+            };
+            self.count += 1;
+            // Writing to a string cannot fail.
+            let _ = write!(self.text, "{separator}{value}");
+        }
+        if self.text.len() >= PIECE {
+            self.put()?;
+        }
+        Ok(())
+    }
+
+    fn put(&mut self) -> io::Result<()> {
+        let text = BytesText::from_escaped(self.text.as_str());
+        self.xml.0.write_event(Event::Text(text))?;
+        self.text.clear();
+        Ok(())
+    }
+
+    fn end(mut self) -> io::Result<()> {
+        self.text.push('\n');
+        self.put()?;
+        self.xml.close("DataArray")
     }
 }

@@ -3,7 +3,8 @@
 use super::error::Warning;
 use super::material::section;
 use super::settings::SceneSettings;
-use super::{Core, Decision, Integrator, Preset, Scene, SceneError, Solver};
+use super::skip::{Decisions, LiveContact, Parts};
+use super::{Core, Integrator, Preset, Scene, SceneError, Solver};
 use crate::integrate::Twist;
 use crate::rod::Section;
 use std::path::{Path, PathBuf};
@@ -12,42 +13,6 @@ use std::path::{Path, PathBuf};
 pub(super) fn si(x: f64) -> String {
     let rounded = format!("{x:.5e}").parse().unwrap_or(x);
     crate::variables::Value::Real(rounded).to_string()
-}
-
-/// The least of twist that a run needs.
-///
-/// Wire that is bent beyond yield keeps a curvature whose direction turns with its roll: without twist the set of a
-/// corner points the wrong way on the next face, and `fig8` at 30 and 300 rad/s lands 75 and 81 um rms along
-/// the core elsewhere. Elastic wire is straight when unloaded, and nothing holds its roll at the nozzle, so it rolls
-/// freely whatever way it is bent: without twist it lies 90 and 10 um rms elsewhere, while 0.7 um of the nozzle's place
-/// make 87 and 17. Rotary inertia changes nothing that a run shows. The explicit methods cannot solve for
-/// a balance of torques and step them in time.
-fn twist_that_matters(integrator: Integrator, wire: &Section) -> (Twist, Decision) {
-    let yields = wire.m_y.is_finite() || wire.t_y.is_finite();
-    let (twist, decision, why) = match integrator {
-        Integrator::Implicit if yields => (
-            Twist::QuasiStatic,
-            "quasi-static",
-            "the wire can yield, and set curvature turns with its roll; rotary inertia is left out",
-        ),
-        Integrator::Implicit => (
-            Twist::Off,
-            "off",
-            "elastic wire that may turn in the nozzle stays free of twist",
-        ),
-        Integrator::Rk4 | Integrator::Verlet => (
-            Twist::Dynamic,
-            "dynamic",
-            "the explicit methods step every edge's roll in time",
-        ),
-    };
-    let decision = Decision {
-        name: "solver.twist",
-        setting: "auto",
-        decision,
-        why,
-    };
-    (twist, decision)
 }
 
 impl SceneSettings {
@@ -59,7 +24,7 @@ impl SceneSettings {
     /// The scene, and what in it is possible but perhaps not meant.
     pub fn build_with_warnings(&self) -> Result<(Scene, Vec<Warning>), SceneError> {
         self.check_ranges()?;
-        let wire = section(self)?;
+        let mut wire = section(self)?;
         let (core, extent) = self.core()?;
         self.check_core(&wire, &extent)?;
         self.check_nozzle(&wire, &extent)?;
@@ -73,12 +38,14 @@ impl SceneSettings {
             ("verlet", _) => Integrator::Verlet,
             _ => Integrator::Implicit,
         };
-        let (twist, decision) = self.twist(integrator, &wire)?;
+        let mut decisions = Decisions::default();
+        self.plasticity(&mut wire, &mut decisions);
+        let twist = self.twist(integrator, &wire, &mut decisions)?;
         let solver = self.solver_for(integrator, twist);
         self.check_spacing(&solver, &wire, &extent)?;
         let warnings = self.warnings(&solver, &wire, &core, &extent);
 
-        let scene = Scene {
+        let mut scene = Scene {
             name: self.name.clone(),
             preset,
             wire,
@@ -92,11 +59,13 @@ impl SceneSettings {
             contact: self.contact,
             friction: self.friction,
             solver,
-            skipped: decision.into_iter().collect(),
+            skipped: Vec::new(),
             freeze: self.freeze,
             defects: self.defects,
             output: self.output.clone(),
         };
+        self.skip(&mut scene, &mut decisions)?;
+        scene.skipped = decisions.0;
         Ok((scene, warnings))
     }
 
@@ -302,29 +271,6 @@ impl SceneSettings {
         Ok(())
     }
 
-    /// How twist is carried, and what was decided where the scene leaves it open.
-    fn twist(
-        &self,
-        integrator: Integrator,
-        wire: &Section,
-    ) -> Result<(Twist, Option<Decision>), SceneError> {
-        let implicit = integrator == Integrator::Implicit;
-        match self.solver.twist.as_str() {
-            "off" => Ok((Twist::Off, None)),
-            "dynamic" => Ok((Twist::Dynamic, None)),
-            "quasi-static" if implicit => Ok((Twist::QuasiStatic, None)),
-            "quasi-static" => Err(self.impossible(
-                "solver.twist",
-                "the explicit methods step every edge's roll in time",
-                "auto, off or dynamic; quasi-static with solver.integrator = implicit",
-            )),
-            _ => {
-                let (twist, decision) = twist_that_matters(integrator, wire);
-                Ok((twist, Some(decision)))
-            }
-        }
-    }
-
     /// Solver settings with the spacing that suits the method where none is given.
     fn solver_for(&self, integrator: Integrator, twist: Twist) -> Solver {
         // the explicit step falls with the square of the finest spacing wherever it is, so a coarse
@@ -345,6 +291,11 @@ impl SceneSettings {
             step_share: s.step_share,
             step: s.step,
             tolerance: s.tolerance,
+            parts: Parts {
+                live_contact: LiveContact::Always,
+                inertia: true,
+                coarse_settled: false,
+            },
         }
     }
 

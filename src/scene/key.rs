@@ -140,3 +140,12 @@ pub fn unit_suffixes(variable: &Variable) -> Vec<&'static str> {
     }
     suffixes_of(variable.unit).map(|s| s.0).collect()
 }
+/// Name and value of `NAME=VALUE`, as `--set` takes it.
+pub fn assignment(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.trim().is_empty() => {
+            Ok((name.trim().to_owned(), value.to_owned()))
+        }
+        _ => Err("expected NAME=VALUE".to_owned()),
+    }
+}

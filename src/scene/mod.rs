@@ -11,12 +11,14 @@ mod key;
 mod material;
 mod saved;
 mod settings;
+mod skip;
 mod write;
 
 pub use error::{Place, SceneError, Warning};
 pub use file::packed_names;
-pub use key::unit_suffixes;
+pub use key::{assignment, unit_suffixes};
 pub use settings::{CoreSettings, SceneSettings, SolverSettings, WireSettings};
+pub use skip::{LiveContact, Parts};
 
 use crate::integrate::Twist;
 use crate::rod::Section;
@@ -226,6 +228,8 @@ pub struct Solver {
     pub step: f64,
     /// error that one step of the implicit method may have, m
     pub tolerance: f64,
+    /// what a step contains
+    pub parts: Parts,
 }
 
 /// When wire leaves the computation.

@@ -86,6 +86,12 @@ pub struct SolverSettings {
     pub step_share: f64,
     pub step: f64,
     pub tolerance: f64,
+    pub live_contact: String,
+    pub plasticity: String,
+    pub friction: String,
+    pub inertia: String,
+    pub coarse_span: String,
+    pub coarse_settled: String,
 }
 
 /// The scene of Fig. 8 with a section-consistent copper wire, and the settings of this program
@@ -165,6 +171,12 @@ impl Default for SceneSettings {
                 step_share: 0.9,
                 step: 0.0,
                 tolerance: 2e-6,
+                live_contact: "auto".to_owned(),
+                plasticity: "auto".to_owned(),
+                friction: "auto".to_owned(),
+                inertia: "auto".to_owned(),
+                coarse_span: "auto".to_owned(),
+                coarse_settled: "auto".to_owned(),
             },
             freeze: super::Freeze {
                 enabled: true,

@@ -5,6 +5,7 @@ use crate::freeze::FrozenNode;
 use crate::integrate::turn_about_y;
 use crate::math::{Spin, V3};
 use crate::measure::{polar_angle, wrap_to_pi};
+use crate::scene::LiveContact;
 
 /// The live wire never gets shorter than this many nodes: clamp, nozzle and two between.
 const FEWEST_NODES: usize = 4;
@@ -32,7 +33,7 @@ impl Simulation {
             .watch
             .due(&self.policy, s.angle, s.speed, self.sys.time);
         let freeze = if due { self.nodes_to_freeze() } else { 0 };
-        let coarsen = if due && self.implicit.is_some() {
+        let coarsen = if due && self.scene.solver.parts.coarse_settled {
             self.nodes_to_coarsen()
         } else {
             Vec::new()
@@ -146,7 +147,12 @@ impl Simulation {
     /// Live wire meets live wire where lift-off comes round before the wire there is at rest. A whole
     /// flat can land at once, so the pairs are watched from half a turn on.
     fn watch_live_wire(&mut self) {
-        if self.laid_angle() > 0.5 * std::f64::consts::TAU {
+        let watched = match self.scene.solver.parts.live_contact {
+            LiveContact::Always => true,
+            LiveContact::WhenHalfATurnIsLive => self.laid_angle() > 0.5 * std::f64::consts::TAU,
+            LiveContact::Never => false,
+        };
+        if watched {
             match &mut self.sys.line {
                 Some(line) => {
                     line.between.get_or_insert_default();

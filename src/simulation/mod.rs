@@ -563,13 +563,14 @@ impl Simulation {
         self.scene.defects = scene.defects;
         self.scene.friction = scene.friction;
         self.coil.set_limits(scene.defects);
-        if let Some(c) = &mut self.sys.contacts {
-            c.law.mu_static = scene.friction.static_;
-            c.law.mu_kinetic = scene.friction.kinetic;
-            c.law.slip_speed = scene.friction.slip_speed;
-            if let Some(line) = &mut self.sys.line {
-                line.law = c.law;
-            }
+        let laws = [
+            self.sys.contacts.as_mut().map(|c| &mut c.law),
+            self.sys.line.as_mut().map(|l| &mut l.law),
+        ];
+        for law in laws.into_iter().flatten() {
+            law.mu_static = scene.friction.static_;
+            law.mu_kinetic = scene.friction.kinetic;
+            law.slip_speed = scene.friction.slip_speed;
         }
     }
 

@@ -12,6 +12,9 @@ use crate::rod::{Rod, Scalar, frame_along};
 use crate::scene::{Core, Integrator, Scene};
 use std::sync::Arc;
 
+/// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
+const MASSLESS: f64 = 1e-6;
+
 /// Facets of a generated core lie at most this far under the true surface, m.
 const SAGITTA: f64 = 0.5e-6;
 
@@ -99,7 +102,10 @@ fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
 /// Builds the system at rest, an empty coil and the core angle at the start.
 pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
     let surface = Arc::new(core_surface(&scene.core)?);
-    let section = scene.wire.clone();
+    let mut section = scene.wire.clone();
+    if !scene.solver.parts.inertia {
+        section.density *= MASSLESS;
+    }
     let radius = section.radius();
     let half = half_width(scene, &surface)?;
     if surface.radius_max() + radius >= scene.nozzle.distance {

@@ -316,6 +316,12 @@ table! {
     fixed(1905, "solver.step", solver.step, "s", "us", 0.0, 1e-2, 1e-6, "fixed time step; 0: from the error (implicit) or the stability limit");
     fixed(1906, "solver.tolerance", solver.tolerance, "m", "um", 1e-9, 1e-3, 1e-6, "estimated error that a step of the implicit method may have, root mean square over the wire");
     text(1907, "solver.twist", (solver.twist), ["auto", "off", "quasi-static", "dynamic"], "how the wire's twist is carried; auto: the least that matters; dynamic with the explicit methods");
+    text(1908, "solver.live_contact", (solver.live_contact), ["auto", "on", "off"], "contact of live wire with live wire; auto: from half a live turn on");
+    text(1909, "solver.plasticity", (solver.plasticity), ["auto", "on", "off"], "plastic state of the wire; auto: where it can yield; off: elastic wire");
+    text(1910, "solver.friction", (solver.friction), ["auto", "on", "off"], "friction; auto: where a coefficient is not 0");
+    text(1911, "solver.inertia", (solver.inertia), ["auto", "on", "off"], "mass of the wire; auto: on; off: the wire goes through states of rest");
+    text(1912, "solver.coarse_span", (solver.coarse_span), ["auto", "on", "off"], "coarser spacing in the free span; auto: where solver.spacing_free is more than solver.spacing_near");
+    text(1913, "solver.coarse_settled", (solver.coarse_settled), ["auto", "on", "off"], "coarser spacing of settled live wire; auto: with the implicit method");
 
     switch(2000, "freeze.enabled", freeze.enabled, "false keeps all wire in the computation");
     fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");
