@@ -14,6 +14,7 @@
 //! A slack line cannot push: below zero the last edge is free of tension and the wire waits.
 
 use crate::rod::Law;
+use serde::{Deserialize, Serialize};
 
 /// Constants of the feed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +30,7 @@ pub struct FeedSpec {
 }
 
 /// State of the feed.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Feed {
     /// unstretched wire that has passed the nozzle, m
     pub fed: f64,

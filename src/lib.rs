@@ -14,6 +14,7 @@ pub mod integrate;
 pub mod math;
 pub mod measure;
 pub mod output;
+pub mod pile;
 pub mod rod;
 pub mod scene;
 pub mod simulation;

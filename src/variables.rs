@@ -20,10 +20,11 @@ pub use unit::{Unit, units};
 
 use crate::scene::SceneSettings;
 use crate::simulation::{Inputs, Outputs};
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// A value of any variable, in the unit of its row.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Value {
     /// a number in SI units
     Real(f64),

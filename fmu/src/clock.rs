@@ -1,5 +1,7 @@
 //! Communication points: the importer's time, which nobody else may drift from.
 
+use serde::{Deserialize, Serialize};
+
 /// Share of the larger of time and step by which two communication points may differ; importers
 /// add steps up or multiply them, and some round to nanoseconds.
 const TOLERANCE: f64 = 1e-9;
@@ -56,7 +58,7 @@ pub(crate) enum TimeError {
 }
 
 /// Start, stop and last communication point, s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Clock {
     start: f64,
     stop: Option<f64>,
@@ -116,6 +118,12 @@ impl Clock {
         }
     }
 
+    /// Whether times are what the constructor lets pass; bytes from elsewhere may hold anything.
+    pub(crate) fn is_sound(&self) -> bool {
+        let sound = Self::new(self.start, self.stop).is_ok() || *self == Self::default();
+        sound && self.now.is_finite()
+    }
+
     /// Takes over the importer's number for the end of a step, so that its rounding and ours
     /// never add up.
     pub(crate) fn set(&mut self, end: f64) {
@@ -160,6 +168,27 @@ mod tests {
             added += step;
         }
         assert!(clock.end_of(added, step).is_err(), "stop time is reached");
+    }
+
+    /// However an importer counts, a million steps end at the stop time and none is refused.
+    #[test]
+    fn a_million_steps_lead_to_the_stop_time() {
+        const STEPS: u32 = 1_000_000;
+        for step in [1e-6, 1e-4, 1.0 / 3.0] {
+            let stop = 0.7 + f64::from(STEPS) * step;
+            for multiplies in [true, false] {
+                let mut clock = Clock::new(0.7, Some(stop)).expect("valid");
+                let mut added = 0.7;
+                for k in 0..STEPS {
+                    let product = 0.7 + f64::from(k) * step;
+                    let point = if multiplies { product } else { added };
+                    clock.set(clock.end_of(point, step).expect("a step"));
+                    added += step;
+                }
+                assert!(clock.is_over());
+                assert!((clock.now() - stop).abs() < 1e-9 * stop);
+            }
+        }
     }
 
     #[test]

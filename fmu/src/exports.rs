@@ -33,8 +33,16 @@ unsafe fn unsupported(
     unsafe { guard::call(c, function, |_| Err(Refusal::Unsupported { capability })) }
 }
 
-const NO_STATE: &str = "canGetAndSetFMUstate = false";
-const NO_SERIAL: &str = "canSerializeFMUstate = false";
+/// The state that the importer means.
+///
+/// # Safety
+///
+/// As for [`pointers::state`].
+unsafe fn saved<'a>(state: fmi2FMUstate) -> Result<&'a mut pointers::Saved, Refusal> {
+    let argument = "FMUstate";
+    // SAFETY: passed on to the caller.
+    unsafe { pointers::state(state) }.ok_or(Refusal::Null { argument })
+}
 
 /// Name of the platform that the C types are for.
 #[unsafe(no_mangle)]
@@ -320,73 +328,118 @@ pub unsafe extern "C" fn fmi2SetString(
     }
 }
 
-/// Not supported.
+/// A copy of everything that decides how the instance goes on; over the state that is there, if one is.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetFMUstate(
     c: fmi2Component,
-    _FMUstate: *mut fmi2FMUstate,
+    FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    // SAFETY: only the component is looked at.
-    unsafe { unsupported(c, Function::GetFMUstate, NO_STATE) }
+    // SAFETY: the importer's pointer is NULL or points to NULL or a state.
+    unsafe {
+        guard::call(c, Function::GetFMUstate, |instance| {
+            let target = pointers::target("FMUstate", FMUstate)?;
+            pointers::put_state(target, instance.snapshot().into());
+            Ok(())
+        })
+    }
 }
 
-/// Not supported.
+/// Back to a saved state, from whatever state.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, _FMUstate: fmi2FMUstate) -> fmi2Status {
-    // SAFETY: only the component is looked at.
-    unsafe { unsupported(c, Function::SetFMUstate, NO_STATE) }
+pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
+    // SAFETY: the importer's state is NULL or one of this library.
+    unsafe {
+        guard::call(c, Function::SetFMUstate, |instance| {
+            instance.restore(&saved(FMUstate)?.snapshot);
+            Ok(())
+        })
+    }
 }
 
-/// Fine for NULL and for a pointer to NULL, as the standard wants; there are no other states.
+/// Frees a state and sets the importer's pointer to NULL; NULL and a pointer to NULL are fine.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeFMUstate(
     c: fmi2Component,
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    // SAFETY: the importer's pointer is NULL or points to a state.
+    // SAFETY: the importer's pointer is NULL or points to NULL or a state, which nobody uses again.
     unsafe {
-        guard::call(c, Function::FreeFMUstate, |_| match FMUstate.as_ref() {
-            Some(state) if !state.is_null() => Err(Refusal::Unsupported {
-                capability: NO_STATE,
-            }),
-            _ => Ok(()),
+        guard::call(c, Function::FreeFMUstate, |_| {
+            if let Some(state) = FMUstate.as_mut() {
+                drop(pointers::take_state(std::mem::replace(
+                    state,
+                    std::ptr::null_mut(),
+                )));
+            }
+            Ok(())
         })
     }
 }
 
-/// Not supported.
+/// How many bytes a state takes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     c: fmi2Component,
-    _FMUstate: fmi2FMUstate,
-    _size: *mut usize,
+    FMUstate: fmi2FMUstate,
+    size: *mut usize,
 ) -> fmi2Status {
-    // SAFETY: only the component is looked at.
-    unsafe { unsupported(c, Function::SerializedFMUstateSize, NO_SERIAL) }
+    // SAFETY: the importer's state is NULL or one of this library, its pointer NULL or with room.
+    unsafe {
+        guard::call(c, Function::SerializedFMUstateSize, |instance| {
+            let (saved, size) = (saved(FMUstate)?, pointers::target("size", size)?);
+            let bytes = instance.bytes_of(&saved.snapshot)?;
+            *size = bytes.len();
+            saved.bytes = Some(bytes);
+            Ok(())
+        })
+    }
 }
 
-/// Not supported.
+/// The bytes of a state; a longer buffer is filled with zeros.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(
     c: fmi2Component,
-    _FMUstate: fmi2FMUstate,
-    _serializedState: *mut fmi2Byte,
-    _size: usize,
+    FMUstate: fmi2FMUstate,
+    serializedState: *mut fmi2Byte,
+    size: usize,
 ) -> fmi2Status {
-    // SAFETY: only the component is looked at.
-    unsafe { unsupported(c, Function::SerializeFMUstate, NO_SERIAL) }
+    // SAFETY: the importer's state is NULL or one of this library, its array holds `size` bytes.
+    unsafe {
+        guard::call(c, Function::SerializeFMUstate, |instance| {
+            let saved = saved(FMUstate)?;
+            let bytes = match saved.bytes.take() {
+                Some(bytes) => bytes,
+                None => instance.bytes_of(&saved.snapshot)?,
+            };
+            let needed = bytes.len();
+            if size < needed {
+                return Err(Refusal::Buffer { size, needed });
+            }
+            let buffer = pointers::slice_mut("serializedState", serializedState.cast(), size)?;
+            buffer[..needed].copy_from_slice(&bytes);
+            buffer[needed..].fill(0);
+            Ok(())
+        })
+    }
 }
 
-/// Not supported.
+/// A state from bytes that an instance of this FMU wrote, perhaps elsewhere and long ago.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: fmi2Component,
-    _serializedState: *const fmi2Byte,
-    _size: usize,
-    _FMUstate: *mut fmi2FMUstate,
+    serializedState: *const fmi2Byte,
+    size: usize,
+    FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
-    // SAFETY: only the component is looked at.
-    unsafe { unsupported(c, Function::DeSerializeFMUstate, NO_SERIAL) }
+    // SAFETY: the importer's array holds `size` bytes, its pointer is NULL or points to NULL or a state.
+    unsafe {
+        guard::call(c, Function::DeSerializeFMUstate, |instance| {
+            let target = pointers::target("FMUstate", FMUstate)?;
+            let bytes = pointers::slice("serializedState", serializedState.cast(), size)?;
+            pointers::put_state(target, instance.snapshot_from(bytes)?.into());
+            Ok(())
+        })
+    }
 }
 
 /// Not supported.
@@ -405,45 +458,52 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     unsafe { unsupported(c, Function::GetDirectionalDerivative, capability) }
 }
 
-/// Not supported: inputs are held over a step.
+/// First derivatives of inputs, from the beginning of the next step on and for that step.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: fmi2Component,
-    _vr: *const fmi2ValueReference,
-    _nvr: usize,
-    _order: *const fmi2Integer,
-    _value: *const fmi2Real,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *const fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: only the component is looked at.
+    // SAFETY: all three arrays hold `nvr` values.
     unsafe {
-        unsupported(
-            c,
-            Function::SetRealInputDerivatives,
-            "canInterpolateInputs = false",
-        )
+        guard::call(c, Function::SetRealInputDerivatives, |instance| {
+            let (vr, order, value) = (
+                pointers::slice("vr", vr, nvr)?,
+                pointers::slice("order", order, nvr)?,
+                pointers::slice("value", value, nvr)?,
+            );
+            instance.set_input_derivatives(vr, order, value)
+        })
     }
 }
 
-/// Not supported.
+/// First derivatives of outputs at the last communication point.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
-    _vr: *const fmi2ValueReference,
-    _nvr: usize,
-    _order: *const fmi2Integer,
-    _value: *mut fmi2Real,
+    vr: *const fmi2ValueReference,
+    nvr: usize,
+    order: *const fmi2Integer,
+    value: *mut fmi2Real,
 ) -> fmi2Status {
-    // SAFETY: only the component is looked at.
+    // SAFETY: all three arrays hold `nvr` values.
     unsafe {
-        unsupported(
-            c,
-            Function::GetRealOutputDerivatives,
-            "maxOutputDerivativeOrder = 0",
-        )
+        guard::call(c, Function::GetRealOutputDerivatives, |instance| {
+            let (vr, order, value) = (
+                pointers::slice("vr", vr, nvr)?,
+                pointers::slice("order", order, nvr)?,
+                pointers::slice_mut("value", value, nvr)?,
+            );
+            value.copy_from_slice(&instance.output_derivatives(vr, order)?);
+            Ok(())
+        })
     }
 }
 
-/// Computes one communication step; inputs are held over it.
+/// Computes one communication step; inputs are held over it or follow their derivatives.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2DoStep(
     c: fmi2Component,

@@ -1,5 +1,8 @@
 //! One instance of the FMU in safe Rust: what each FMI function means.
 
+mod derivatives;
+mod restore;
+
 use crate::clock::Clock;
 use crate::ffi::{self, Status};
 use crate::lifecycle::State;
@@ -31,6 +34,8 @@ struct Identity {
 struct Run {
     simulation: Simulation,
     inputs: Inputs,
+    /// derivatives of the inputs in the next step, per s
+    rates: Inputs,
     /// files, from the first communication point on, where `output.directory` names a folder
     recording: Option<Recording>,
 }
@@ -44,6 +49,8 @@ pub(crate) struct Instance {
     parameters: Parameters,
     /// inputs that the importer set before the start, by reference
     start_inputs: BTreeMap<u32, f64>,
+    /// their derivatives
+    start_rates: BTreeMap<u32, f64>,
     /// made when first needed in initialization mode, thrown away when something is set there
     ///
     /// Boxed: a simulation is large, and every call would move it.
@@ -91,6 +98,7 @@ impl Instance {
             clock: Clock::default(),
             parameters: Parameters::new(),
             start_inputs: BTreeMap::new(),
+            start_rates: BTreeMap::new(),
             run: None,
             strings: Vec::new(),
             filter: Filter::new(identity.logging_on),
@@ -256,8 +264,9 @@ impl Instance {
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<(), Refusal> {
         let end = self.clock.end_of(point, step)?;
         let run = self.start()?;
+        derivatives::check_way(&run.inputs, &run.rates, step)?;
         let began = Instant::now();
-        let result = run.simulation.advance(run.inputs, step);
+        let result = run.simulation.advance_ramped(run.inputs, run.rates, step);
         if let Some(recording) = &mut run.recording {
             recording.computed(began.elapsed());
         }
@@ -267,6 +276,11 @@ impl Instance {
         if let Err(reason) = result {
             let reached = self.clock.experiment_time(simulated);
             return Err(self.fail(point, step, reached, reason));
+        }
+        // derivatives count from the beginning of a step and hold for it
+        if let Some(run) = &mut self.run {
+            run.inputs = run.inputs.after(&run.rates, step);
+            run.rates = Inputs::HELD;
         }
         if let Err(refusal) = self.check_outputs(end) {
             let reason = refusal.to_string();
@@ -313,9 +327,14 @@ impl Instance {
                     Simulation::starting_with(&scene, inputs).map_err(Refusal::Start)?;
                 self.messages
                     .extend(warnings.iter().map(message_of_warning));
+                let mut rates = Inputs::HELD;
+                for (reference, rate) in &self.start_rates {
+                    write_input(&mut rates, *reference, *rate);
+                }
                 Box::new(Run {
                     simulation,
                     inputs,
+                    rates,
                     recording: None,
                 })
             }
@@ -433,6 +452,10 @@ impl Instance {
     fn fail(&mut self, from: f64, step: f64, reached: f64, reason: SimError) -> Refusal {
         self.state = State::StepFailed;
         self.clock.set(reached);
+        let (turn, angle) = self.run.as_ref().map_or((0.0, 0.0), |run| {
+            let o = run.simulation.outputs();
+            (o.turns_wound, o.spindle_angle)
+        });
         // Importers often stop here without another call.
         self.finish_recording(&Ending::Failed {
             reason: reason.to_string(),
@@ -441,6 +464,8 @@ impl Instance {
             from,
             step,
             reached,
+            turn,
+            angle,
             reason,
         }
     }
@@ -508,7 +533,9 @@ fn message_of(event: &Event) -> Message {
     let (status, category) = match event.kind {
         EventKind::Turn | EventKind::Defect => (Status::Ok, Category::Events),
         // The wire is still computed, but a machine would have stopped.
-        EventKind::Slack | EventKind::Break => (Status::Warning, Category::Warning),
+        EventKind::Slack | EventKind::Break | EventKind::Solver => {
+            (Status::Warning, Category::Warning)
+        }
     };
     Message {
         status,

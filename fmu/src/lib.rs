@@ -3,12 +3,13 @@
 //! `exports` holds the C functions, a few lines each: pointers are read in `pointers`, the call
 //! runs inside `guard`, which asks `lifecycle` whether it is allowed, catches panics and
 //! delivers messages through `logger`. Everything behind that is safe: `instance` with its
-//! `parameters` and `clock`.
+//! `parameters` and `clock`, and `state`, a copy of it.
 //!
 //! # Invariants
 //!
 //! * A refused call returns `fmi2Error`, says why, and leaves the instance as it was.
 //! * No panic crosses the boundary; after one the instance is fatal and can only be freed.
+//! * A saved state continues to the bit; bytes of one carry magic, version, GUID and checksum.
 //! * No globals but the GUID: instances share nothing and may live in different threads.
 //! * The importer's logger is called when no reference into the instance is alive, so it may call
 //!   back.
@@ -30,4 +31,9 @@ mod pointers;
 mod recording;
 mod refusal;
 mod resources;
+#[cfg(test)]
+mod saving;
 mod scalar;
+#[cfg(test)]
+mod sequences;
+mod state;

@@ -1,9 +1,10 @@
 //! Which call is allowed in which state: one table (FMI 2.0.5, section 4.2.4).
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// State of an instance between two calls.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum State {
     /// after `fmi2Instantiate` or `fmi2Reset`
     Instantiated,

@@ -47,10 +47,10 @@ impl Filter {
         })
     }
 
-    /// Errors always pass: without the reason nobody can act on the status. The rest is for
-    /// debugging, and passes where it was switched on.
+    /// Errors and discarded steps always pass: without the reason nobody can act on the status. The rest is
+    /// for debugging, and passes where it was switched on.
     pub(crate) fn passes(&self, message: &Message) -> bool {
-        message.status >= Status::Error
+        message.status >= Status::Discard
             || self.on
                 && self
                     .categories

@@ -11,6 +11,9 @@ use std::path::Path;
 /// Name of the parameter that the others are laid over.
 const SCENE_FILE: &str = "scene.file";
 
+/// `scene.file`, what it held, and what was set explicitly.
+pub(crate) type SavedParameters = (String, SceneSettings, BTreeMap<u32, Value>);
+
 /// Parameters with their precedence: defaults, then `scene.file`, then every parameter set
 /// explicitly, in whatever order.
 #[derive(Clone, Debug)]
@@ -26,6 +29,29 @@ pub(crate) struct Parameters {
 }
 
 impl Parameters {
+    /// What a saved state holds of them; [`Self::restored`] is the way back.
+    pub(crate) fn saved(&self) -> SavedParameters {
+        (self.file.clone(), self.base.clone(), self.explicit.clone())
+    }
+
+    /// Parameters of a saved state: `scene.file` as it was read then, whatever has become of the file.
+    pub(crate) fn restored(saved: SavedParameters) -> Result<Self, Refusal> {
+        let (file, base, explicit) = saved;
+        let mut settings = base.clone();
+        for (reference, value) in &explicit {
+            let reference = *reference;
+            let variable =
+                by_reference(reference).ok_or(Refusal::UnknownReference { reference })?;
+            settings.set(variable.name, value.clone())?;
+        }
+        Ok(Self {
+            file,
+            base,
+            explicit,
+            settings,
+        })
+    }
+
     /// The default scene.
     pub(crate) fn new() -> Self {
         Self {

@@ -1,15 +1,32 @@
 //! All work with pointers of the importer. Nothing here keeps one.
 
-use crate::ffi::{fmi2CallbackFunctions, fmi2Component, fmi2String};
+use crate::ffi::{fmi2CallbackFunctions, fmi2Component, fmi2FMUstate, fmi2String};
 use crate::instance::Instance;
 use crate::logger::Host;
 use crate::refusal::Refusal;
+use crate::state::Snapshot;
 use std::ffi::CStr;
 
 /// What an `fmi2Component` points to.
 pub(crate) struct Component {
     pub(crate) instance: Instance,
     pub(crate) host: Host,
+}
+
+/// What an `fmi2FMUstate` points to.
+pub(crate) struct Saved {
+    pub(crate) snapshot: Snapshot,
+    /// from the question for their number to the copying, so that they are made once
+    pub(crate) bytes: Option<Vec<u8>>,
+}
+
+impl From<Snapshot> for Saved {
+    fn from(snapshot: Snapshot) -> Self {
+        Self {
+            snapshot,
+            bytes: None,
+        }
+    }
 }
 
 /// Hands an instance over to the importer; [`take`] is the way back.
@@ -37,6 +54,44 @@ pub(crate) unsafe fn component<'a>(c: fmi2Component) -> Option<&'a mut Component
 pub(crate) unsafe fn take(c: fmi2Component) -> Option<Box<Component>> {
     // SAFETY: a pointer from `give` came from `Box::into_raw` of this type.
     (!c.is_null()).then(|| unsafe { Box::from_raw(c.cast()) })
+}
+
+/// Hands a saved state over to the importer; [`take_state`] is the way back.
+pub(crate) fn give_state(state: Saved) -> fmi2FMUstate {
+    Box::into_raw(Box::new(state)).cast()
+}
+
+/// A saved state behind the importer's handle; `None` for NULL.
+///
+/// # Safety
+///
+/// `state` is NULL or came from [`give_state`], was not taken back, and is used by one call at a time.
+pub(crate) unsafe fn state<'a>(state: fmi2FMUstate) -> Option<&'a mut Saved> {
+    // SAFETY: a pointer from `give_state` is aligned, initialised and, by the contract above, unshared.
+    unsafe { state.cast::<Saved>().as_mut() }
+}
+
+/// Takes a saved state back; `None` for NULL.
+///
+/// # Safety
+///
+/// As for [`state()`], and the handle is not used again.
+pub(crate) unsafe fn take_state(state: fmi2FMUstate) -> Option<Box<Saved>> {
+    // SAFETY: a pointer from `give_state` came from `Box::into_raw` of this type.
+    (!state.is_null()).then(|| unsafe { Box::from_raw(state.cast()) })
+}
+
+/// Puts a state where the importer wants it: over the one that is there, or in a new place.
+///
+/// # Safety
+///
+/// As for [`state()`] where `*target` is not NULL.
+pub(crate) unsafe fn put_state(target: &mut fmi2FMUstate, saved: Saved) {
+    // SAFETY: passed on to the caller.
+    match unsafe { state(*target) } {
+        Some(there) => *there = saved,
+        None => *target = give_state(saved),
+    }
 }
 
 /// `n` values of the importer; with `n = 0` the pointer is not looked at.

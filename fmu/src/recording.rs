@@ -1,6 +1,6 @@
 //! Files of a run: a row per communication point, results at the end, in `output.directory`.
 
-use coilwind::output::{Ending, History, OutputError, Snapshot, write_results};
+use coilwind::output::{Ending, History, Mark, OutputError, Snapshot, write_results};
 use coilwind::scene::SceneSettings;
 use coilwind::simulation::{SimError, Simulation};
 use std::path::PathBuf;
@@ -56,6 +56,32 @@ impl Recording {
             snapshot,
             computed: Duration::ZERO,
         })
+    }
+
+    /// Where the history stands; `None` if it broke off.
+    pub(crate) fn mark(&mut self) -> Result<Option<Mark>, RecordError> {
+        Ok(self.history.as_mut().map(History::mark).transpose()?)
+    }
+
+    /// Takes the files of a restored state up again: the history is cut back to the mark. Where the file is not
+    /// the one that the mark was made in, a new one begins; the flag says so.
+    pub(crate) fn resume(
+        settings: &SceneSettings,
+        simulation: &Simulation,
+        mark: &Mark,
+    ) -> Result<(Self, bool), RecordError> {
+        let directory = PathBuf::from(&settings.output.directory);
+        let history = History::resume(&directory.join("history.csv"), mark)?;
+        let Some(history) = history else {
+            return Ok((Self::start(settings, simulation)?, true));
+        };
+        let recording = Self {
+            snapshot: Snapshot::new(simulation)?,
+            history: Some(history),
+            directory,
+            computed: Duration::ZERO,
+        };
+        Ok((recording, false))
     }
 
     /// Counts time spent in the solver.

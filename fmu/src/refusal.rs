@@ -2,8 +2,9 @@
 
 use crate::clock::TimeError;
 use crate::ffi::Status;
+use crate::state::BytesError;
 use coilwind::scene::SceneError;
-use coilwind::simulation::SimError;
+use coilwind::simulation::{RestoreError, SimError};
 use coilwind::variables::Value;
 use coilwind_model_description::{Category, DescriptionError};
 
@@ -61,13 +62,44 @@ pub(crate) enum Refusal {
     #[error("start: {0}")]
     Start(SimError),
     /// the solver gave up: the instance is in the step-failed state
-    #[error("step from {from} s by {step} s failed: {reason}; last successful time {reached} s")]
+    #[error(
+        "step from {from} s by {step} s failed: {reason}; last successful time {reached} s, turn {turn:.3}, core at {:.1} deg",
+        angle.to_degrees()
+    )]
     StepFailed {
         from: f64,
         step: f64,
         reached: f64,
+        turn: f64,
+        angle: f64,
         reason: SimError,
     },
+    /// an input would leave its range on the way
+    #[error("{name} would be {value} at the end of the step: {allowed}")]
+    LeavesRange {
+        name: &'static str,
+        value: f64,
+        allowed: String,
+    },
+    /// no derivative of that order, or of that variable
+    #[error("derivative of order {order} of {name}: {reason}")]
+    NoDerivative {
+        name: &'static str,
+        order: i32,
+        reason: &'static str,
+    },
+    /// a derivative that is not a number
+    #[error("derivative of {name} = {value} is not a finite number")]
+    DerivativeNotFinite { name: &'static str, value: f64 },
+    /// bytes that are no saved state, or not one for here
+    #[error("serializedState: {0}")]
+    Bytes(#[from] BytesError),
+    /// a state cannot be written or has nothing to be read from
+    #[error("state: {0}")]
+    State(#[from] RestoreError),
+    /// the importer's buffer is shorter than announced by `fmi2SerializedFMUstateSize`
+    #[error("size = {size}, but the state takes {needed} bytes")]
+    Buffer { size: usize, needed: usize },
     /// a time or step that makes no sense
     #[error("{0}")]
     Time(#[from] TimeError),
@@ -93,7 +125,9 @@ impl Refusal {
     /// Status and category of the message.
     pub(crate) fn status(&self) -> (Status, Category) {
         match self {
-            Refusal::NoStatus { .. } => (Status::Discard, Category::Discard),
+            Refusal::NoStatus { .. } | Refusal::StepFailed { .. } => {
+                (Status::Discard, Category::Discard)
+            }
             _ => (Status::Error, Category::Error),
         }
     }

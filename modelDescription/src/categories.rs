@@ -27,17 +27,17 @@ pub const CATEGORIES: [(Category, &str, &str); 6] = [
     (
         Category::Warning,
         "logStatusWarning",
-        "Warnings about the scene or the wire",
+        "Warnings about the scene, the wire or the solver",
     ),
     (
         Category::Discard,
         "logStatusDiscard",
-        "Information that cannot be given",
+        "Failed steps, with time, turn and angle, and information that cannot be given",
     ),
     (
         Category::Error,
         "logStatusError",
-        "Refused calls and failed steps, with the reason",
+        "Refused calls, with the reason",
     ),
     (
         Category::Fatal,

@@ -14,13 +14,13 @@ const CAPABILITIES: [(&str, &str); 10] = [
     ("modelIdentifier", MODEL_IDENTIFIER),
     ("needsExecutionTool", "false"),
     ("canHandleVariableCommunicationStepSize", "true"),
-    ("canInterpolateInputs", "false"),
-    ("maxOutputDerivativeOrder", "0"),
+    ("canInterpolateInputs", "true"),
+    ("maxOutputDerivativeOrder", "1"),
     ("canRunAsynchronuously", "false"),
     ("canBeInstantiatedOnlyOncePerProcess", "false"),
     ("canNotUseMemoryManagementFunctions", "true"),
-    ("canGetAndSetFMUstate", "false"),
-    ("canSerializeFMUstate", "false"),
+    ("canGetAndSetFMUstate", "true"),
+    ("canSerializeFMUstate", "true"),
 ];
 
 /// The whole file.

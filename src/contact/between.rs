@@ -13,6 +13,7 @@ use crate::freeze::Curve;
 use crate::math::V3;
 use crate::measure::{polar_angle, wrap_to_pi};
 use crate::rod::{Block, add_outer};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Pairs are listed when nearer than this beyond touching, in wire diameters ...
@@ -23,7 +24,7 @@ const FOLLOW: f64 = 1.5;
 const WINDOW: f64 = 0.6;
 
 /// A point of contact and the older wire near it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Pair {
     point: u32,
     segment: u32,
@@ -139,22 +140,30 @@ impl Pair {
 }
 
 /// Pairs of live wire and what their friction remembers.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Between {
     pairs: Vec<Pair>,
     /// those of the step before, while the next ones are listed
+    #[serde(skip)]
     old: Vec<Pair>,
+    #[serde(skip)]
     angle: Vec<f64>,
+    #[serde(skip)]
     arc: Vec<f64>,
     /// points near older wire that make no pair with it, how far both may move before they do, m, and the node
     /// of that wire
+    #[serde(skip)]
     room: Vec<(u32, f64, u32)>,
     /// by turns back, where the search along the wire stands
+    #[serde(skip)]
     downhill: Vec<usize>,
     /// room for the wire in the core frame
+    #[serde(skip)]
     pub scratch: Vec<V3>,
     /// couplings of the last evaluation
+    #[serde(skip)]
     pub cross: Vec<Cross>,
+    #[serde(skip)]
     near: Vec<NearPair>,
     /// totals of what was lost
     pub loss: ContactLoss,
@@ -314,6 +323,13 @@ impl Between {
                 way + (now[other] - q[other]).norm() > room
             })
             .map(|(point, ..)| *point as usize / 2)
+    }
+
+    /// Whether every pair is one of a wire of so many live nodes: a point and wire nearer to the clamp.
+    pub(super) fn fits(&self, nodes: usize) -> bool {
+        let points = 1..2 * (nodes as u32 - 1);
+        let mut pairs = self.pairs.iter();
+        pairs.all(|p| points.contains(&p.point) && p.segment < p.point / 2)
     }
 
     /// Number of pairs near each other.

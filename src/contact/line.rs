@@ -14,6 +14,7 @@ use crate::core_shape::Shape;
 use crate::freeze::SplineTube;
 use crate::math::V3;
 use crate::rod::{Block, add_outer};
+use serde::{Deserialize, Serialize};
 
 /// Passages of frozen wire a point can have near it: neighbours left and right, and a layer below.
 const PASSAGES: usize = 4;
@@ -29,7 +30,7 @@ const ONSET: f64 = 1e-6;
 /// all of it updates overshoot to the far side of the anchor, with none they crawl.
 pub(super) const ALONG_SLIDE: f64 = 0.9;
 /// One possible touch of a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Touch {
     /// where to look for the closest point of frozen wire
     start: u32,
@@ -117,7 +118,7 @@ impl Touch {
 }
 
 /// A contact point of the wire.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Point {
     /// place at the last accepted instant, m
     last: V3,
@@ -129,6 +130,7 @@ struct Point {
     free: V3,
     clear: f64,
     /// core first, then passages of frozen wire
+    #[serde(with = "used")]
     touch: [Touch; 1 + PASSAGES],
     core_near: bool,
     passages: usize,
@@ -146,9 +148,47 @@ const FRESH: Point = Point {
     passages: 0,
 };
 
+/// Touches in a saved state: most are unused, and take no more than their bit in a mask.
+mod used {
+    use super::{NONE, PASSAGES, Touch};
+    use serde::de::Error;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    /// Whether nothing was ever written here, to the bit.
+    fn is_none(t: &Touch) -> bool {
+        let vectors = [t.anchor, t.slide, t.normal];
+        let numbers = [t.lag, t.kept, t.fresh, t.depth, t.before];
+        let mut all = vectors.iter().flatten().chain(&numbers);
+        t.start == NONE.start && !t.held && all.all(|x| x.to_bits() == 0)
+    }
+
+    pub(super) fn serialize<S: Serializer>(
+        touches: &[Touch; 1 + PASSAGES],
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        let mask =
+            (0..touches.len()).fold(0u8, |mask, k| mask | (u8::from(!is_none(&touches[k])) << k));
+        let list: Vec<&Touch> = touches.iter().filter(|t| !is_none(t)).collect();
+        (mask, list).serialize(serializer)
+    }
+
+    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+        deserializer: D,
+    ) -> Result<[Touch; 1 + PASSAGES], D::Error> {
+        let (mask, list) = <(u8, Vec<Touch>)>::deserialize(deserializer)?;
+        let mut touches = [NONE; 1 + PASSAGES];
+        let mut list = list.into_iter();
+        for k in (0..touches.len()).filter(|k| mask >> k & 1 == 1) {
+            let next = list.next();
+            touches[k] = next.ok_or_else(|| D::Error::custom("a touch is missing"))?;
+        }
+        Ok(touches)
+    }
+}
+
 /// What a node's points of contact remember: places and touches. Most have one touch or none, and there
 /// is one of these for every frozen node.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Memory {
     last: [V3; 2],
     placed: [bool; 2],
@@ -175,6 +215,12 @@ impl Memory {
             touches: touches.into(),
             first,
         }
+    }
+
+    /// Whether [`Self::points`] finds every touch a place; bytes from elsewhere may say anything.
+    pub(crate) fn is_sound(&self) -> bool {
+        let mut slots = self.touches.iter().map(|(slot, _)| *slot as usize);
+        self.first as usize <= self.touches.len() && slots.all(|slot| slot <= PASSAGES)
     }
 
     /// The points again; what is near them is looked up anew.
@@ -242,6 +288,18 @@ pub struct LineContact {
     found: Vec<u32>,
 }
 
+/// The part of [`LineContact`] that neither the scene nor the frozen wire gives.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct SavedLine {
+    points: Vec<Point>,
+    loss: ContactLoss,
+    deepest: f64,
+    /// wire that was taken back counts as well
+    height: f64,
+    hold_limits: bool,
+    between: Option<Between>,
+}
+
 /// A point with surfaces near it: how the linear system sees their push.
 #[derive(Clone, Copy, Debug)]
 struct Near {
@@ -303,6 +361,67 @@ impl LineContact {
             undo: Vec::with_capacity(256),
             found: Vec::with_capacity(64),
         }
+    }
+
+    /// What a saved state has to hold.
+    pub(crate) fn saved(&self) -> SavedLine {
+        // a new field asks here whether it is state
+        let Self {
+            shape: _,
+            tube: _,
+            law: _,
+            onset: _,
+            damping: _,
+            radius: _,
+            loss,
+            hold_limits,
+            height,
+            deepest,
+            between,
+            near: _,
+            points,
+            undo: _,
+            found: _,
+        } = self;
+        SavedLine {
+            points: points.clone(),
+            loss: *loss,
+            deepest: *deepest,
+            height: *height,
+            hold_limits: *hold_limits,
+            between: between.clone(),
+        }
+    }
+
+    /// Takes a saved state over; `wire` is the frozen wire, places and arc lengths, and `nodes` the number of
+    /// live ones. Says what is impossible about it.
+    pub(crate) fn restore(
+        &mut self,
+        saved: SavedLine,
+        wire: impl Iterator<Item = (V3, f64)>,
+        nodes: usize,
+    ) -> Result<(), &'static str> {
+        let mut fresh = Self::new(self.shape.clone(), self.law, self.radius, nodes);
+        wire.for_each(|(point, arc)| fresh.lay(point, arc));
+        let frozen = fresh.tube.len() as u32;
+        if saved.points.len() != 2 * nodes {
+            return Err("contact points do not go with the nodes");
+        }
+        for p in &saved.points {
+            let touches = p.touch.get(1..=p.passages);
+            let all = touches.ok_or("a contact point has too many touches")?;
+            if p.reach >= 0.0 && all.iter().any(|t| t.start >= frozen) {
+                return Err("a touch is beyond the frozen wire");
+            }
+        }
+        if !saved.between.as_ref().is_none_or(|b| b.fits(nodes)) {
+            return Err("a pair is beyond the live wire");
+        }
+        (fresh.points, fresh.between) = (saved.points, saved.between);
+        (fresh.loss, fresh.deepest) = (saved.loss, saved.deepest);
+        (fresh.height, fresh.hold_limits) = (saved.height, saved.hold_limits);
+        *self = fresh;
+        Ok(())
     }
 
     /// Forgets lags and surroundings so that a run can be repeated from here to the bit.

@@ -7,12 +7,13 @@
 
 use super::law::ContactLaw;
 use crate::math::V3;
+use serde::{Deserialize, Serialize};
 
 /// Skin of the pair list in wire diameters.
 const SKIN: f64 = 0.5;
 
 /// Node and segment that came near each other, and the friction between them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Pair {
     node: u32,
     segment: u32,
@@ -21,7 +22,7 @@ struct Pair {
 }
 
 /// A moving wire as this contact sees it: core frame, one entry per live node.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Wire {
     /// positions, m
     pub position: Vec<V3>,
@@ -34,11 +35,12 @@ pub struct Wire {
 }
 
 /// Pairs of live wire and what their friction remembers.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveContact {
     pairs: Vec<Pair>,
     seen: Vec<V3>,
     /// forces per node, core frame, N
+    #[serde(skip)]
     pub force: Vec<V3>,
     /// deepest penetration at the last committed evaluation, m
     pub deepest: f64,
@@ -70,6 +72,12 @@ impl LiveContact {
             p.node -= n;
             p.segment -= n;
         }
+    }
+
+    /// Whether every pair is one of a wire of so many nodes: a node and a segment nearer to the clamp.
+    pub(crate) fn fits(&self, nodes: usize) -> bool {
+        let mut pairs = self.pairs.iter();
+        pairs.all(|p| (p.node as usize) < nodes && p.segment < p.node)
     }
 
     fn list_pairs(&mut self, wire: &Wire, diameter: f64) {

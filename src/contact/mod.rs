@@ -11,12 +11,14 @@ mod live;
 
 pub use between::{Between, Cross, PairPush, Triple, add_cross, point_weights};
 pub use law::{ContactLaw, TouchForce, damping_for_restitution};
+pub(crate) use line::SavedLine;
 pub use line::{LineContact, Memory, Push, own_wire};
 pub use live::{LiveContact, Wire};
 
 use crate::core_shape::{Surface, Touch};
-use crate::freeze::Tube;
+use crate::freeze::{FrozenNode, Tube};
 use crate::math::V3;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Anchors a node can hold at once: core face and flange, and two turns of a groove, with room.
@@ -29,7 +31,7 @@ const OWN_WIRE: f64 = 5.0;
 const SAME_TOUCH: f64 = 0.7;
 
 /// Friction anchor of one touch.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Anchor {
     on_tube: bool,
     normal: V3,
@@ -47,7 +49,8 @@ const NO_ANCHOR: Anchor = Anchor {
 };
 
 /// What a node knows of its surroundings.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(try_from = "SavedNode", into = "SavedNode")]
 pub struct NodeContact {
     anchors: [Anchor; ANCHORS],
     count: usize,
@@ -96,6 +99,44 @@ impl Default for NodeContact {
     }
 }
 
+/// A [`NodeContact`] in a saved state. The surroundings belong to it: in which order faces are met decides
+/// the rounding of a sum.
+#[derive(Serialize, Deserialize)]
+struct SavedNode {
+    anchors: Vec<Anchor>,
+    centre: V3,
+    reach: f64,
+    faces: Vec<u32>,
+    segments: Vec<u32>,
+}
+
+impl From<NodeContact> for SavedNode {
+    fn from(node: NodeContact) -> Self {
+        Self {
+            anchors: node.anchors[..node.count].to_vec(),
+            centre: node.centre,
+            reach: node.reach,
+            faces: node.faces,
+            segments: node.segments,
+        }
+    }
+}
+
+impl TryFrom<SavedNode> for NodeContact {
+    type Error = &'static str;
+
+    fn try_from(saved: SavedNode) -> Result<Self, &'static str> {
+        let mut node = Self::new();
+        node.count = saved.anchors.len();
+        let held = node.anchors.get_mut(..node.count);
+        held.ok_or("a node has too many anchors")?
+            .copy_from_slice(&saved.anchors);
+        (node.centre, node.reach) = (saved.centre, saved.reach);
+        (node.faces, node.segments) = (saved.faces, saved.segments);
+        Ok(node)
+    }
+}
+
 /// A node as contact sees it, core frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Body {
@@ -112,12 +153,20 @@ pub struct Body {
 }
 
 /// Running totals of what contact dissipated.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactLoss {
     /// slip against friction, J
     pub friction: f64,
     /// contact dashpots, J
     pub damping: f64,
+}
+
+/// The part of [`Contacts`] that the scene does not give.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct SavedContacts {
+    nodes: Vec<NodeContact>,
+    loss: ContactLoss,
+    pub(crate) frozen: Vec<FrozenNode>,
 }
 
 /// The surfaces the wire can touch and how it touches them.
@@ -159,6 +208,59 @@ impl Contacts {
             // small enough that a handful of triangles lies within, large enough to last some steps
             skin: 0.1 * diameter,
         }
+    }
+
+    /// What a saved state has to hold.
+    pub(crate) fn saved(&self) -> SavedContacts {
+        SavedContacts {
+            nodes: self.nodes.clone(),
+            loss: self.loss,
+            frozen: self.tube.nodes().collect(),
+        }
+    }
+
+    /// Takes a saved state over, of a wire with so many live nodes. Says what is impossible about it.
+    pub(crate) fn restore(
+        &mut self,
+        saved: SavedContacts,
+        nodes: usize,
+    ) -> Result<(), &'static str> {
+        if saved.nodes.len() != nodes {
+            return Err("contacts do not go with the nodes");
+        }
+        let (faces, segments) = (
+            self.surface.mesh().triangles.len(),
+            saved.frozen.len().saturating_sub(1),
+        );
+        for node in &saved.nodes {
+            let known = node.reach < 0.0
+                || node.faces.iter().all(|f| (*f as usize) < faces)
+                    && node.segments.iter().all(|s| (*s as usize) < segments);
+            if !known {
+                return Err("a node's surroundings are beyond core and frozen wire");
+            }
+        }
+        let far = self.far();
+        let mut arc = f64::NEG_INFINITY;
+        let mut before = None;
+        for node in &saved.frozen {
+            let near = node.point.iter().all(|x| x.abs() < far);
+            let sound = near && node.arc >= arc && before != Some(node.point);
+            if !sound {
+                return Err("frozen wire is not one");
+            }
+            (arc, before) = (node.arc, Some(node.point));
+        }
+        let mut tube = Tube::new(self.tube.radius());
+        saved.frozen.into_iter().for_each(|node| tube.push(node));
+        (self.nodes, self.loss, self.tube) = (saved.nodes, saved.loss, tube);
+        Ok(())
+    }
+
+    /// A distance from the origin far outside of what wire can lie on, m.
+    pub(crate) fn far(&self) -> f64 {
+        let (min, max) = self.surface.bounds();
+        10.0 * (max.amax() + min.amax() + self.radius)
     }
 
     /// Frozen wire changed: look everything up again.

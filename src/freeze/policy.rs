@@ -7,9 +7,10 @@
 //! order from the clamp, and not before they are a bending length behind lift-off.
 
 use crate::math::V3;
+use serde::{Deserialize, Serialize};
 
 /// The limits.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FreezePolicy {
     /// window of core angle, rad
     pub window: f64,
@@ -45,7 +46,7 @@ const LOOKS: usize = 4;
 const STANDING: f64 = 1e-3;
 
 /// Remembers where each live node was, look by look.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
     /// positions at the last looks, newest last; one entry per live node
     seen: Vec<[V3; LOOKS]>,
@@ -66,6 +67,11 @@ impl Watch {
             last: angle,
             last_time: 0.0,
         }
+    }
+
+    /// Whether it watches over so many nodes.
+    pub(crate) fn fits(&self, nodes: usize) -> bool {
+        self.seen.len() == nodes && self.count.len() == nodes
     }
 
     /// A node was inserted before index `at`.

@@ -15,6 +15,7 @@
 use crate::core_shape::Touch;
 use crate::math::{Quat, V3};
 use crate::rod::{rotate, rotate_back};
+use serde::{Deserialize, Serialize};
 
 /// Facets round the wire.
 pub const SIDES: usize = 32;
@@ -69,7 +70,7 @@ pub struct Tube {
 }
 
 /// What a node brings along when it freezes.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct FrozenNode {
     /// position, core frame, m
     pub point: V3,
@@ -102,6 +103,22 @@ impl Tube {
                 .collect(),
             chunks: Vec::new(),
         }
+    }
+
+    /// Radius of the wire, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// What was pushed, oldest first.
+    pub fn nodes(&self) -> impl Iterator<Item = FrozenNode> {
+        (0..self.len()).map(|i| FrozenNode {
+            point: self.points[i],
+            frame: self.frames[i],
+            arc: self.arc[i],
+            tension: self.tension[i],
+            plastic_strain: self.plastic_strain[i],
+        })
     }
 
     /// Number of frozen nodes.

@@ -4,7 +4,7 @@ use super::system::System;
 use crate::rod::stored_energy;
 
 /// Where energy came from and went, J, since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Books {
     /// work of the spindle on the wire
     pub spindle: f64,

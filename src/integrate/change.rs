@@ -7,10 +7,12 @@ use super::system::System;
 use super::twist::Twist;
 use crate::contact::{Memory, NodeContact};
 use crate::math::{Quat, Spin, V3, spin_velocity};
+use crate::pile::Pile;
 use crate::rod::{Bend, Joint, Scalar, align, rotate};
+use serde::{Deserialize, Serialize};
 
 /// A frozen node with the edge after it: all it takes to let them move again where they lie.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dormant {
     /// place, core frame, m
     place: V3,
@@ -28,6 +30,16 @@ pub struct Dormant {
     twist: Scalar,
     memory: Memory,
 }
+
+impl Dormant {
+    /// Whether it can come back to life; bytes from elsewhere may say anything.
+    pub(super) fn is_sound(&self) -> bool {
+        self.memory.is_sound()
+    }
+}
+
+/// Frozen wire; a chunk is about half a turn of fine wire.
+pub(super) type Asleep = Pile<Dormant, 64>;
 
 impl System {
     /// Splits edge `j` in two halves at the same stretch.
@@ -105,7 +117,10 @@ impl System {
         }
         if let Some(l) = &mut self.live {
             l.insert(j + 1);
-            self.wire.length.insert(j + 1, half);
+            // (there is none before the first evaluation)
+            if self.wire.length.len() > j {
+                self.wire.length.insert(j + 1, half);
+            }
         }
         if let Some(l) = &mut self.line {
             l.split(j);
@@ -261,7 +276,7 @@ impl System {
         if count == 0 {
             return 0;
         }
-        let back = self.dormant.split_off(self.dormant.len() - count);
+        let back = self.dormant.split_off(count);
         let stored = self.stored();
         let spin = Spin::new(self.spindle.angle);
         let turn = turn_about_y(self.spindle.angle);

@@ -1,9 +1,10 @@
 //! How the ends of the wire are held and how the core turns.
 
 use crate::math::{Quat, V3};
+use serde::{Deserialize, Serialize};
 
 /// How an end of the wire is held.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Support {
     /// which coordinates of the end node are held (all three where the support turns)
     pub hold: [bool; 3],
@@ -54,7 +55,7 @@ impl Support {
 }
 
 /// The core's motion at this instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Spindle {
     /// angle, rad
     pub angle: f64,

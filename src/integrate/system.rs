@@ -3,6 +3,7 @@
 //! Lab frame; the core turns about +y. Nothing here knows scenes or files.
 
 use super::books::Books;
+use super::change::Asleep;
 use super::implicit::Past;
 use super::support::{Spindle, Support, turn_about_y};
 use super::twist::Twist;
@@ -49,11 +50,13 @@ pub struct System {
     pub past: Past,
     pub(super) wire: Wire,
     /// frozen wire of the implicit method, oldest node first
-    pub(super) dormant: Vec<super::change::Dormant>,
+    pub(super) dormant: Asleep,
     /// feed at the last node
     pub feed: Option<(FeedSpec, Feed)>,
     /// set pull of the tensioner, N
     pub set_tension: f64,
+    /// its rate, N/s
+    pub set_rate: f64,
     /// how twist is carried; the explicit methods know no quasi-static one
     pub twist: Twist,
     /// unstretched length from the clamp to the first live node, m
@@ -93,9 +96,10 @@ impl System {
             line: None,
             past: Past::default(),
             wire: Wire::default(),
-            dormant: Vec::new(),
+            dormant: Asleep::default(),
             feed: None,
             set_tension: 0.0,
+            set_rate: 0.0,
             twist: Twist::Dynamic,
             arc0: 0.0,
             joined_away: 0.0,
@@ -108,6 +112,11 @@ impl System {
             roll: vec![0.0; edges],
             stages: super::rk4::Stages::default(),
         }
+    }
+
+    /// Set pull of the tensioner `dt` from now, N; it never pushes.
+    pub fn set_tension_after(&self, dt: f64) -> f64 {
+        (self.set_tension + self.set_rate * dt).max(0.0)
     }
 
     /// Direction in which the wire leaves a clamped end, lab frame.

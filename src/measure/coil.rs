@@ -7,7 +7,9 @@ use super::state::DefectKind;
 use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::V3;
+use crate::pile::Pile;
 use crate::scene::Defects;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -40,7 +42,7 @@ pub struct CoilSpec {
 }
 
 /// A node of wire that has come to rest.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SettledNode {
     /// centreline in the core frame, m
     pub position: V3,
@@ -98,10 +100,18 @@ pub(crate) struct Record {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coil {
     pub(crate) spec: CoilSpec,
-    pub(crate) nodes: Vec<Node>,
-    pub(crate) records: Vec<Record>,
+    pub(crate) nodes: Pile<Node, 256>,
+    /// a turn to the chunk
+    pub(crate) records: Pile<Record, STATIONS_PER_TURN>,
     /// latest station by polar station and `floor(y / d)`
     buckets: BTreeMap<(usize, i64), usize>,
+    traverse: f64,
+}
+
+/// What came to rest, with the direction of the traverse then.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct SavedCoil {
+    nodes: Vec<(SettledNode, f64)>,
     traverse: f64,
 }
 
@@ -111,8 +121,8 @@ impl Coil {
         let traverse = if spec.traverse < 0.0 { -1.0 } else { 1.0 };
         Self {
             spec,
-            nodes: Vec::new(),
-            records: Vec::new(),
+            nodes: Pile::default(),
+            records: Pile::default(),
             buckets: BTreeMap::new(),
             traverse,
         }
@@ -131,9 +141,9 @@ impl Coil {
         let nodes = std::mem::take(&mut self.nodes);
         let traverse = self.traverse;
         self.spec.limits = limits;
-        self.records.clear();
+        self.records.truncate(0);
         self.buckets.clear();
-        for node in nodes {
+        for node in nodes.iter() {
             self.traverse = node.sense;
             self.settle(node.settled);
         }
@@ -202,13 +212,38 @@ impl Coil {
         }
     }
 
+    /// What a saved state has to hold; all else follows from it.
+    pub(crate) fn saved(&self) -> SavedCoil {
+        SavedCoil {
+            nodes: self.nodes.iter().map(|n| (n.settled, n.sense)).collect(),
+            traverse: self.traverse,
+        }
+    }
+
+    /// Takes a saved state over: settles its nodes anew, all of them within `far` (m) of the origin. Says what
+    /// is impossible about it.
+    pub(crate) fn restore(&mut self, saved: SavedCoil, far: f64) -> Result<(), &'static str> {
+        let mut fresh = Self::new(self.spec.clone());
+        for (node, sense) in saved.nodes {
+            if !node.position.iter().all(|x| x.abs() < far) {
+                return Err("settled wire is nowhere near the core");
+            }
+            fresh.traverse = sense;
+            fresh.settle(node);
+        }
+        fresh.traverse = saved.traverse;
+        *self = fresh;
+        Ok(())
+    }
+
     /// Takes back the last `count` nodes (all, when there are fewer), as if never settled.
     pub fn unsettle(&mut self, count: usize) {
         let keep = self.nodes.len().saturating_sub(count);
         let Some(first_gone) = self.nodes.get(keep) else {
             return;
         };
-        for record in self.records.drain(first_gone.stations_before..).rev() {
+        let stations = self.records.len() - first_gone.stations_before;
+        for record in self.records.split_off(stations).into_iter().rev() {
             match record.beneath {
                 Some(beneath) => self.buckets.insert(record.bucket, beneath),
                 None => self.buckets.remove(&record.bucket),
@@ -228,8 +263,10 @@ impl Coil {
 
     /// Heights over the core of a complete turn (from 1), for use as a [`Profile`] of other runs.
     pub fn height_profile(&self, turn: usize) -> Option<Profile> {
-        let first = turn.checked_sub(1)? * STATIONS_PER_TURN;
-        let records = self.records.get(first..first + STATIONS_PER_TURN)?;
+        let records = self.records.chunks().nth(turn.checked_sub(1)?)?;
+        if records.len() < STATIONS_PER_TURN {
+            return None;
+        }
         Profile::new(records.iter().map(|record| record.station.height).collect())
     }
 
@@ -330,7 +367,8 @@ impl Coil {
             first += 1;
         }
         let mut nearest: Option<(f64, V3)> = None;
-        for pair in self.nodes[first..].windows(2) {
+        for node in first + 1..self.nodes.len() {
+            let pair = [&self.nodes[node - 1], &self.nodes[node]];
             if pair[0].reach > target + NEIGHBOUR_WINDOW {
                 break;
             }

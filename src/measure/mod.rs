@@ -17,6 +17,7 @@ mod state;
 mod station;
 mod turn;
 
+pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode};
 pub use polar::{polar_angle, unwrap_angles, wrap_to_pi};
 pub use profile::Profile;

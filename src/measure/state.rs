@@ -77,7 +77,6 @@ impl Coil {
     /// Worst of the last settled turn; the neighbourhood of the clamp is left out.
     pub fn worst(&self) -> Worst {
         self.last_turn()
-            .iter()
             .map(|record| &record.station)
             .filter(|s| s.measured)
             .fold(Worst::default(), |worst, station: &Station| Worst {
@@ -159,7 +158,8 @@ impl Coil {
         self.records.last().map_or([0; 3], |record| record.raised)
     }
 
-    fn last_turn(&self) -> &[Record] {
-        &self.records[self.records.len().saturating_sub(STATIONS_PER_TURN)..]
+    fn last_turn(&self) -> impl Iterator<Item = &Record> {
+        let first = self.records.len().saturating_sub(STATIONS_PER_TURN);
+        (first..self.records.len()).map(|k| &self.records[k])
     }
 }

@@ -94,7 +94,7 @@ pub struct TurnMeasures {
 impl Coil {
     /// Measures of every turn that has begun to settle, first turn first (linear in the wire).
     pub fn turns(&self) -> Vec<TurnMeasures> {
-        let turns = self.records.chunks(STATIONS_PER_TURN).enumerate();
+        let turns = self.records.chunks().enumerate();
         turns
             .map(|(turn, records)| self.measure_turn(turn, records))
             .collect()

@@ -3,18 +3,82 @@
 use super::OutputError;
 use crate::simulation::Simulation;
 use crate::variables::{Access, Value, table};
+use serde::{Deserialize, Serialize};
 use std::fs::File;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Rows reach the disk at least this often, so that a run that dies leaves what it computed.
 const FLUSH: Duration = Duration::from_millis(500);
 
+/// A place in a history: how long the file was then, and a checksum of what was in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mark {
+    bytes: u64,
+    checksum: u32,
+}
+
+/// A file that knows what was written to it.
+#[derive(Debug)]
+struct Counted {
+    file: File,
+    bytes: u64,
+    checksum: crc32fast::Hasher,
+}
+
+impl Counted {
+    fn new(file: File) -> Self {
+        Self {
+            file,
+            bytes: 0,
+            checksum: crc32fast::Hasher::new(),
+        }
+    }
+
+    /// The first `mark.bytes` of a file, if they are what they were; what comes after is cut off.
+    fn cut(file: File, mark: &Mark) -> std::io::Result<Option<Self>> {
+        let mut counted = Self::new(file);
+        let mut left = mark.bytes;
+        let mut buffer = [0; 1 << 16];
+        while left > 0 {
+            let most = buffer
+                .len()
+                .min(usize::try_from(left).unwrap_or(usize::MAX));
+            let got = counted.file.read(&mut buffer[..most])?;
+            if got == 0 {
+                return Ok(None);
+            }
+            counted.checksum.update(&buffer[..got]);
+            left -= got as u64;
+        }
+        if counted.checksum.clone().finalize() != mark.checksum {
+            return Ok(None);
+        }
+        counted.bytes = mark.bytes;
+        counted.file.set_len(mark.bytes)?;
+        Ok(Some(counted))
+    }
+}
+
+impl Write for Counted {
+    fn write(&mut self, data: &[u8]) -> std::io::Result<usize> {
+        let written = self.file.write(data)?;
+        self.bytes += written as u64;
+        self.checksum.update(&data[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
+}
+
 /// The open file.
 #[derive(Debug)]
 pub struct History {
     path: PathBuf,
-    writer: csv::Writer<File>,
+    writer: csv::Writer<Counted>,
     flushed: Instant,
 }
 
@@ -24,7 +88,7 @@ impl History {
         let file = File::create(path).map_err(OutputError::io(path))?;
         let mut history = Self {
             path: path.to_owned(),
-            writer: csv::Writer::from_writer(file),
+            writer: csv::Writer::from_writer(Counted::new(file)),
             flushed: Instant::now(),
         };
         let names = columns().map(|(name, _)| name);
@@ -34,6 +98,30 @@ impl History {
         history.checked(written)?;
         history.flush()?;
         Ok(history)
+    }
+
+    /// The place reached, for [`Self::resume`].
+    pub fn mark(&mut self) -> Result<Mark, OutputError> {
+        self.flush()?;
+        let counted = self.writer.get_ref();
+        Ok(Mark {
+            bytes: counted.bytes,
+            checksum: counted.checksum.clone().finalize(),
+        })
+    }
+
+    /// Goes on at a mark: what was written after it is cut off. `None` if the file is not there or is not the
+    /// one that the mark was made in.
+    pub fn resume(path: &Path, mark: &Mark) -> Result<Option<Self>, OutputError> {
+        let Ok(file) = File::options().read(true).write(true).open(path) else {
+            return Ok(None);
+        };
+        let counted = Counted::cut(file, mark).map_err(OutputError::io(path))?;
+        Ok(counted.map(|counted| Self {
+            path: path.to_owned(),
+            writer: csv::Writer::from_writer(counted),
+            flushed: Instant::now(),
+        }))
     }
 
     /// Writes the state at a communication point, `time` in s. Numbers are in the shortest form

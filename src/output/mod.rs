@@ -13,7 +13,7 @@ mod tables;
 mod tube;
 mod vtp;
 
-pub use history::History;
+pub use history::{History, Mark};
 pub use picture::{Colouring, CoreMesh, Picture, render, render_png};
 pub use results::{Ending, Snapshot, write_results};
 pub use summary::write_summary;

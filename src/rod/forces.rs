@@ -10,6 +10,7 @@ use super::plasticity::{Law, respond_bend, respond_scalar};
 use super::section::Section;
 use super::state::Rod;
 use crate::math::{Quat, V3};
+use serde::{Deserialize, Serialize};
 
 /// The three laws of a section, ready for use in a loop.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +36,7 @@ impl Laws {
 }
 
 /// Forces of one evaluation.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Load {
     /// force per node, N
     pub force: Vec<V3>,

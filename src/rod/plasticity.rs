@@ -5,6 +5,8 @@
 //! tangent of the loading branch is exactly `Ep`. The return is exact for a straight strain
 //! path. State advances only where the caller commits it.
 
+use serde::{Deserialize, Serialize};
+
 /// A bilinear law: elastic modulus, hardening, yield limit, optional cap on the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
@@ -71,7 +73,7 @@ impl Law {
 }
 
 /// Plastic state of a scalar law (stretch, twist).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scalar {
     /// plastic strain
     pub strain: f64,
@@ -96,7 +98,7 @@ pub fn respond_scalar(law: &Law, state: &Scalar, strain: f64) -> (f64, Scalar, f
 }
 
 /// Plastic state of bending: curvature in the joint's mid frame, yield on its norm.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bend {
     /// plastic curvature, 1/m
     pub curvature: [f64; 2],

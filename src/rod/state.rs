@@ -4,9 +4,10 @@ use super::joint::{align, frame_along, rotate};
 use super::plasticity::{Bend, Scalar};
 use super::section::Section;
 use crate::math::{Quat, V3};
+use serde::{Deserialize, Serialize};
 
 /// Arrays over `n + 1` nodes and `n` edges, lab frame.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rod {
     /// node positions, m
     pub x: Vec<V3>,

@@ -2,11 +2,12 @@
 //!
 //! Texts are `Box<str>`: a `Result` with five of them stays small enough to hand around.
 
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use thiserror::Error;
 
 /// Where a value came from.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Place {
     /// nobody gave it; the default of the program
     #[default]

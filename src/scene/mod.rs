@@ -9,6 +9,7 @@ mod error;
 mod file;
 mod key;
 mod material;
+mod saved;
 mod settings;
 mod skip;
 mod write;

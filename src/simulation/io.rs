@@ -1,10 +1,10 @@
 //! What goes in and what comes out of a run.
 
 use crate::math::{Quat, V3};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What the machine tells the simulator.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// core angular velocity about +y, rad/s
     pub spindle_speed: f64,
@@ -14,8 +14,26 @@ pub struct Inputs {
     pub tension_setpoint: f64,
 }
 
+impl Inputs {
+    /// All of them 0: rates of inputs that are held.
+    pub const HELD: Self = Self {
+        spindle_speed: 0.0,
+        nozzle_position: 0.0,
+        tension_setpoint: 0.0,
+    };
+
+    /// Where these inputs are after `dt` (s) at these rates, per s.
+    pub fn after(&self, rates: &Self, dt: f64) -> Self {
+        Self {
+            spindle_speed: self.spindle_speed + rates.spindle_speed * dt,
+            nozzle_position: self.nozzle_position + rates.nozzle_position * dt,
+            tension_setpoint: self.tension_setpoint + rates.tension_setpoint * dt,
+        }
+    }
+}
+
 /// What the simulator tells the machine at a communication point. Units in the variable table.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[allow(missing_docs)]
 pub struct Outputs {
     pub wire_tension: f64,
@@ -72,7 +90,7 @@ pub struct Centreline {
 }
 
 /// What kind of thing happened.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {
     /// a turn is complete and at rest
     Turn,
@@ -82,15 +100,19 @@ pub enum EventKind {
     Slack,
     /// tension rose above the wire's strength
     Break,
+    /// the solver had to go back and take shorter steps
+    Solver,
 }
 
 /// Something worth telling.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Event {
     /// when, s
     pub time: f64,
     /// turns wound by then
     pub turn: f64,
+    /// core angle from the start, rad
+    pub angle: f64,
     /// what kind
     pub kind: EventKind,
     /// in words
@@ -101,8 +123,11 @@ impl std::fmt::Display for Event {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "t = {:.6} s, turn {:.3}: {}",
-            self.time, self.turn, self.text
+            "t = {:.6} s, turn {:.3}, core at {:.1} deg: {}",
+            self.time,
+            self.turn,
+            self.angle.to_degrees(),
+            self.text
         )
     }
 }

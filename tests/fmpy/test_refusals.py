@@ -113,7 +113,9 @@ def test_steps_that_make_no_sense(slave):
 
 def test_unsupported_functions_say_so(slave):
     slave.start()
-    assert "canGetAndSetFMUstate" in refused(slave, slave.fmu.getFMUstate)
+    arguments = (slave.references(["wire_tension"]), slave.references(["spindle_speed"]), [1.0])
+    reason = refused(slave, slave.fmu.getDirectionalDerivative, *arguments)
+    assert "providesDirectionalDerivative" in reason
     with pytest.raises(FMICallException) as caught:
         slave.fmu.getStatus(0)
     assert caught.value.status == DISCARD

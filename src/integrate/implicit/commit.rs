@@ -57,6 +57,7 @@ impl Implicit {
             sys.spindle = spindle;
             sys.support = *support;
         }
+        sys.set_tension = sys.set_tension_after(h);
         sys.time += h;
         sys.place_supports();
         let inflow = grown * 0.5 * sys.section.mass_per_length();
@@ -131,7 +132,8 @@ fn feed(
     let length = (q[last + 1] - q[last]).norm();
     let grown = nozzle.rest(length) - sys.rod.rest[last];
     let line = nozzle.line(length);
-    let next = advance(spec, feed, &sys.past, step, (grown, line, sys.set_tension));
+    let set = sys.set_tension_after(step.share * step.h);
+    let next = advance(spec, feed, &sys.past, step, (grown, line, set));
     let past = &mut sys.past;
     past.fed = [feed.fed, past.fed[0]];
     (past.paid, past.paid_rate) = (feed.paid, feed.paid_rate);

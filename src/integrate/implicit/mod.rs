@@ -22,6 +22,7 @@ use crate::rod::{Joint, Knee, align, rotate};
 use model::Model;
 use roll::{Rolls, WITH_ROLL};
 use scheme::{Step, extrapolation};
+use serde::{Deserialize, Serialize};
 use tensioner::NozzleEdge;
 
 /// Largest growth of the step from one to the next; variable-step BDF2 is stable to 2.4.
@@ -58,7 +59,7 @@ pub struct Implicit {
 }
 
 /// Counts since the start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Effort {
     /// accepted steps
     pub steps: u64,
@@ -77,7 +78,7 @@ pub struct Effort {
 }
 
 /// Scratch arrays of a step with `D` unknowns a node, core frame.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 struct Work<const D: usize> {
     q: Vec<V3>,
     start: Vec<V3>,
@@ -107,6 +108,13 @@ struct Work<const D: usize> {
     evaluations: u64,
     solves: u64,
     cuts: u64,
+}
+
+/// Nothing in here outlives a step, so a copy starts with empty arrays.
+impl<const D: usize> Clone for Work<D> {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }
 
 impl<const D: usize> Work<D> {
@@ -414,7 +422,7 @@ impl<const D: usize> Work<D> {
             step,
             (
                 rod.rest[last],
-                sys.set_tension,
+                sys.set_tension_after(step.share * step.h),
                 sys.exit_grip(),
                 sys.laws.stretch.modulus,
                 rod.stretch[last].strain,

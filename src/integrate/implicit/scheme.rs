@@ -7,9 +7,10 @@
 //! in which settled wire is exactly at rest.
 
 use crate::math::{Spin, V3, spin_velocity};
+use serde::{Deserialize, Serialize};
 
 /// What a step of the wire needs to know of the time before it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Past {
     /// accepted instants on record before the present one, at most two
     pub known: usize,

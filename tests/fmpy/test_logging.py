@@ -1,0 +1,47 @@
+"""What reaches the importer's logger, and how."""
+
+import re
+
+from conftest import WARNING
+
+STEP = 1e-4
+
+
+def test_format_characters_come_out_as_they_are(slave, tmp_path):
+    blocked = tmp_path / "100 %s %n %d"
+    blocked.write_text("in the way")
+    slave.start(output__directory=str(blocked / "results"))
+    _, status, category, text = slave.log[-1]
+    assert (status, category) == (WARNING, "logStatusWarning")
+    assert "100 %s %n %d" in text
+
+
+def test_categories_are_the_declared_ones(slave, description):
+    declared = {category.name for category in description.logCategories}
+    slave.start(scene__file="fig8", wire__strength=40.0)
+    slave.set(tension_setpoint=38.0, spindle_speed=300.0)
+    for k in range(120):
+        slave.fmu.doStep(k * STEP, STEP)
+    slave.fmu.terminate()
+    used = {category for _, _, category, _ in slave.log}
+    assert used and used <= declared
+    broken = [text for _, status, _, text in slave.log if status == WARNING and "broke" in text]
+    assert len(broken) == 1
+    assert re.match(r"t = 0\.\d+ s, turn \d+\.\d+, core at -?\d+\.\d deg: ", broken[0])
+
+
+def test_defects_come_with_time_turn_and_angle(slave):
+    slave.start(scene__file="fig8", defects__gap=0.0, defects__gap_fraction=0.01)
+    slave.fmu.setDebugLogging(True, ["logEvents"])
+    speed, pitch = 400.0, 1.2e-3
+    for k in range(500):
+        slave.set(spindle_speed=min(4e4 * k * STEP, speed))
+        travel = pitch * slave.get("spindle_speed") * STEP / 6.283185307179586
+        slave.set(nozzle_position=slave.get("nozzle_position") + travel)
+        slave.fmu.doStep(k * STEP, STEP)
+    events = [text for _, _, category, text in slave.log if category == "logEvents"]
+    defects = [text for text in events if "defect in turn" in text]
+    assert defects, slave.log
+    for text in events:
+        assert re.match(r"t = \d+\.\d+ s, turn \d+\.\d+, core at -?\d+\.\d deg: ", text), text
+    assert re.search(r"defect in turn \d+ at \d+ deg \(gap", defects[0])
