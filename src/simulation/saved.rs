@@ -178,6 +178,7 @@ impl Simulation {
         self.last_step = saved.last_step;
         self.time = saved.time;
         self.steps = saved.steps;
+        self.work = saved.work;
         self.outputs = saved.outputs;
         self.rates = saved.rates;
         self.instant = saved.instant;

@@ -71,12 +71,12 @@ impl Instance {
                     }
                 }
             });
-            Run {
+            Box::new(Run {
                 simulation: run.simulation,
                 inputs: run.inputs,
                 rates: run.rates,
                 recording,
-            }
+            })
         });
     }
 
