@@ -442,20 +442,30 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     }
 }
 
-/// Not supported.
+/// What a change of the inputs makes of the outputs a step of the solver later.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,
-    _vUnknown_ref: *const fmi2ValueReference,
-    _nUnknown: usize,
-    _vKnown_ref: *const fmi2ValueReference,
-    _nKnown: usize,
-    _dvKnown: *const fmi2Real,
-    _dvUnknown: *mut fmi2Real,
+    vUnknown_ref: *const fmi2ValueReference,
+    nUnknown: usize,
+    vKnown_ref: *const fmi2ValueReference,
+    nKnown: usize,
+    dvKnown: *const fmi2Real,
+    dvUnknown: *mut fmi2Real,
 ) -> fmi2Status {
-    let capability = "providesDirectionalDerivative = false";
-    // SAFETY: only the component is looked at.
-    unsafe { unsupported(c, Function::GetDirectionalDerivative, capability) }
+    // SAFETY: the arrays of unknowns hold `nUnknown` values, those of knowns `nKnown`.
+    unsafe {
+        guard::call(c, Function::GetDirectionalDerivative, |instance| {
+            let (unknown, known, change, value) = (
+                pointers::slice("vUnknown_ref", vUnknown_ref, nUnknown)?,
+                pointers::slice("vKnown_ref", vKnown_ref, nKnown)?,
+                pointers::slice("dvKnown", dvKnown, nKnown)?,
+                pointers::slice_mut("dvUnknown", dvUnknown, nUnknown)?,
+            );
+            value.copy_from_slice(&instance.directional_derivative(unknown, known, change)?);
+            Ok(())
+        })
+    }
 }
 
 /// First derivatives of inputs, from the beginning of the next step on and for that step.

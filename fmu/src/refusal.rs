@@ -88,6 +88,9 @@ pub(crate) enum Refusal {
         order: i32,
         reason: &'static str,
     },
+    /// the step that the derivatives belong to cannot be solved
+    #[error("directional derivative: {0}")]
+    NoTangent(SimError),
     /// a derivative that is not a number
     #[error("derivative of {name} = {value} is not a finite number")]
     DerivativeNotFinite { name: &'static str, value: f64 },

@@ -10,7 +10,7 @@ use std::io;
 /// What the FMU can do, as attributes of `CoSimulation`.
 ///
 /// Only what the C boundary keeps: a flag turns true together with the code behind it.
-const CAPABILITIES: [(&str, &str); 10] = [
+const CAPABILITIES: [(&str, &str); 11] = [
     ("modelIdentifier", MODEL_IDENTIFIER),
     ("needsExecutionTool", "false"),
     ("canHandleVariableCommunicationStepSize", "true"),
@@ -21,6 +21,7 @@ const CAPABILITIES: [(&str, &str); 10] = [
     ("canNotUseMemoryManagementFunctions", "true"),
     ("canGetAndSetFMUstate", "true"),
     ("canSerializeFMUstate", "true"),
+    ("providesDirectionalDerivative", "true"),
 ];
 
 /// The whole file.

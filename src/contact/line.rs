@@ -393,6 +393,14 @@ impl LineContact {
         }
     }
 
+    /// Goes back to what was saved when the frozen wire and the number of live nodes were what they are.
+    pub(crate) fn take_back(&mut self, saved: SavedLine) {
+        self.points = saved.points;
+        self.between = saved.between;
+        (self.loss, self.deepest) = (saved.loss, saved.deepest);
+        (self.height, self.hold_limits) = (saved.height, saved.hold_limits);
+    }
+
     /// Takes a saved state over; `wire` is the frozen wire, places and arc lengths, and `nodes` the number of
     /// live ones. Says what is impossible about it.
     pub(crate) fn restore(

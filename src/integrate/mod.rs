@@ -16,7 +16,7 @@ mod twist;
 pub mod verlet;
 
 pub use books::Books;
-pub use implicit::{Effort, Implicit, Past, Scheme, Stopped};
+pub use implicit::{Effort, Implicit, Past, Scheme, Seen, Stopped};
 pub use ldl::{Banded, Loose};
 pub use relax::{Limits, RelaxError, Relaxed, ramp, relax};
 pub(crate) use saved::SavedSystem;

@@ -10,6 +10,7 @@ mod programme;
 mod quasi_static;
 mod rates;
 mod saved;
+mod sensitivity;
 mod start;
 mod summary;
 
@@ -61,6 +62,8 @@ pub struct Simulation {
     implicit: Option<Implicit>,
     longest_step: f64,
     last_step: f64,
+    /// length of the last communication step, s; 0: none yet
+    last_span: f64,
     time: f64,
     steps: u64,
     outputs: Outputs,
@@ -157,6 +160,7 @@ impl Simulation {
             longest_step,
             implicit,
             last_step: longest_step,
+            last_span: 0.0,
             time: 0.0,
             steps: 0,
             outputs: Outputs::default(),
@@ -238,6 +242,7 @@ impl Simulation {
             inputs
         };
         self.owed = 0.0;
+        self.last_span = span;
         let before = self.outputs;
         let target = end.nozzle_position;
         let travel = target - self.sys.support[1].point.y;

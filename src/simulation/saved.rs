@@ -57,6 +57,7 @@ struct Saved {
     implicit: Option<(f64, Effort)>,
     angle0: f64,
     last_step: f64,
+    last_span: f64,
     time: f64,
     steps: u64,
     work: u64,
@@ -89,6 +90,7 @@ impl Simulation {
             implicit,
             longest_step: _,
             last_step,
+            last_span,
             time,
             steps,
             work,
@@ -115,6 +117,7 @@ impl Simulation {
             implicit: implicit.as_ref().map(|m| (m.next, m.effort)),
             angle0: *angle0,
             last_step: *last_step,
+            last_span: *last_span,
             time: *time,
             steps: *steps,
             work: *work,
@@ -176,6 +179,7 @@ impl Simulation {
         self.policy = saved.policy;
         self.angle0 = saved.angle0;
         self.last_step = saved.last_step;
+        self.last_span = saved.last_span;
         self.time = saved.time;
         self.steps = saved.steps;
         self.work = saved.work;

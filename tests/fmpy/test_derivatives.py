@@ -79,3 +79,46 @@ def test_other_orders_are_refused(slave, order):
             call()
         assert caught.value.status == ERROR
         assert f"order {order}" in slave.reason()
+
+
+OUTPUTS = [
+    "wire_tension", "spindle_torque", "feed_speed", "fed_length", "free_length",
+    "layon_position", "layon_angle", "turns_wound", "spindle_angle", "gap_width",
+]
+
+
+@pytest.mark.parametrize("steps", (20, 150))
+def test_directional_derivatives_against_saved_states(slave, steps):
+    """Every output by every input, and along a direction, against steps from the same state."""
+    size = 1e-5
+    # a step of the solver per communication step, solved so well that differences mean something
+    slave.start(scene__file="fig8", solver__step=size, solver__tolerance=1e-9)
+    for k in range(steps):
+        slave.set(spindle_speed=RATE * k * size)
+        slave.fmu.doStep(k * size, size)
+    now = steps * size
+    base = {name: slave.get(name) for name in ("spindle_speed", "nozzle_position", "tension_setpoint")}
+    state = slave.fmu.getFMUstate()
+
+    def after(changes):
+        slave.fmu.setFMUstate(state)
+        slave.set(**{name: base[name] + by for name, by in changes.items()})
+        slave.fmu.doStep(now, size)
+        return [slave.get(name) for name in OUTPUTS]
+
+    directions = [
+        {"spindle_speed": 0.05},
+        {"nozzle_position": 2e-7},
+        {"tension_setpoint": 0.05},
+        {"spindle_speed": 0.02, "nozzle_position": -1e-7, "tension_setpoint": 0.03},
+    ]
+    for changes in directions:
+        slave.fmu.setFMUstate(state)
+        known = slave.references(list(changes))
+        got = slave.fmu.getDirectionalDerivative(slave.references(OUTPUTS), known, list(changes.values()))
+        plus, minus = after(changes), after({name: -by for name, by in changes.items()})
+        for name, slope, up, down in zip(OUTPUTS, got, plus, minus):
+            want = (up - down) / 2
+            assert slope == pytest.approx(want, rel=5e-3, abs=2e-9 * (1 + abs(up))), (name, changes)
+        assert got[0] != 0.0 and got[-1] == 0.0
+    slave.fmu.freeFMUstate(state)

@@ -111,14 +111,24 @@ def test_steps_that_make_no_sense(slave):
     assert slave.fmu.getRealStatus(2) == 1.0 + STEP + STEP
 
 
-def test_unsupported_functions_say_so(slave):
+def test_no_asynchronous_step_is_ever_pending(slave):
     slave.start()
-    arguments = (slave.references(["wire_tension"]), slave.references(["spindle_speed"]), [1.0])
-    reason = refused(slave, slave.fmu.getDirectionalDerivative, *arguments)
-    assert "providesDirectionalDerivative" in reason
     with pytest.raises(FMICallException) as caught:
         slave.fmu.getStatus(0)
     assert caught.value.status == DISCARD
+    still_steps(slave)
+
+
+def test_directional_derivatives_are_of_outputs_by_inputs(slave):
+    slave.start()
+    tension, speed = (slave.references([name]) for name in ("wire_tension", "spindle_speed"))
+    flag, diameter = (slave.references([name]) for name in ("defect_gap", "wire.diameter"))
+    derivative = slave.fmu.getDirectionalDerivative
+    assert "knowns are inputs" in refused(slave, derivative, tension, diameter, [1.0])
+    assert "knowns are inputs" in refused(slave, derivative, tension, tension, [1.0])
+    assert "unknowns are outputs" in refused(slave, derivative, speed, speed, [1.0])
+    assert "finite" in refused(slave, derivative, tension, speed, [math.nan])
+    assert refused(slave, derivative, flag, speed, [1.0])
     still_steps(slave)
 
 

@@ -3,7 +3,7 @@
 use super::{Instance, find, write_input, wrong_type};
 use crate::lifecycle::State;
 use crate::refusal::Refusal;
-use coilwind::simulation::Inputs;
+use coilwind::simulation::{Inputs, Outputs};
 use coilwind::variables::{Access, Causality, Value};
 
 impl Instance {
@@ -70,6 +70,63 @@ impl Instance {
             }
         })
         .collect()
+    }
+}
+
+impl Instance {
+    /// `fmi2GetDirectionalDerivative`: of outputs by inputs, over the solver's next step.
+    pub(crate) fn directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        changes: &[f64],
+    ) -> Result<Vec<f64>, Refusal> {
+        let mut direction = Inputs::HELD;
+        for (reference, change) in knowns.iter().zip(changes) {
+            let variable = find::<f64>(*reference)?;
+            let name = variable.name;
+            let Access::Input { get, .. } = variable.access else {
+                let reason = "knowns are inputs";
+                return Err(no_derivative(name, 1, reason));
+            };
+            if !change.is_finite() {
+                let value = *change;
+                return Err(Refusal::DerivativeNotFinite { name, value });
+            }
+            // a known that is named twice counts twice
+            let sum = get(&direction) + change;
+            write_input(&mut direction, *reference, sum);
+        }
+        let mut asked = Vec::with_capacity(unknowns.len());
+        for reference in unknowns {
+            let variable = find::<f64>(*reference)?;
+            match variable.access {
+                Access::Output(get) => asked.push((variable, get)),
+                _ => return Err(no_derivative(variable.name, 1, "unknowns are outputs")),
+            }
+        }
+        if asked.is_empty() || direction == Inputs::HELD {
+            return Ok(vec![0.0; asked.len()]);
+        }
+        let run = self.start()?;
+        let slopes = run.simulation.sensitivities(run.inputs);
+        let slopes = slopes.map_err(Refusal::NoTangent)?;
+        let along = [
+            direction.spindle_speed,
+            direction.nozzle_position,
+            direction.tension_setpoint,
+        ];
+        let of = |(variable, get): (_, fn(&Outputs) -> Value)| {
+            let mut sum = 0.0;
+            for (slope, change) in slopes.iter().zip(along) {
+                match get(slope) {
+                    Value::Real(x) => sum += x * change,
+                    _ => return Err(wrong_type::<f64>(variable)),
+                }
+            }
+            Ok(sum)
+        };
+        asked.into_iter().map(of).collect()
     }
 }
 

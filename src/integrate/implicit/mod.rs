@@ -11,10 +11,12 @@ mod newton;
 mod roll;
 mod scheme;
 mod settle;
+mod tangent;
 mod tensioner;
 
 pub(in crate::integrate) use model::{point_length, spline_point};
 pub use scheme::{Past, Scheme};
+pub use tangent::Seen;
 
 use super::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, Spin, V3};
