@@ -4,9 +4,9 @@
 #     scripts/bench.sh [--quick]
 #
 # Leaves JSON lines, CSV and pictures in target/bench/, and writes docs/performance.md with its pictures in docs/performance/.
-# One thread at a time; let the machine do nothing else. --quick: coarsest settings, once each, in less than five
-# minutes, to see that everything works; nothing under docs/ is touched. COILWIND names another binary than target/release/coilwind,
-# COILWIND_FMU another FMU; without them both are built.
+# Takes about half an hour, one thread at a time; let the machine do nothing else. --quick: coarsest settings, once each,
+# in less than five minutes, to see that everything works; nothing under docs/ is touched. COILWIND names another binary
+# than target/release/coilwind, COILWIND_FMU another FMU; without them both are built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -2,13 +2,16 @@
 """P1 and P2 with MuJoCo: rigid links in a plane, a hinge with a spring EI/h between neighbours, 2 EI/h at the clamp.
 
 MuJoCo 4 has no cable plugin any more. Tried, and the choice of each:
-- wire: a 1D flex with elasticity (what replaces the plugin; its edges kept their length by constraints, a short pinned edge was the
-  clamp) and the chain of hinges. Integrator discrete, P1, a = 10: the flex was 0.4 % off with 10 edges and 1.3 % with
-  40, at 3 times the cost of a step. So the chain. It does not stretch: P1 stops at 4e-5 L.
-- P1: no static solver. The discrete integrator, implicit in the springs, with steps so long that inertia hardly counts; the tip is
-  looked at every 10 steps and at rest when it moves by less than 1e-8 m. The longest steps that converge with every number of links.
-- P2: Euler, implicitfast, RK4 and discrete. Euler: without damping it is the symplectic one; implicitfast is the same here, RK4 costs 4 times
-  as much for the same error, discrete takes the amplitude away. Steps near the limit of stability.
+- wire: a 1D flex with elasticity (what replaces the plugin; its edges kept their length by constraints, a short
+  pinned edge was the clamp) and the chain of hinges. Integrator discrete, P1, a = 10: the flex was 0.4 % off with 10
+  edges and 1.3 % with 40, at 7 times the cost of a step. So the chain. It does not stretch: P1 at a = 10 stops at
+  4e-5 L.
+- P1: no static solver. The discrete integrator, implicit in the springs, with steps so long that inertia hardly
+  counts; the tip is looked at every 10 steps and at rest when it moves by less than 1e-8 m. The longest steps that
+  converge with every number of links.
+- P2: Euler, implicitfast, RK4 and discrete. Euler: without damping it is the symplectic one; implicitfast is the same
+  here, RK4 costs twice as much for the same error, discrete takes the amplitude away. Steps near the limit of
+  stability.
 """
 
 import mujoco

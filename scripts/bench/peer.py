@@ -1,7 +1,7 @@
 """What the programs that run a peer have in common: settings, the clock, a JSON line for each setting.
 
-A peer offers, for each problem, a function of a setting (a dictionary) that returns three functions: `prepare()` builds the
-model, `solve(model)` computes, `judge(model, solved)` returns `error`, `steps` and, where the peer tells,
+A peer offers, for each problem, a function of a setting (a dictionary) that returns three functions: `prepare()`
+builds the model, `solve(model)` computes, `judge(model, solved)` returns `error`, `steps` and, where the peer tells,
 `iterations`. Only `solve` is on the clock.
 """
 

@@ -42,11 +42,11 @@ def title(problem, value):
 
 def setting(line):
     """What was asked of a method, in words."""
-    words = []
-    for name, show in (("a", "a"), ("omega", "omega"), ("integrator", ""), ("n", "n"), ("dt", "dt"), ("tol", "tol"), ("soft", "soft"), ("heavy", "heavy")):
+    words = [line["integrator"]] if "integrator" in line else []
+    for name in ("a", "omega", "n", "points", "dt", "tol", "soft", "heavy"):
         value = line.get(name)
         if value is not None:
-            words.append(f"{show} {value:.3g}".strip() if isinstance(value, float) else f"{show} {value}".strip())
+            words.append(f"{name} {value:.3g}" if isinstance(value, float) else f"{name} {value}")
     return ", ".join(words)
 
 
@@ -54,14 +54,14 @@ def draw(lines, folder):
     """Draws every problem that has lines; returns the files."""
     files = []
     for problem in ERRORS:
-        panels = variants(lines, problem)
-        panels = [(value, found) for value, found in panels if any(line["error"] for line in found)]
+        panels = [(value, found) for value, found in variants(lines, problem) if any(line["error"] for line in found)]
         if not panels:
             continue
         figure, axes = plt.subplots(1, len(panels), figsize=(1.2 + 3.8 * len(panels), 3.8), sharey=True, squeeze=False)
         for axis, (value, found) in zip(axes[0], panels):
             for name in METHODS:
-                points = sorted((line["cpu_s"], line["error"]) for line in found if method(line) == name and line["error"])
+                own = [line for line in found if method(line) == name]
+                points = sorted((line["cpu_s"], line["error"]) for line in own if line["error"])
                 if points:
                     axis.loglog(*zip(*points), MARKS[name], color=COLOURS[name], label=name, markersize=5)
             axis.set_title(title(problem, value))

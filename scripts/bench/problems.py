@@ -1,8 +1,15 @@
-"""P1 and P2 as coilwind has them (src/bench/p1.rs, p2.rs): elastic wire of the paper's Table 1, 0.1 m, clamped.
+"""P1, P2 and P3 as coilwind has them (src/bench/p1.rs, p2.rs, p3.rs): elastic wire of the paper's Table 1; 0.1 m,
+clamped, in P1 and P2.
 
-P1: a dead force `P = a EI / L^2` across the tip. Error: distance of the tip from that of the extensible elastica over L.
+P1: a dead force `P = a EI / L^2` across the tip. Error: distance of the tip from that of the extensible elastica over
+L.
+
 P2: released from the first mode with a tip of L/1000, ten periods. Error: largest deviation of the tip from
-`A cos(omega_1 t)` over A. Units are SI.
+`A cos(omega_1 t)` over A.
+
+P3: half a turn on a cylinder with a thousandth of the bending stiffness; 10 N hold one end, the other is drawn along
+its leg, slowly. Error: ratio of the end forces against `exp(mu pi)`, relative; the stiffness left takes 8e-4 off it.
+Units are SI.
 """
 
 import functools
@@ -21,6 +28,15 @@ PERIODS = 10
 ROOT = 1.875104068711961  # cos b cosh b = -1
 OMEGA = (ROOT / LENGTH) ** 2 * math.sqrt(EI / MASS)
 PERIOD = 2.0 * math.pi / OMEGA
+
+# P3: radius of the cylinder and of the wire's centreline, force on the slack side, friction, legs, drawing speed
+RADIUS = 10e-3
+BEND = RADIUS + 0.5 * DIAMETER
+HOLD = 10.0
+FRICTION = 0.23
+STRING = 1e-3
+LEG = 0.6 * BEND
+SPEED = 0.01
 
 
 def tip_force(a):
@@ -113,3 +129,19 @@ def steps_of(per_period):
 def vibration_error(times, heights):
     """Largest deviation of the tip from the exact vibration, over its amplitude."""
     return max(abs(y - AMPLITUDE * math.cos(OMEGA * t)) for t, y in zip(times, heights)) / AMPLITUDE
+
+
+def string(s):
+    """Place (x, y) and direction of P3's wire at an arc length: from the held end, below, to the drawn one, above."""
+    arc = math.pi * BEND
+    if s < LEG:
+        return LEG - s, -BEND, -1.0, 0.0
+    if s < LEG + arc:
+        angle = -0.5 * math.pi - (s - LEG) / BEND
+        return BEND * math.cos(angle), BEND * math.sin(angle), math.sin(angle), -math.cos(angle)
+    return s - LEG - arc, BEND, 1.0, 0.0
+
+
+def slip_error(force):
+    """Error of the force at the drawn end, relative."""
+    return abs(force / HOLD / math.exp(FRICTION * math.pi) - 1.0)
