@@ -13,6 +13,7 @@ and the choice:
 - steps of 0.8 of the limit of stability. The first run, which compiles, is not on the clock.
 """
 
+import logging
 import math
 
 import elastica as ea
@@ -23,6 +24,9 @@ from problems import (
     DENSITY, DIAMETER, EA, EI, GJ, LENGTH, MASS, OMEGA, PERIOD, mode_slope, steps_of, tip_error, tip_force,
     vibration_error,
 )
+
+# PyElastica warns of sections as small as those of a wire, each time.
+logging.getLogger().setLevel(logging.ERROR)
 
 # Of the stability limit.
 SHARE = 0.8
