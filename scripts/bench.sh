@@ -5,7 +5,7 @@
 #
 # Leaves JSON lines, CSV and pictures in target/bench/, and writes docs/performance.md with its pictures in docs/performance/.
 # Takes about half an hour, one thread at a time; let the machine do nothing else. --quick: coarsest settings, once each,
-# in less than five minutes, to see that everything works; nothing under docs/ is touched. COILWIND names another binary
+# in less than five minutes, to see that everything works; nothing under docs/ is touched. COILWIND_COMMAND names another binary
 # than target/release/coilwind, COILWIND_FMU another FMU; without them both are built.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -23,9 +23,9 @@ case ${1-} in
 esac
 
 target=${CARGO_TARGET_DIR:-target}
-command=${COILWIND:-$target/release/coilwind}
+command=${COILWIND_COMMAND:-$target/release/coilwind}
 fmu=${COILWIND_FMU:-$target/fmu/CoilWinding.fmu}
-[ -n "${COILWIND-}" ] || cargo build --locked --release --bin coilwind
+[ -n "${COILWIND_COMMAND-}" ] || cargo build --locked --release --bin coilwind
 [ -n "${COILWIND_FMU-}" ] || scripts/build_fmu.sh
 python=$(scripts/venv.sh)
 peers=$(scripts/venv.sh bench)
