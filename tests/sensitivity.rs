@@ -89,7 +89,10 @@ fn check(sim: &Simulation, inputs: Inputs, what: &str) {
             );
         }
     }
-    assert!(told > 12, "{what}: {told} of 27 derivatives stand out of the noise");
+    assert!(
+        told > 12,
+        "{what}: {told} of 27 derivatives stand out of the noise"
+    );
 }
 
 #[test]
