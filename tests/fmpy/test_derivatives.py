@@ -120,5 +120,7 @@ def test_directional_derivatives_against_saved_states(slave, steps):
         for name, slope, up, down in zip(OUTPUTS, got, plus, minus):
             want = (up - down) / 2
             assert slope == pytest.approx(want, rel=5e-3, abs=2e-9 * (1 + abs(up))), (name, changes)
-        assert got[0] != 0.0 and got[-1] == 0.0
+        assert got[-1] == 0.0
+        if changes.get("tension_setpoint", 0.0) > 0.0:
+            assert got[0] > 0.0
     slave.fmu.freeFMUstate(state)
