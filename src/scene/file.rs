@@ -11,7 +11,10 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 /// Scenes inside the program, by name.
-const PACKED: &[(&str, &str)] = &[("fig8", include_str!("packed/fig8.toml"))];
+const PACKED: &[(&str, &str)] = &[
+    ("fig8", include_str!("packed/fig8.toml")),
+    ("fig8_gap", include_str!("packed/fig8_gap.toml")),
+];
 
 /// Names of the packed scenes.
 pub fn packed_names() -> impl Iterator<Item = &'static str> {
