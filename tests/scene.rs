@@ -680,7 +680,11 @@ fn scenes_that_are_not_there() {
     let message = SceneSettings::load("fig9").unwrap_err().to_string();
     assert_says(
         &message,
-        &["fig9", "packed scene (fig8)", "did you mean fig8?"],
+        &[
+            "fig9",
+            "packed scene (fig8, fig8_gap)",
+            "did you mean fig8?",
+        ],
     );
     let folder = tempfile::tempdir().unwrap();
     let message = SceneSettings::load(folder.path().to_str().unwrap())
