@@ -1,17 +1,11 @@
 //! A run saved as bytes goes on, to the bit, as if nothing had happened.
 
-use coilwind::scene::{Scene, SceneSettings};
-use coilwind::simulation::{Inputs, RestoreError, Simulation};
-use std::f64::consts::TAU;
+mod common;
 
-/// The packed default scene with these changes.
-fn fig8(changes: &[(&str, &str)]) -> Scene {
-    let mut settings = SceneSettings::load("fig8").expect("packed");
-    for (name, value) in changes {
-        settings.set_text(name, value).expect("a valid setting");
-    }
-    settings.build().expect("a valid scene")
-}
+use coilwind::scene::Scene;
+use coilwind::simulation::{Inputs, RestoreError, Simulation};
+use common::fig8;
+use std::f64::consts::TAU;
 
 /// A machine that speeds up evenly over a quarter of the steps and runs on at `speed`, rad/s.
 struct Machine {

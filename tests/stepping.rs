@@ -1,13 +1,10 @@
 //! Communication steps: how long they are and how unevenly they fall matters little, and time does not drift.
 
-use coilwind::scene::{Scene, SceneSettings};
-use coilwind::simulation::{Inputs, Simulation};
-use std::f64::consts::TAU;
+mod common;
 
-fn fig8() -> Scene {
-    let settings = SceneSettings::load("fig8").expect("packed");
-    settings.build().expect("a valid scene")
-}
+use coilwind::simulation::{Inputs, Simulation};
+use common::fig8;
+use std::f64::consts::TAU;
 
 /// rad/s^2: a quarter turn in 10 ms
 const RATE: f64 = 3e4;
@@ -16,7 +13,7 @@ const END: f64 = 9e-3;
 
 /// Speeds up evenly in communication steps that `next` gives for a time, with the derivatives of the inputs.
 fn ramp(next: impl Fn(usize) -> f64) -> Simulation {
-    let mut sim = Simulation::new(&fig8()).expect("starts");
+    let mut sim = Simulation::new(&fig8(&[])).expect("starts");
     let y = |t: f64| 0.7e-3 * 0.5 * RATE * t * t / TAU;
     let (mut t, mut k) = (0.0, 0);
     while t < END {
@@ -86,7 +83,7 @@ fn a_short_step_is_one_solve_from_a_good_guess() {
 /// However short: nothing is lost, and nothing fails.
 #[test]
 fn any_positive_step_will_do() {
-    let mut sim = Simulation::new(&fig8()).expect("starts");
+    let mut sim = Simulation::new(&fig8(&[])).expect("starts");
     let mut inputs = sim.inputs();
     sim.advance(inputs, 1e-300).expect("time begins");
     sim.advance(inputs, 1e-3).expect("and goes on");
@@ -112,7 +109,7 @@ fn any_positive_step_will_do() {
 #[test]
 fn a_million_steps_do_not_drift() {
     const STEPS: u32 = 1_000_000;
-    let mut sim = Simulation::new(&fig8()).expect("starts");
+    let mut sim = Simulation::new(&fig8(&[])).expect("starts");
     let inputs = sim.inputs();
     for _ in 0..STEPS {
         sim.advance(inputs, 1e-3).expect("stands");
@@ -130,7 +127,7 @@ fn a_million_steps_do_not_drift() {
 /// Before anything has moved, outputs are those of a straight wire at the set tension.
 #[test]
 fn the_start_is_in_equilibrium() {
-    let scene = fig8();
+    let scene = fig8(&[]);
     for tension in [2.0, 15.0, 40.0] {
         for y in [0.0, 4e-3] {
             let inputs = Inputs {

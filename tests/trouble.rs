@@ -1,18 +1,12 @@
 //! What machines do besides winding evenly: stop, stand, reverse, pull too much or not at all.
 
-use coilwind::math::V3;
-use coilwind::scene::{Scene, SceneSettings};
-use coilwind::simulation::{Event, EventKind, Inputs, Outputs, Simulation};
-use std::f64::consts::TAU;
+mod common;
 
-/// The packed default scene with these changes.
-fn fig8(changes: &[(&str, &str)]) -> Scene {
-    let mut settings = SceneSettings::load("fig8").expect("packed");
-    for (name, value) in changes {
-        settings.set_text(name, value).expect("a valid setting");
-    }
-    settings.build().expect("a valid scene")
-}
+use coilwind::math::V3;
+use coilwind::scene::SceneSettings;
+use coilwind::simulation::{Event, EventKind, Inputs, Outputs, Simulation};
+use common::fig8;
+use std::f64::consts::TAU;
 
 /// A machine that runs the simulation from outside, step by step.
 struct Machine {

@@ -1,18 +1,12 @@
 //! Whole runs through the front door.
 
+mod common;
+
 use coilwind::math::V3;
 use coilwind::scene::{Scene, SceneSettings};
 use coilwind::simulation::{Centreline, EventKind, Inputs, Simulation, core_surface};
+use common::fig8;
 use std::f64::consts::TAU;
-
-/// The packed default scene with these changes.
-fn fig8(changes: &[(&str, &str)]) -> Scene {
-    let mut settings = SceneSettings::load("fig8").expect("packed");
-    for (name, value) in changes {
-        settings.set_text(name, value).expect("a valid setting");
-    }
-    settings.build().expect("a valid scene")
-}
 
 /// Runs the scene's programme for this many turns of the spindle.
 fn wind(scene: &Scene, turns: f64) -> Simulation {

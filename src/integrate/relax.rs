@@ -540,19 +540,10 @@ mod tests {
 
     fn section() -> Section {
         Section {
-            diameter: 0.7e-3,
-            density: 8960.0,
-            ea: 48900.0,
-            ea_p: 1100.0,
-            ei: 3.06e-3,
-            ei_p: 1.13e-4,
-            gj: 4.32e-3,
-            gj_p: 9e-5,
             n_y: 38.5,
             m_y: 5.72e-3,
             t_y: 5.18e-3,
-            moment_cap: f64::INFINITY,
-            strength: f64::INFINITY,
+            ..Section::table1_elastic()
         }
     }
 

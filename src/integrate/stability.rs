@@ -48,22 +48,7 @@ mod tests {
     use crate::rod::Rod;
 
     fn section() -> Section {
-        let open = f64::INFINITY;
-        Section {
-            diameter: 0.7e-3,
-            density: 8960.0,
-            ea: 48900.0,
-            ea_p: 1100.0,
-            ei: 3.06e-3,
-            ei_p: 1.13e-4,
-            gj: 4.32e-3,
-            gj_p: 9e-5,
-            n_y: open,
-            m_y: open,
-            t_y: open,
-            moment_cap: open,
-            strength: open,
-        }
+        Section::table1_elastic()
     }
 
     /// Growth of a small zig-zag over many steps at a share of the limit.

@@ -226,21 +226,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn section() -> Section {
-        Section {
-            diameter: 0.7e-3,
-            density: 8960.0,
-            ea: 48900.0,
-            ea_p: 1100.0,
-            ei: 3.06e-3,
-            ei_p: 1.13e-4,
-            gj: 4.32e-3,
-            gj_p: 9e-5,
-            n_y: f64::INFINITY,
-            m_y: f64::INFINITY,
-            t_y: f64::INFINITY,
-            moment_cap: f64::INFINITY,
-            strength: f64::INFINITY,
-        }
+        Section::table1_elastic()
     }
 
     fn wavy(amplitude: f64, seed: u64) -> Rod {

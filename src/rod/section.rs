@@ -50,3 +50,26 @@ impl Section {
         0.5 * self.mass_per_length() * self.radius() * self.radius()
     }
 }
+
+#[cfg(test)]
+impl Section {
+    /// The paper's wire without its yield limits, for unit tests.
+    pub(crate) fn table1_elastic() -> Self {
+        let open = f64::INFINITY;
+        Self {
+            diameter: 0.7e-3,
+            density: 8960.0,
+            ea: 48900.0,
+            ea_p: 1100.0,
+            ei: 3.06e-3,
+            ei_p: 1.13e-4,
+            gj: 4.32e-3,
+            gj_p: 9e-5,
+            n_y: open,
+            m_y: open,
+            t_y: open,
+            moment_cap: open,
+            strength: open,
+        }
+    }
+}

@@ -213,19 +213,9 @@ mod tests {
         let open = f64::INFINITY;
         let limit = |x: f64| if yields { x } else { open };
         Laws::new(&Section {
-            diameter: 0.7e-3,
-            density: 8960.0,
-            ea: 48900.0,
-            ea_p: 1100.0,
-            ei: 3.06e-3,
-            ei_p: 1.13e-4,
-            gj: 4.32e-3,
-            gj_p: 9e-5,
-            n_y: open,
             m_y: limit(5.72e-3),
             t_y: limit(6e-3),
-            moment_cap: open,
-            strength: open,
+            ..Section::table1_elastic()
         })
     }
 

@@ -231,21 +231,10 @@ mod tests {
 
     /// A clamped wire that runs askew to all axes; it carries no twist.
     fn cantilever() -> System {
-        let open = f64::INFINITY;
         let section = Section {
-            diameter: 0.7e-3,
-            density: 8960.0,
-            ea: 48900.0,
-            ea_p: 1100.0,
-            ei: 3.06e-3,
-            ei_p: 1.13e-4,
-            gj: 4.32e-3,
-            gj_p: 9e-5,
             n_y: 38.5,
             m_y: 5.72e-3,
-            t_y: open,
-            moment_cap: open,
-            strength: open,
+            ..Section::table1_elastic()
         };
         let along = V3::new(0.8, 0.36, 0.48);
         let points: Vec<V3> = (0..=30).map(|i| along * (1e-3 * f64::from(i))).collect();
