@@ -72,7 +72,8 @@ CARGO_ENCODED_RUSTFLAGS=$(separated "${flags[@]}") PATH=$tools:$PATH \
 echo "win64"
 # Not zig: it exports what is internal. Without a time in the header the same code gives the same bytes.
 CARGO_ENCODED_RUSTFLAGS=$(separated "${flags[@]}" -Clink-arg=-Wl,--no-insert-timestamp) \
-    CARGO_TARGET_X86_64_PC_WINDOWS_GNU_LINKER=x86_64-w64-mingw32-gcc \
+    CARGO_TARGET_X86_64_PC_WINDOWS_GNU_LINKER=$PWD/scripts/link_dll.sh \
+    COILWIND_TARGET=$CARGO_TARGET_DIR COILWIND_CRATES=$crates COILWIND_TOOLCHAIN=$(rustc --print sysroot) \
     cargo "${build[@]}" --target $windows
 
 so=$CARGO_TARGET_DIR/$linux/release/libCoilWinding.so
