@@ -11,6 +11,7 @@ pub mod core_shape;
 pub mod feed;
 pub mod freeze;
 pub mod integrate;
+pub mod lanes;
 pub mod math;
 pub mod measure;
 pub mod output;

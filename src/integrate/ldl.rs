@@ -167,6 +167,79 @@ impl<const D: usize> Banded<D> {
         self.middle = [[0.0; WIDEST]; WIDEST];
     }
 
+    /// Becomes a matrix of `nodes` nodes, every row of which is put next.
+    pub fn resize(&mut self, nodes: usize) {
+        self.nodes = nodes;
+        let steps = nodes.saturating_sub(2) / 2;
+        self.steps.resize(steps, Step::ZERO);
+        self.step_factors.resize(steps, Step::ZERO);
+    }
+
+    /// Puts what node `i` has: the lower half of its own block, and the blocks with its rows and the columns of the
+    /// next node and of the one after, as far as these exist.
+    #[inline(always)]
+    pub fn put(
+        &mut self,
+        i: usize,
+        own: impl Fn(usize, usize) -> f64,
+        near: impl Fn(usize, usize) -> f64,
+        far: impl Fn(usize, usize) -> f64,
+    ) {
+        match self.place(i, i) {
+            Place::Step(step, lane) => {
+                let kept = &mut self.steps[step].own;
+                for a in 0..D {
+                    for b in 0..a + 1 {
+                        kept[a][b].0[lane] = own(a, b);
+                    }
+                }
+            }
+            Place::Middle(row, _) => {
+                for a in 0..D {
+                    for b in 0..a + 1 {
+                        self.middle[row + a][row + b] = own(a, b);
+                    }
+                }
+            }
+        }
+        if i + 1 < self.nodes {
+            self.put_block(i, 1, near);
+        }
+        if i + 2 < self.nodes {
+            self.put_block(i, 2, far);
+        }
+    }
+
+    #[inline(always)]
+    fn put_block(&mut self, i: usize, k: usize, block: impl Fn(usize, usize) -> f64) {
+        match self.place(i, i + k) {
+            Place::Step(step, lane) => {
+                let step = &mut self.steps[step];
+                let kept = if k == 1 {
+                    &mut step.near
+                } else {
+                    &mut step.far
+                };
+                for a in 0..D {
+                    for b in 0..D {
+                        if lane == 0 {
+                            kept[a][b].0[0] = block(a, b);
+                        } else {
+                            kept[b][a].0[1] = block(a, b);
+                        }
+                    }
+                }
+            }
+            Place::Middle(column, row) => {
+                for a in 0..D {
+                    for b in 0..D {
+                        self.middle[row + b][column + a] = block(a, b);
+                    }
+                }
+            }
+        }
+    }
+
     /// Adds a symmetric block to node `i`; only its lower half is read. A block of fewer than `D` rows
     /// belongs to the first unknowns of the node.
     #[inline]

@@ -26,12 +26,47 @@ pub struct Joint {
     g1: f64,
 }
 
-/// Below this squared half-angle sine the series hold to 1e-13 ...
-const SERIES: f64 = 0.04;
-/// ... and below this, where most joints are, half as many terms do.
-const SHORT_SERIES: f64 = 1e-3;
-
 impl Joint {
+    /// Below this squared half-angle sine the series of the turning angle hold to 1e-13 ...
+    pub(super) const SERIES: f64 = 0.04;
+    /// ... that of the angle over the sine of its half, by powers of the sine squared ...
+    pub(super) const ANGLE: [f64; 8] = [
+        2.0,
+        1.0 / 3.0,
+        3.0 / 20.0,
+        5.0 / 56.0,
+        35.0 / 576.0,
+        63.0 / 1408.0,
+        231.0 / 6656.0,
+        143.0 / 5120.0,
+    ];
+    /// ... and that of its slope.
+    pub(super) const ANGLE_SLOPE: [f64; 7] = [
+        -4.0 / 3.0,
+        -2.0 / 5.0,
+        -3.0 / 14.0,
+        -5.0 / 36.0,
+        -35.0 / 352.0,
+        -63.0 / 832.0,
+        -77.0 / 1280.0,
+    ];
+    /// Below this tangent of half the twist its series holds to 1e-13 ...
+    pub(super) const TWIST_SERIES: f64 = 0.1;
+    /// ... for the twist over that tangent, by powers of the tangent squared.
+    pub(super) const TWIST: [f64; 6] = [
+        2.0,
+        -2.0 / 3.0,
+        2.0 / 5.0,
+        -2.0 / 7.0,
+        2.0 / 9.0,
+        -2.0 / 11.0,
+    ];
+
+    /// `g` and `g1`.
+    pub(super) fn series(&self) -> [f64; 2] {
+        [self.g, self.g1]
+    }
+
     /// Angles between the frames of two edges, `prev` on the clamp side.
     #[inline]
     pub fn between(prev: &Quat, next: &Quat) -> Self {
@@ -41,46 +76,16 @@ impl Joint {
         let (w, x, y, z) = (sign * rel.w, sign * rel.i, sign * rel.j, sign * rel.k);
         let s2 = x * x + y * y;
         let c = (w * w + z * z).sqrt();
-        let (g, g1) = if s2 < SHORT_SERIES {
-            (
-                2.0 * (1.0
-                    + s2 * (1.0 / 6.0
-                        + s2 * (3.0 / 40.0 + s2 * (5.0 / 112.0 + s2 * (35.0 / 1152.0))))),
-                -(4.0 / 3.0
-                    + s2 * (2.0 / 5.0
-                        + s2 * (3.0 / 14.0 + s2 * (5.0 / 36.0 + s2 * (35.0 / 352.0))))),
-            )
-        } else if s2 < SERIES {
-            (
-                2.0 * (1.0
-                    + s2 * (1.0 / 6.0
-                        + s2 * (3.0 / 40.0
-                            + s2 * (5.0 / 112.0
-                                + s2 * (35.0 / 1152.0
-                                    + s2 * (63.0 / 2816.0
-                                        + s2 * (231.0 / 13312.0 + s2 * (143.0 / 10240.0)))))))),
-                -(4.0 / 3.0
-                    + s2 * (2.0 / 5.0
-                        + s2 * (3.0 / 14.0
-                            + s2 * (5.0 / 36.0
-                                + s2 * (35.0 / 352.0
-                                    + s2 * (63.0 / 832.0 + s2 * (77.0 / 1280.0))))))),
-            )
+        let (g, g1) = if s2 < Self::SERIES {
+            (series(&Self::ANGLE, s2), series(&Self::ANGLE_SLOPE, s2))
         } else {
             let s = s2.sqrt();
             let g = 2.0 * libm::atan2(s, c) / s;
             (g, (2.0 * c - g) / s2)
         };
         let ratio = if w > 0.0 { z / w } else { f64::INFINITY };
-        let twist = if ratio.abs() < 0.01 {
-            let t2 = ratio * ratio;
-            2.0 * ratio * (1.0 - t2 * (1.0 / 3.0 - t2 * (0.2 - t2 * (1.0 / 7.0))))
-        } else if ratio.abs() < 0.1 {
-            let t2 = ratio * ratio;
-            2.0 * ratio
-                * (1.0
-                    - t2 * (1.0 / 3.0
-                        - t2 * (0.2 - t2 * (1.0 / 7.0 - t2 * (1.0 / 9.0 - t2 / 11.0)))))
+        let twist = if ratio.abs() < Self::TWIST_SERIES {
+            ratio * series(&Self::TWIST, ratio * ratio)
         } else {
             2.0 * libm::atan2(z, w)
         };
@@ -124,6 +129,16 @@ impl Joint {
         let rows = self.rows();
         rows[0] * m[0] + rows[1] * m[1] + rows[2] * t
     }
+}
+
+/// A polynomial by its coefficients.
+#[inline(always)]
+fn series<const N: usize>(terms: &[f64; N], x: f64) -> f64 {
+    let mut sum = x * terms[N - 1];
+    for t in terms[1..N - 1].iter().rev() {
+        sum = x * (sum + t);
+    }
+    sum + terms[0]
 }
 
 /// The relative quaternion that has these angles: the inverse of [`Joint::between`].
@@ -171,7 +186,7 @@ pub fn align(q: &Quat, t: &V3, roll: f64) -> Quat {
     let w = 1.0 + b.z;
     let turn = Quat::new(w * c, b.x * s - b.y * c, b.x * c + b.y * s, w * s);
     let r = q * turn;
-    r / r.norm()
+    r * (1.0 / r.norm())
 }
 
 /// A frame whose z axis is the unit vector `t`, its roll chosen by parallel transport from `like`.

@@ -4,6 +4,7 @@
 //! Node 0 is the oldest wire (the clamp), the last node the youngest (the nozzle); edge `j` runs
 //! from node `j` to node `j + 1`; joint `i` is the bend and twist at node `i`.
 
+mod batch;
 mod discrete;
 mod forces;
 mod joint;
@@ -13,6 +14,7 @@ mod section;
 mod state;
 mod twisted;
 
+pub use batch::Batch;
 pub use discrete::{
     Bent, Block, Stretched, Symmetric, add_outer, add_square, bent, stretched, turning,
 };

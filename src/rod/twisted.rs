@@ -41,6 +41,16 @@ impl Turned {
         }
     }
 
+    /// An edge whose frame and detour are known.
+    pub(super) fn known(frame: Quat, along: V3, inverse: f64, detour: V3) -> Self {
+        Self {
+            frame,
+            along,
+            inverse,
+            detour,
+        }
+    }
+
     /// A clamp.
     pub fn clamp(frame: Quat) -> Self {
         Self {
@@ -94,6 +104,73 @@ pub struct Rolled {
     pub with: [[V3; 2]; 2],
 }
 
+/// How a joint answers to its angles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Answer {
+    pub(super) energy: f64,
+    /// direction of the trial moment in the mid frame
+    pub(super) along: [f64; 2],
+    /// moment that way, and of twist, N m
+    pub(super) push: f64,
+    pub(super) torque: f64,
+    /// stiffness against angles along and across the moment, and of twist, N m
+    pub(super) stiffness: [f64; 3],
+    /// part of its edges' common roll that the frame the moment is looked at from follows, see above
+    pub(super) free: f64,
+    /// set where the law may change its branch; without derivatives of the angle
+    pub(super) knee: Option<Knee>,
+}
+
+/// Answer of a joint that stands for the length `lv` and turns by `angle` and `twist_angle`.
+#[inline(always)]
+pub(super) fn answer(
+    laws: &Laws,
+    bend: &Bend,
+    twist: &Scalar,
+    lv: f64,
+    angle: [f64; 2],
+    twist_angle: f64,
+) -> Answer {
+    let inv = 1.0 / lv;
+    let elastic = |k: usize| (angle[k] * inv - bend.curvature[k]) * laws.bend.modulus;
+    let trial = V3::new(elastic(0), elastic(1), 0.0);
+    let (m, energy, along, across, dir) = respond(&laws.bend, trial, bend.rise);
+    let (t, next, work) = respond_scalar(&laws.twist, twist, twist_angle * inv);
+    let stiffness = if work > 0.0 {
+        laws.twist.tangent(next.rise)
+    } else {
+        laws.twist.modulus
+    };
+    let n = trial.norm();
+    let d = if n > 0.0 { trial / n } else { V3::x() };
+    // a joint whose edges roll alike sees its curvature turn: the energy curves by `curved (curved - elastic)` there
+    let curved = (angle[0] * d.x + angle[1] * d.y) * inv;
+    let kept = (curved * (curved - n / laws.bend.modulus)).max(0.0).sqrt();
+    let free = if n > 0.0 {
+        0.5 * lv * (curved - kept.copysign(curved))
+    } else {
+        0.0
+    };
+    Answer {
+        energy: (energy + 0.5 * t * t / laws.twist.modulus + work) * lv,
+        along: [d.x, d.y],
+        push: m.dot(&d),
+        torque: t,
+        stiffness: [along * inv, across * inv, stiffness * inv],
+        free,
+        knee: (dir != V3::zeros()).then(|| Knee {
+            rows: [V3::zeros(); 2],
+            rolls: [0.0; 2],
+            trial: n,
+            length: lv,
+            rise: bend.rise,
+            moment: m.dot(&dir),
+            stiffness: along * inv,
+            branch: i8::from(along != laws.bend.modulus),
+        }),
+    }
+}
+
 /// Bending and twist of a joint that stands for the length `lv`.
 #[inline]
 pub fn twisted(
@@ -104,33 +181,15 @@ pub fn twisted(
     [before, after]: [&Turned; 2],
 ) -> (Bent, Rolled) {
     let joint = Joint::between(&before.frame, &after.frame);
-    let inv = 1.0 / lv;
-    let elastic = |k: usize| (joint.bend[k] * inv - bend.curvature[k]) * laws.bend.modulus;
-    let trial = V3::new(elastic(0), elastic(1), 0.0);
-    let (m, energy, along, across, dir) = respond(&laws.bend, trial, bend.rise);
-    let (t, next, work) = respond_scalar(&laws.twist, twist, joint.twist * inv);
-    let stiffness = if work > 0.0 {
-        laws.twist.tangent(next.rise)
-    } else {
-        laws.twist.modulus
-    };
+    let law = answer(laws, bend, twist, lv, joint.bend, joint.twist);
     // derivatives of the angles with respect to the rotation of the edge after against the one before, for bending
     // along the moment and across it
     let rows = joint.rows();
-    let n = trial.norm();
-    let d = if n > 0.0 { trial / n } else { V3::x() };
+    let (d, free) = (law.along, law.free);
     let turn = before.frame_matrix();
-    let lead = turn * (rows[0] * d.x + rows[1] * d.y);
-    let side = turn * (rows[1] * d.x - rows[0] * d.y);
+    let lead = turn * (rows[0] * d[0] + rows[1] * d[1]);
+    let side = turn * (rows[1] * d[0] - rows[0] * d[1]);
     let about = turn * rows[2];
-    // a joint whose edges roll alike sees its curvature turn: the energy curves by `curved (curved - elastic)` there
-    let curved = (joint.bend[0] * d.x + joint.bend[1] * d.y) * inv;
-    let kept = (curved * (curved - n / laws.bend.modulus)).max(0.0).sqrt();
-    let free = if n > 0.0 {
-        0.5 * lv * (curved - kept.copysign(curved))
-    } else {
-        0.0
-    };
     // gradients by edge vectors and rolls, first edge with its sign
     let pair = |row: &V3, free: f64| {
         let ((w0, r0), (w1, r1)) = (before.derivative(row), after.derivative(row));
@@ -142,35 +201,27 @@ pub fn twisted(
     let lead = pair(&lead, 0.0);
     let side = pair(&side, free);
     let about = pair(&about, 0.0);
-    let push = m.dot(&d);
+    let (push, t) = (law.push, law.torque);
     let mut bent = Bent {
-        energy: (energy + 0.5 * t * t / laws.twist.modulus + work) * lv,
+        energy: law.energy,
         before: lead[0].0 * push + about[0].0 * t,
         after: lead[1].0 * push + about[1].0 * t,
         own: [Symmetric::default(); 2],
         cross: [[0.0; 3]; 3],
-        knee: None,
+        knee: law.knee.map(|knee| Knee {
+            rows: [lead[0].0, lead[1].0],
+            rolls: [lead[0].1, lead[1].1],
+            ..knee
+        }),
     };
     let mut rolled = Rolled {
         torque: [0, 1].map(|k| lead[k].1 * push + about[k].1 * t),
         ..Rolled::default()
     };
-    if dir != V3::zeros() {
-        bent.knee = Some(Knee {
-            rows: [lead[0].0, lead[1].0],
-            rolls: [lead[0].1, lead[1].1],
-            trial: n,
-            length: lv,
-            rise: bend.rise,
-            moment: m.dot(&dir),
-            stiffness: along * inv,
-            branch: i8::from(along != laws.bend.modulus),
-        });
-    }
     for ([(w0, r0), (w1, r1)], c) in [
-        (lead, along * inv),
-        (side, across * inv),
-        (about, stiffness * inv),
+        (lead, law.stiffness[0]),
+        (side, law.stiffness[1]),
+        (about, law.stiffness[2]),
     ] {
         add_square(&mut bent.own[0], &w0, c);
         add_square(&mut bent.own[1], &w1, c);

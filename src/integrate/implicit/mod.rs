@@ -11,6 +11,7 @@ mod newton;
 mod roll;
 mod scheme;
 mod settle;
+mod sheet;
 mod tangent;
 mod tensioner;
 
@@ -105,6 +106,7 @@ struct Work<const D: usize> {
     plain: Vec<f64>,
     matrix: Banded<D>,
     rolls: Rolls,
+    sheet: sheet::Sheet,
     gradients: conjugate::Scratch,
     force: Vec<V3>,
     evaluations: u64,
@@ -412,6 +414,8 @@ impl<const D: usize> Work<D> {
         w.q.clone_from(&w.guess);
         if Self::ROLLS {
             self.rolls.prepare(sys, step, spindle, support, inert);
+            self.rolls.lay_out(&mut self.sheet.batch);
+            self.sheet.begin(&self.target, &self.mass);
         } else {
             self.turn_plastic_curvature(sys, spindle, support);
         }

@@ -1,12 +1,12 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
 use super::tensioner::NozzleEdge;
-use super::{Axial, Work, roll};
+use super::{Axial, Work, sheet};
 use crate::contact::{LineContact, own_wire};
 use crate::integrate::{Banded, Loads};
 use crate::math::V3;
 use crate::rod::{
-    Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched, turning, twisted,
+    Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched, turning,
 };
 
 /// What an evaluation needs besides the iterate.
@@ -59,16 +59,20 @@ impl Model<'_> {
     pub(super) fn evaluate<const D: usize>(&mut self, work: &mut Work<D>) -> Value {
         work.evaluations += 1;
         let nodes = work.q.len();
-        work.gradient.clear();
-        work.gradient.resize(nodes, V3::zeros());
-        work.matrix.reset(nodes);
+        let mut energy;
+        let stretch;
         if Work::<D>::ROLLS {
-            work.rolls.gradient.clear();
-            work.rolls.gradient.resize(nodes, 0.0);
+            (energy, stretch) = self.rolling_rod(work);
+        } else {
+            work.gradient.clear();
+            work.gradient.resize(nodes, V3::zeros());
+            work.matrix.reset(nodes);
+            energy = self.inertia(work);
+            let bending;
+            (bending, stretch) = self.rod_forces(work);
+            energy += bending;
         }
-        let mut energy = self.inertia_and_loads(work);
-        let (bending, stretch) = self.rod_forces(work);
-        energy += bending;
+        energy += self.loads(work);
         let mut value = Value {
             merit: energy + stretch.merit,
             now: energy + stretch.now,
@@ -103,7 +107,7 @@ impl Model<'_> {
         }
     }
 
-    fn inertia_and_loads<const D: usize>(&self, work: &mut Work<D>) -> f64 {
+    fn inertia<const D: usize>(&self, work: &mut Work<D>) -> f64 {
         let weight = 1.0 / (self.gamma * self.gamma);
         let gravity = self.back.to_core(self.loads.gravity);
         let mut energy = 0.0;
@@ -114,6 +118,11 @@ impl Model<'_> {
             energy += 0.5 * k * d.norm_squared() - m * gravity.dot(&work.q[i]);
             work.gradient[i] += d * k - gravity * m;
         }
+        energy
+    }
+
+    fn loads<const D: usize>(&self, work: &mut Work<D>) -> f64 {
+        let mut energy = 0.0;
         if self.loads.drag > 0.0 {
             // against the lab-frame velocity (x - x*) / gamma
             for i in 0..work.q.len() {
@@ -146,7 +155,7 @@ impl Model<'_> {
             let mut couple = m.cross(&t) / length;
             if Work::<D>::ROLLS {
                 let about = m.dot(&t);
-                couple = work.rolls.edge(*j, t, 1.0 / length).derivative(&m).0;
+                couple = work.sheet.batch.turned(*j).derivative(&m).0;
                 energy -= about * (work.rolls.angle[*j] - work.rolls.guess[*j]);
                 work.rolls.gradient[*j] -= about;
             }
@@ -156,7 +165,7 @@ impl Model<'_> {
         energy
     }
 
-    /// Energy of bending, and of stretch.
+    /// Energy of bending, and of stretch, where no twist is carried.
     fn rod_forces<const D: usize>(&self, work: &mut Work<D>) -> (f64, Value) {
         let edges = work.q.len() - 1;
         work.knees.clear();
@@ -164,10 +173,6 @@ impl Model<'_> {
         let mut axial = Value::default();
         // edge in hand, the joint at its start, the cross block there
         let mut before = (self.clamp[0], 0.0);
-        let mut frame_before = None;
-        if Work::<D>::ROLLS {
-            frame_before = work.rolls.clamp(0);
-        }
         let mut at_start = NO_JOINT;
         let mut stretch = [0.0; 6];
         // what the edge before puts on the node in hand
@@ -176,36 +181,14 @@ impl Model<'_> {
         let mut pull = V3::zeros();
         for j in 0..=edges {
             let (mut after, mut length) = ((self.clamp[1], 0.0), 0.0);
-            let mut frame_after = None;
             if j < edges {
                 let d = work.q[j + 1] - work.q[j];
                 length = d.norm();
                 let il = 1.0 / length;
                 after = (Some(d * il), il);
-                if Work::<D>::ROLLS {
-                    frame_after = Some(work.rolls.edge(j, d * il, il));
-                }
-            } else if Work::<D>::ROLLS {
-                frame_after = work.rolls.clamp(1);
             }
             let mut joint = NO_JOINT;
-            if Work::<D>::ROLLS {
-                if let (Some(p), Some(n)) = (&frame_before, &frame_after) {
-                    let rolled;
-                    (joint, rolled) = twisted(
-                        self.laws,
-                        &self.rod.bend[j],
-                        &self.rod.twist[j],
-                        self.rod.voronoi(j),
-                        [p, n],
-                    );
-                    energy += joint.energy;
-                    roll::spread(work, j, &rolled, [j > 0, j < edges]);
-                    if let Some(knee) = joint.knee {
-                        work.knees.push((j as u32, knee));
-                    }
-                }
-            } else if let (Some(p), Some(n)) = (&before.0, &after.0) {
+            if let (Some(p), Some(n)) = (&before.0, &after.0) {
                 joint = bent(
                     &self.laws.bend,
                     &work.set[j],
@@ -266,46 +249,82 @@ impl Model<'_> {
                 }
             }
             if j < edges {
-                let at_nozzle = self.nozzle.filter(|_| j + 1 == edges);
-                let s = match at_nozzle {
-                    Some(nozzle) => nozzle.stretched(length),
-                    None => stretched(
-                        &self.laws.stretch,
-                        &self.rod.stretch[j],
-                        self.rod.rest[j],
-                        length,
-                        // a spike of tension that the update is about to straighten out is no reason to yield
-                        work.expected[j].length,
-                    ),
-                };
                 let t = after.0.unwrap_or_default();
+                let across = self.stretch(work, j, (t, length, after.1), &mut axial);
+                let s = work.axial[j];
                 pull = t * s.tension;
-                let mut expected = work.expected[j];
-                if at_nozzle.is_some() {
-                    // it gives way and can go slack: nothing to straighten out there
-                    (expected.energy, expected.tension) = (s.energy, s.tension);
-                    expected.length = length;
-                }
-                axial.now += s.energy;
-                axial.merit += expected.energy + expected.tension * (length - expected.length);
-                // a pressed edge would turn over: its geometric part is left out
-                let across = expected.tension.max(0.0) * after.1;
-                work.axial[j] = Axial {
-                    along: t,
-                    length,
-                    tension: s.tension,
-                    stiffness: s.stiffness,
-                    energy: s.energy,
-                };
                 stretch = [across, 0.0, across, 0.0, 0.0, across];
                 add_square(&mut stretch, &t, s.stiffness - across);
             }
             before = after;
-            if Work::<D>::ROLLS {
-                frame_before = frame_after;
-            }
             at_start = joint;
         }
+        (energy, axial)
+    }
+
+    /// Stretch of edge `j` with its direction, length and inverse length: into `work.axial` and the energy in
+    /// `sum`; returns the stiffness across it.
+    #[inline(always)]
+    fn stretch<const D: usize>(
+        &self,
+        work: &mut Work<D>,
+        j: usize,
+        (along, length, inverse): (V3, f64, f64),
+        sum: &mut Value,
+    ) -> f64 {
+        let at_nozzle = self.nozzle.filter(|_| j + 1 == self.rod.edges());
+        let s = match at_nozzle {
+            Some(nozzle) => nozzle.stretched(length),
+            None => stretched(
+                &self.laws.stretch,
+                &self.rod.stretch[j],
+                self.rod.rest[j],
+                length,
+                // a spike of tension that the update is about to straighten out is no reason to yield
+                work.expected[j].length,
+            ),
+        };
+        let mut expected = work.expected[j];
+        if at_nozzle.is_some() {
+            // it gives way and can go slack: nothing to straighten out there
+            (expected.energy, expected.tension) = (s.energy, s.tension);
+            expected.length = length;
+        }
+        sum.now += s.energy;
+        sum.merit += expected.energy + expected.tension * (length - expected.length);
+        work.axial[j] = Axial {
+            along,
+            length,
+            tension: s.tension,
+            stiffness: s.stiffness,
+            energy: s.energy,
+        };
+        // a pressed edge would turn over: its geometric part is left out
+        expected.tension.max(0.0) * inverse
+    }
+
+    /// Energy of inertia, gravity, bending and twist, and of stretch, where twist is carried: the same as
+    /// [`Self::inertia`] and [`Self::rod_forces`] with joints of four unknowns, many at once.
+    fn rolling_rod<const D: usize>(&self, work: &mut Work<D>) -> (f64, Value) {
+        work.sheet.batch.place(&work.q, &work.rolls.angle);
+        work.knees.clear();
+        let mut energy = work.sheet.batch.respond(
+            self.laws,
+            (&self.rod.bend, &self.rod.twist),
+            work.rolls.joints(),
+            |j| self.rod.voronoi(j),
+            &mut work.knees,
+        );
+        let mut axial = Value::default();
+        for j in 0..self.rod.edges() {
+            let batch = &work.sheet.batch;
+            let edge = (batch.along(j), batch.length(j), batch.inverse(j));
+            let across = self.stretch(work, j, edge, &mut axial);
+            let s = work.axial[j];
+            work.sheet.stretch(j, s.tension, s.stiffness, across);
+        }
+        let weight = 1.0 / (self.gamma * self.gamma);
+        energy += sheet::gather(work, weight, self.back.to_core(self.loads.gravity));
         (energy, axial)
     }
 

@@ -7,11 +7,10 @@
 //! where its torques balance. Contact acts on the centreline: friction puts no moment on the wire
 //! about its own axis, neither here nor in the explicit methods.
 
-use super::Work;
 use super::scheme::{Past, Scheme, Step, extrapolation};
 use crate::integrate::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, V3};
-use crate::rod::{Rolled, Turned, rotate};
+use crate::rod::{Batch, rotate};
 
 /// Unknowns of a node with twist: place and roll.
 pub(super) const WITH_ROLL: usize = 4;
@@ -100,15 +99,18 @@ impl Rolls {
         self.angle.clone_from(&self.guess);
     }
 
-    /// Edge `j` in the direction `along`, of inverse length `inverse`.
-    #[inline]
-    pub(super) fn edge(&self, j: usize, along: V3, inverse: f64) -> Turned {
-        let from = (&self.frame[j], &self.along[j]);
-        Turned::edge(from.0, from.1, along, inverse, self.angle[j])
+    /// Hands what stays the same in a step to `batch`.
+    pub(super) fn lay_out(&self, batch: &mut Batch) {
+        batch.begin(&self.frame, &self.along, self.clamp);
     }
 
-    pub(super) fn clamp(&self, end: usize) -> Option<Turned> {
-        self.clamp.get(end).copied().flatten().map(Turned::clamp)
+    /// Which of the joints at the ends there are: the first and the last with a frame on either side.
+    pub(super) fn joints(&self) -> [usize; 2] {
+        let edges = self.frame.len();
+        [
+            usize::from(self.clamp[0].is_none()),
+            edges - usize::from(self.clamp[1].is_none()),
+        ]
     }
 
     /// Adds inertia and drag of the rolls; returns their potential.
@@ -206,41 +208,6 @@ impl Past {
             v.clear();
             v.resize(edges, 0.0);
         }
-    }
-}
-
-/// Adds the rolls' part of the joint at node `i`; `sides` tells which of its edges may roll.
-pub(super) fn spread<const D: usize>(
-    work: &mut Work<D>,
-    i: usize,
-    rolled: &Rolled,
-    sides: [bool; 2],
-) {
-    let zero = [0.0; 3];
-    let row = |v: V3| [v.x, v.y, v.z];
-    let (w, own, t) = (&rolled.with, &rolled.own, &rolled.torque);
-    let m = &mut work.matrix;
-    if sides[0] {
-        // its roll is an unknown of the node before; edge vectors are differences of places
-        work.rolls.gradient[i - 1] += t[0];
-        m.add_border(i - 1, 0, &zero, &row(-w[0][0]), own[0]);
-        if sides[1] {
-            let across = row(w[0][0] - w[0][1]);
-            m.add_border(i - 1, 1, &row(-w[1][0]), &across, own[1]);
-            m.add_border(i - 1, 2, &zero, &row(w[0][1]), 0.0);
-        } else {
-            m.add_border(i - 1, 1, &zero, &row(w[0][0]), 0.0);
-        }
-    }
-    if sides[1] {
-        work.rolls.gradient[i] += t[1];
-        let here = if sides[0] {
-            w[1][0] - w[1][1]
-        } else {
-            -w[1][1]
-        };
-        m.add_border(i, 0, &zero, &row(here), own[2]);
-        m.add_border(i, 1, &zero, &row(w[1][1]), 0.0);
     }
 }
 

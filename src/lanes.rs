@@ -1,0 +1,412 @@
+//! The same arithmetic on many numbers at once, as wide as the machine can.
+//!
+//! Formulas are written once, for [`Lanes`] of numbers that never meet: each lane rounds as a lone number would
+//! (no fused multiply-add, no other order), so results are the same to the bit with one lane, with
+//! four (AVX2) and with eight (AVX-512). What the machine has is found out at run time; only what is inlined
+//! into [`run`] is compiled for it, and closures may not be. Numbers of a kind lie in a
+//! column each ([`Columns`]), so that neighbours in the wire are neighbours in memory.
+
+use pulp::Simd;
+pub use pulp::WithSimd;
+use std::ops::{Add, AddAssign, Mul, Neg, Sub};
+use std::sync::atomic::{AtomicU8, Ordering};
+
+/// How many numbers are worked on at once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum, serde::Serialize)]
+pub enum Width {
+    /// one: any machine
+    #[value(name = "1")]
+    One = 1,
+    /// four: AVX2
+    #[value(name = "4")]
+    Four = 4,
+    /// eight: AVX-512
+    #[value(name = "8")]
+    Eight = 8,
+}
+
+static WIDEST: AtomicU8 = AtomicU8::new(Width::Four as u8);
+
+/// No more than `width` numbers at once from here on, in the whole process: for tests and measurements, since
+/// results do not depend on it.
+pub fn at_most(width: Width) {
+    WIDEST.store(width as u8, Ordering::Relaxed);
+}
+
+/// What [`run`] works with.
+pub fn width() -> Width {
+    struct Count;
+    impl WithSimd for Count {
+        type Output = usize;
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, _: S) -> usize {
+            S::F64_LANES
+        }
+    }
+    match run(Count) {
+        8 => Width::Eight,
+        4 => Width::Four,
+        _ => Width::One,
+    }
+}
+
+/// Runs `work` compiled for the widest numbers that the machine has and [`at_most`] allows.
+#[inline]
+pub fn run<Op: WithSimd>(work: Op) -> Op::Output {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let widest = WIDEST.load(Ordering::Relaxed);
+        if widest >= Width::Eight as u8
+            && let Some(simd) = pulp::x86::V4::try_new()
+        {
+            return Simd::vectorize(simd, work);
+        }
+        if widest >= Width::Four as u8
+            && let Some(simd) = pulp::x86::V3::try_new()
+        {
+            return Simd::vectorize(simd, work);
+        }
+    }
+    Simd::vectorize(pulp::Scalar, work)
+}
+
+/// As many numbers as the machine works on at once.
+#[derive(Debug)]
+pub struct Lanes<S: Simd> {
+    simd: S,
+    v: S::f64s,
+}
+
+impl<S: Simd> Clone for Lanes<S> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Simd> Copy for Lanes<S> {}
+
+impl<S: Simd> Lanes<S> {
+    /// How many there are.
+    pub const COUNT: usize = S::F64_LANES;
+
+    /// `x` in every lane.
+    #[inline(always)]
+    pub fn splat(simd: S, x: f64) -> Self {
+        Self {
+            simd,
+            v: simd.splat_f64s(x),
+        }
+    }
+
+    /// The first numbers of a slice.
+    #[inline(always)]
+    pub fn load(simd: S, from: &[f64]) -> Self {
+        Self {
+            simd,
+            v: S::as_simd_f64s(&from[..Self::COUNT]).0[0],
+        }
+    }
+
+    /// Into the first places of a slice.
+    #[inline(always)]
+    pub fn store(self, to: &mut [f64]) {
+        S::as_mut_simd_f64s(&mut to[..Self::COUNT]).0[0] = self.v;
+    }
+
+    /// Square roots.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self {
+            simd: self.simd,
+            v: self.simd.sqrt_f64s(self.v),
+        }
+    }
+
+    /// Inverses.
+    #[inline(always)]
+    pub fn recip(self) -> Self {
+        Self {
+            simd: self.simd,
+            v: self.simd.div_f64s(self.simd.splat_f64s(1.0), self.v),
+        }
+    }
+
+    /// Quotients.
+    #[inline(always)]
+    pub fn over(self, other: Self) -> Self {
+        Self {
+            simd: self.simd,
+            v: self.simd.div_f64s(self.v, other.v),
+        }
+    }
+
+    /// Negated in those lanes where `sign` is below 0.
+    #[inline(always)]
+    pub fn with_sign_of(self, sign: Self) -> Self {
+        let below = self
+            .simd
+            .less_than_f64s(sign.v, self.simd.splat_f64s(0.0));
+        Self {
+            simd: self.simd,
+            v: self.simd.select_f64s(below, (-self).v, self.v),
+        }
+    }
+
+    /// The same number in every lane.
+    #[inline(always)]
+    pub fn all(self, x: f64) -> Self {
+        Self::splat(self.simd, x)
+    }
+}
+
+impl<S: Simd> Add for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        Self {
+            simd: self.simd,
+            v: self.simd.add_f64s(self.v, other.v),
+        }
+    }
+}
+
+impl<S: Simd> AddAssign for Lanes<S> {
+    #[inline(always)]
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl<S: Simd> Sub for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        Self {
+            simd: self.simd,
+            v: self.simd.sub_f64s(self.v, other.v),
+        }
+    }
+}
+
+impl<S: Simd> Mul for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        Self {
+            simd: self.simd,
+            v: self.simd.mul_f64s(self.v, other.v),
+        }
+    }
+}
+
+impl<S: Simd> Mul<f64> for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, x: f64) -> Self {
+        self * self.all(x)
+    }
+}
+
+impl<S: Simd> Add<f64> for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, x: f64) -> Self {
+        self + self.all(x)
+    }
+}
+
+impl<S: Simd> Neg for Lanes<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self {
+            simd: self.simd,
+            v: self.simd.neg_f64s(self.v),
+        }
+    }
+}
+
+/// As many vectors.
+#[derive(Debug)]
+pub struct Lanes3<S: Simd> {
+    /// components
+    pub x: Lanes<S>,
+    /// see `x`
+    pub y: Lanes<S>,
+    /// see `x`
+    pub z: Lanes<S>,
+}
+
+impl<S: Simd> Clone for Lanes3<S> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Simd> Copy for Lanes3<S> {}
+
+impl<S: Simd> Lanes3<S> {
+    /// From components.
+    #[inline(always)]
+    pub fn new(x: Lanes<S>, y: Lanes<S>, z: Lanes<S>) -> Self {
+        Self { x, y, z }
+    }
+
+    /// Components.
+    #[inline(always)]
+    pub fn components(self) -> [Lanes<S>; 3] {
+        [self.x, self.y, self.z]
+    }
+
+    /// Scalar products.
+    #[inline(always)]
+    pub fn dot(self, b: Self) -> Lanes<S> {
+        self.x * b.x + self.y * b.y + self.z * b.z
+    }
+
+    /// Vector products.
+    #[inline(always)]
+    pub fn cross(self, b: Self) -> Self {
+        Self {
+            x: self.y * b.z - self.z * b.y,
+            y: self.z * b.x - self.x * b.z,
+            z: self.x * b.y - self.y * b.x,
+        }
+    }
+}
+
+impl<S: Simd> Add for Lanes3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, b: Self) -> Self {
+        Self::new(self.x + b.x, self.y + b.y, self.z + b.z)
+    }
+}
+
+impl<S: Simd> Sub for Lanes3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, b: Self) -> Self {
+        Self::new(self.x - b.x, self.y - b.y, self.z - b.z)
+    }
+}
+
+impl<S: Simd> Neg for Lanes3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self::new(-self.x, -self.y, -self.z)
+    }
+}
+
+impl<S: Simd> Mul<Lanes<S>> for Lanes3<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, c: Lanes<S>) -> Self {
+        Self::new(self.x * c, self.y * c, self.z * c)
+    }
+}
+
+/// `N` columns of numbers, with room behind the last row for as many lanes as there may be.
+#[derive(Clone, Debug, Default)]
+pub struct Columns<const N: usize> {
+    stride: usize,
+    data: Vec<f64>,
+}
+
+impl<const N: usize> Columns<N> {
+    /// Room behind the last row: lanes of a load that begins there, or two rows on.
+    const ROOM: usize = 16;
+
+    /// Makes room for `rows` rows; if there is not as much already, all become 0.
+    pub fn fit(&mut self, rows: usize) {
+        // an odd multiple of 64 bytes: columns must not fall into the same place of the cache
+        let stride = (rows + Self::ROOM).next_multiple_of(16) + 8;
+        if stride != self.stride {
+            self.stride = stride;
+            self.data.clear();
+            self.data.resize(N * stride, 0.0);
+        }
+    }
+
+    /// Column `k` from row `i` on.
+    #[inline(always)]
+    pub fn at(&self, k: usize, i: usize) -> &[f64] {
+        &self.data[k * self.stride + i..]
+    }
+
+    /// The same, to be written.
+    #[inline(always)]
+    pub fn at_mut(&mut self, k: usize, i: usize) -> &mut [f64] {
+        &mut self.data[k * self.stride + i..]
+    }
+
+    /// Number `i` of column `k`.
+    #[inline(always)]
+    pub fn get(&self, k: usize, i: usize) -> f64 {
+        self.data[k * self.stride + i]
+    }
+
+    /// Puts number `i` of column `k`.
+    #[inline(always)]
+    pub fn set(&mut self, k: usize, i: usize, x: f64) {
+        self.data[k * self.stride + i] = x;
+    }
+
+    /// Lanes of columns `k` to `k + M - 1` from row `i` on.
+    #[inline(always)]
+    pub fn load_all<S: Simd, const M: usize>(&self, simd: S, k: usize, i: usize) -> [Lanes<S>; M] {
+        // (a closure, as `from_fn` takes, would not be compiled for wide numbers)
+        let mut all = [Lanes::splat(simd, 0.0); M];
+        for a in 0..M {
+            all[a] = self.load(simd, k + a, i);
+        }
+        all
+    }
+
+    /// Columns `k`, `k + 1` and `k + 2` at row `i`.
+    #[inline(always)]
+    pub fn vector(&self, k: usize, i: usize) -> crate::math::V3 {
+        crate::math::V3::new(self.get(k, i), self.get(k + 1, i), self.get(k + 2, i))
+    }
+
+    /// Puts columns `k`, `k + 1` and `k + 2` at row `i`.
+    #[inline(always)]
+    pub fn set_vector(&mut self, k: usize, i: usize, v: &crate::math::V3) {
+        for a in 0..3 {
+            self.set(k + a, i, v[a]);
+        }
+    }
+
+    /// Lanes of column `k` from row `i` on.
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S, k: usize, i: usize) -> Lanes<S> {
+        Lanes::load(simd, self.at(k, i))
+    }
+
+    /// Lanes of columns `k`, `k + 1` and `k + 2` from row `i` on.
+    #[inline(always)]
+    pub fn load3<S: Simd>(&self, simd: S, k: usize, i: usize) -> Lanes3<S> {
+        Lanes3::new(
+            self.load(simd, k, i),
+            self.load(simd, k + 1, i),
+            self.load(simd, k + 2, i),
+        )
+    }
+
+    /// Lanes into column `k` from row `i` on.
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, k: usize, i: usize, lanes: Lanes<S>) {
+        lanes.store(self.at_mut(k, i));
+    }
+
+    /// Lanes into columns `k`, `k + 1` and `k + 2` from row `i` on.
+    #[inline(always)]
+    pub fn store3<S: Simd>(&mut self, k: usize, i: usize, lanes: Lanes3<S>) {
+        self.store(k, i, lanes.x);
+        self.store(k + 1, i, lanes.y);
+        self.store(k + 2, i, lanes.z);
+    }
+}

@@ -1,0 +1,701 @@
+//! All joints of a rod with twist at once, many side by side: what [`super::twisted()`] does for one.
+//!
+//! Three passes: edges with their frames, angles of the joints, then, after every joint has answered by its law,
+//! gradients and Hessians. What comes of each lies in columns; a joint's or an edge's own row is its number plus one, so that
+//! what is before the first and behind the last is there, and zero or a clamp.
+
+use super::forces::Laws;
+use super::joint::{Joint, align, rotate};
+use super::knee::Knee;
+use super::plasticity::{Bend, Scalar};
+use super::twisted::{Answer, Turned, answer};
+use crate::lanes::{Columns, Lanes, Lanes3, WithSimd, run};
+use crate::math::{Quat, V3};
+use pulp::Simd;
+
+/// Columns of an edge: direction, inverse length, length, frame (i, j, k, w), detour of its shortest way.
+const ALONG: usize = 0;
+const INVERSE: usize = 3;
+const LENGTH: usize = 4;
+const FRAME: usize = 5;
+const DETOUR: usize = 9;
+
+/// Columns of an edge at the last accepted instant: frame (i, j, k, w), direction.
+const FROM: usize = 0;
+const START: usize = 4;
+
+/// Columns of a joint's angles and what their derivative needs, see [`Joint`].
+const BEND: usize = 0;
+const TWIST: usize = 2;
+const W: usize = 3;
+const V: usize = 4;
+const COSINE: usize = 7;
+const G: usize = 8;
+const G1: usize = 9;
+
+/// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free roll.
+const ANSWER: usize = 8;
+
+/// Columns of a joint's gradient and Hessian: those of [`super::Bent`] and [`super::Rolled`], then the derivative of its angle along
+/// the moment by edge vectors and by rolls.
+const OWN: [usize; 2] = [0, 6];
+const CROSS: usize = 12;
+const ROLL_OWN: usize = 21;
+const ROLL_WITH: [[usize; 2]; 2] = [[24, 27], [30, 33]];
+const GRADIENT: [usize; 2] = [36, 39];
+const TORQUE: usize = 42;
+const LEAD: [usize; 2] = [44, 47];
+const LEAD_ROLL: usize = 50;
+
+/// Below this the sine and cosine of a roll are series, see [`align`].
+const SMALL_ROLL: f64 = 2e-3;
+
+/// Columns of all edges and joints.
+#[derive(Clone, Debug, Default)]
+pub struct Batch {
+    edges: usize,
+    places: Columns<3>,
+    roll: Columns<1>,
+    from: Columns<7>,
+    edge: Columns<12>,
+    angle: Columns<10>,
+    answer: Columns<ANSWER>,
+    joint: Columns<52>,
+}
+
+impl Batch {
+    /// Frames and directions of all edges at the last accepted instant, and of the clamps.
+    pub fn begin(&mut self, frames: &[Quat], along: &[V3], clamps: [Option<Quat>; 2]) {
+        self.edges = frames.len();
+        let rows = self.edges + 3;
+        self.places.fit(rows);
+        self.roll.fit(rows);
+        self.from.fit(rows);
+        self.edge.fit(rows);
+        self.angle.fit(rows);
+        self.answer.fit(rows);
+        self.joint.fit(rows);
+        for (j, (f, t)) in frames.iter().zip(along).enumerate() {
+            for a in 0..4 {
+                self.from.set(FROM + a, j, f.coords[a]);
+            }
+            self.from.set_vector(START, j, t);
+        }
+        for (end, row) in [(0, 0), (1, self.edges + 1)] {
+            // without a clamp there is no joint; any frame will do
+            let frame = clamps[end].unwrap_or(frames[if end == 0 { 0 } else { self.edges - 1 }]);
+            for a in 0..4 {
+                self.edge.set(FRAME + a, row, frame.coords[a]);
+            }
+            self.edge.set_vector(ALONG, row, &rotate(&frame, &V3::z()));
+            self.edge.set(INVERSE, row, 0.0);
+            self.edge.set_vector(DETOUR, row, &V3::zeros());
+        }
+    }
+
+    /// Edges and angles with the nodes at `q` and edges rolled by `roll`.
+    pub fn place(&mut self, q: &[V3], roll: &[f64]) {
+        for (i, p) in q.iter().enumerate() {
+            self.places.set_vector(0, i, p);
+        }
+        self.roll.at_mut(0, 0)[..roll.len()].copy_from_slice(roll);
+        // the pass over the edges runs over the far clamp's row
+        let clamp: [f64; 12] = std::array::from_fn(|k| self.edge.get(k, self.edges + 1));
+        run(Edges(self));
+        for (k, x) in clamp.into_iter().enumerate() {
+            self.edge.set(k, self.edges + 1, x);
+        }
+        for (j, roll) in roll.iter().enumerate() {
+            if roll.abs() >= SMALL_ROLL {
+                let from = Quat::from_vector(nalgebra::Vector4::from_fn(|a, _| {
+                    self.from.get(FROM + a, j)
+                }));
+                let frame = align(&from, &self.along(j), *roll);
+                for a in 0..4 {
+                    self.edge.set(FRAME + a, j + 1, frame.coords[a]);
+                }
+            }
+        }
+        run(Angles(self));
+        for j in 0..=self.edges {
+            let (s2, ratio) = (
+                self.angle.get(V, j).powi(2) + self.angle.get(V + 1, j).powi(2),
+                self.angle.get(V + 2, j) / self.angle.get(W, j),
+            );
+            if s2 >= Joint::SERIES || ratio.is_nan() || ratio.abs() >= Joint::TWIST_SERIES {
+                let joint = Joint::between(&self.frame(j), &self.frame(j + 1));
+                let (bend, g) = (joint.bend, joint.series());
+                self.angle.set(BEND, j, bend[0]);
+                self.angle.set(BEND + 1, j, bend[1]);
+                self.angle.set(TWIST, j, joint.twist);
+                self.angle.set(G, j, g[0]);
+                self.angle.set(G1, j, g[1]);
+            }
+        }
+    }
+
+    /// Frame in row `row`.
+    fn frame(&self, row: usize) -> Quat {
+        Quat::from_vector(nalgebra::Vector4::from_fn(|a, _| {
+            self.edge.get(FRAME + a, row)
+        }))
+    }
+
+    /// Direction of edge `j`.
+    #[inline]
+    pub fn along(&self, j: usize) -> V3 {
+        self.edge.vector(ALONG, j + 1)
+    }
+
+    /// Length of edge `j`, m.
+    #[inline]
+    pub fn length(&self, j: usize) -> f64 {
+        self.edge.get(LENGTH, j + 1)
+    }
+
+    /// Inverse length of edge `j`, 1/m.
+    #[inline]
+    pub fn inverse(&self, j: usize) -> f64 {
+        self.edge.get(INVERSE, j + 1)
+    }
+
+    /// Edge `j` as [`super::twisted()`] takes it.
+    pub fn turned(&self, j: usize) -> Turned {
+        Turned::known(
+            self.frame(j + 1),
+            self.along(j),
+            self.inverse(j),
+            self.edge.vector(DETOUR, j + 1),
+        )
+    }
+
+    /// Gradients and Hessians of the joints from `first` to `last`; returns their energy. `length` is the length
+    /// that a joint stands for. `knees` gets those joints that may change their branch.
+    pub fn respond(
+        &mut self,
+        laws: &Laws,
+        state: (&[Bend], &[Scalar]),
+        [first, last]: [usize; 2],
+        length: impl Fn(usize) -> f64,
+        knees: &mut Vec<(u32, Knee)>,
+    ) -> f64 {
+        let mut energy = 0.0;
+        for j in 0..=self.edges {
+            if j < first || j > last {
+                for k in 0..ANSWER {
+                    self.answer.set(k, j, 0.0);
+                }
+                continue;
+            }
+            let bend = [self.angle.get(BEND, j), self.angle.get(BEND + 1, j)];
+            let twist = self.angle.get(TWIST, j);
+            let Answer {
+                energy: own,
+                along,
+                push,
+                torque,
+                stiffness,
+                free,
+                knee,
+            } = answer(laws, &state.0[j], &state.1[j], length(j), bend, twist);
+            energy += own;
+            let all = [
+                along[0],
+                along[1],
+                push,
+                torque,
+                stiffness[0],
+                stiffness[1],
+                stiffness[2],
+                free,
+            ];
+            for (k, x) in all.into_iter().enumerate() {
+                self.answer.set(k, j, x);
+            }
+            if let Some(knee) = knee {
+                knees.push((j as u32, knee));
+            }
+        }
+        run(Joints(self));
+        for (j, knee) in knees {
+            let row = *j as usize + 1;
+            for k in 0..2 {
+                knee.rows[k] = self.joint.vector(LEAD[k], row);
+                knee.rolls[k] = self.joint.get(LEAD_ROLL + k, row);
+            }
+        }
+        energy
+    }
+
+    /// Directions and inverse lengths of edges from `j` on.
+    #[inline(always)]
+    pub fn edges<S: Simd>(&self, simd: S, j: usize) -> (Lanes3<S>, Lanes<S>) {
+        (
+            self.edge.load3(simd, ALONG, j + 1),
+            self.edge.load(simd, INVERSE, j + 1),
+        )
+    }
+
+    /// Hessian by the edge vector before a joint with itself (`side` 0) or after it (1), lower half; `row` is the
+    /// first joint's number plus one, here and below.
+    #[inline(always)]
+    pub fn own<S: Simd>(&self, simd: S, side: usize, row: usize) -> [Lanes<S>; 6] {
+        self.joint.load_all(simd, OWN[side], row)
+    }
+
+    /// Hessian, rows before, columns after.
+    #[inline(always)]
+    pub fn cross<S: Simd>(&self, simd: S, row: usize) -> [Lanes<S>; 9] {
+        self.joint.load_all(simd, CROSS, row)
+    }
+
+    /// Gradient by the edge vector before or after.
+    #[inline(always)]
+    pub fn gradient<S: Simd>(&self, simd: S, side: usize, row: usize) -> Lanes3<S> {
+        self.joint.load3(simd, GRADIENT[side], row)
+    }
+
+    /// Gradient by the roll of the edge before or after.
+    #[inline(always)]
+    pub fn torque<S: Simd>(&self, simd: S, side: usize, row: usize) -> Lanes<S> {
+        self.joint.load(simd, TORQUE + side, row)
+    }
+
+    /// Hessian, roll by roll: before-before, before-after, after-after.
+    #[inline(always)]
+    pub fn roll<S: Simd>(&self, simd: S, which: usize, row: usize) -> Lanes<S> {
+        self.joint.load(simd, ROLL_OWN + which, row)
+    }
+
+    /// Hessian, roll of the edge `side` by edge vector `by`.
+    #[inline(always)]
+    pub fn roll_with<S: Simd>(&self, simd: S, side: usize, by: usize, row: usize) -> Lanes3<S> {
+        self.joint.load3(simd, ROLL_WITH[side][by], row)
+    }
+}
+
+/// First pass: directions, lengths and frames of the edges.
+struct Edges<'a>(&'a mut Batch);
+
+impl WithSimd for Edges<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let b = self.0;
+        let one = Lanes::splat(simd, 1.0);
+        for j in (0..b.edges).step_by(Lanes::<S>::COUNT) {
+            let d = b.places.load3(simd, 0, j + 1) - b.places.load3(simd, 0, j);
+            let length = d.dot(d).sqrt();
+            let inverse = length.recip();
+            let t = d * inverse;
+            let from: [_; 4] = b.from.load_all(simd, FROM, j);
+            // see `align`: the direction in the body frame, then swing and roll as one turn
+            let v = Lanes3::new(from[0], from[1], from[2]);
+            let u = t.cross(v);
+            let u = u + u;
+            let body = t + u * from[3] + u.cross(v);
+            let half = b.roll.load(simd, 0, j) * 0.5;
+            let h2 = half * half;
+            let c = one - h2 * 0.5 + h2 * h2 * (1.0 / 24.0);
+            let s = half * (one - h2 * (one * (1.0 / 6.0) - h2 * (1.0 / 120.0)));
+            let w = body.z + 1.0;
+            let turn = [
+                body.x * s - body.y * c,
+                body.x * c + body.y * s,
+                w * s,
+                w * c,
+            ];
+            let frame = product(from, turn);
+            let norm = frame[0] * frame[0]
+                + frame[1] * frame[1]
+                + frame[2] * frame[2]
+                + frame[3] * frame[3];
+            let norm = norm.sqrt().recip();
+            let start = b.from.load3(simd, START, j);
+            let detour = t.cross(start) * (start.dot(t) + 1.0).recip();
+            b.edge.store3(ALONG, j + 1, t);
+            b.edge.store(INVERSE, j + 1, inverse);
+            b.edge.store(LENGTH, j + 1, length);
+            for k in 0..4 {
+                b.edge.store(FRAME + k, j + 1, frame[k] * norm);
+            }
+            b.edge.store3(DETOUR, j + 1, detour);
+        }
+    }
+}
+
+/// Product of quaternions (i, j, k, w).
+#[inline(always)]
+fn product<S: Simd>(p: [Lanes<S>; 4], q: [Lanes<S>; 4]) -> [Lanes<S>; 4] {
+    [
+        p[3] * q[0] + p[0] * q[3] + p[1] * q[2] - p[2] * q[1],
+        p[3] * q[1] - p[0] * q[2] + p[1] * q[3] + p[2] * q[0],
+        p[3] * q[2] + p[0] * q[1] - p[1] * q[0] + p[2] * q[3],
+        p[3] * q[3] - p[0] * q[0] - p[1] * q[1] - p[2] * q[2],
+    ]
+}
+
+/// Second pass: angles of the joints, see [`Joint::between`]; large ones are put right afterwards.
+struct Angles<'a>(&'a mut Batch);
+
+impl WithSimd for Angles<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let b = self.0;
+        for j in (0..=b.edges).step_by(Lanes::<S>::COUNT) {
+            let p: [_; 4] = b.edge.load_all(simd, FRAME, j);
+            let n = b.edge.load_all(simd, FRAME, j + 1);
+            let [x, y, z, w] = product([-p[0], -p[1], -p[2], p[3]], n);
+            let (x, y, z) = (x.with_sign_of(w), y.with_sign_of(w), z.with_sign_of(w));
+            let w = w.with_sign_of(w);
+            let s2 = x * x + y * y;
+            let c = (w * w + z * z).sqrt();
+            let g = series(&Joint::ANGLE, s2);
+            let g1 = series(&Joint::ANGLE_SLOPE, s2);
+            let ratio = z.over(w);
+            let twist = ratio * series(&Joint::TWIST, ratio * ratio);
+            b.angle.store(BEND, j, g * x);
+            b.angle.store(BEND + 1, j, g * y);
+            b.angle.store(TWIST, j, twist);
+            b.angle.store(W, j, w);
+            b.angle.store3(V, j, Lanes3::new(x, y, z));
+            b.angle.store(COSINE, j, c);
+            b.angle.store(G, j, g);
+            b.angle.store(G1, j, g1);
+        }
+    }
+}
+
+/// A polynomial by its coefficients.
+#[inline(always)]
+fn series<S: Simd, const N: usize>(terms: &[f64; N], x: Lanes<S>) -> Lanes<S> {
+    let mut sum = x * terms[N - 1];
+    for k in (1..N - 1).rev() {
+        sum = x * (sum + terms[k]);
+    }
+    sum + terms[0]
+}
+
+/// An edge as the third pass sees it.
+struct Side<S: Simd> {
+    along: Lanes3<S>,
+    inverse: Lanes<S>,
+    detour: Lanes3<S>,
+}
+
+impl<S: Simd> Side<S> {
+    #[inline(always)]
+    fn load(b: &Batch, simd: S, row: usize) -> Self {
+        Self {
+            along: b.edge.load3(simd, ALONG, row),
+            inverse: b.edge.load(simd, INVERSE, row),
+            detour: b.edge.load3(simd, DETOUR, row),
+        }
+    }
+
+    /// Derivative of an angle by edge vector and roll, see [`Turned::derivative`].
+    #[inline(always)]
+    fn derivative(&self, row: Lanes3<S>) -> (Lanes3<S>, Lanes<S>) {
+        let roll = row.dot(self.along);
+        let turn = row.cross(self.along) + self.detour * roll;
+        (turn * self.inverse, roll)
+    }
+}
+
+/// Derivatives of an angle by edge vectors and rolls, first edge with its sign.
+#[inline(always)]
+fn pair<S: Simd>(before: &Side<S>, after: &Side<S>, row: Lanes3<S>) -> [(Lanes3<S>, Lanes<S>); 2] {
+    let (w0, r0) = before.derivative(row);
+    [(-w0, -r0), after.derivative(row)]
+}
+
+/// Third pass: gradients and Hessians of the joints from their answers.
+struct Joints<'a>(&'a mut Batch);
+
+impl WithSimd for Joints<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let b = self.0;
+        for j in (0..=b.edges).step_by(Lanes::<S>::COUNT) {
+            let [bend_w, vx, vy, vz, cosine, g, g1] = b.angle.load_all(simd, W, j);
+            let [d0, d1, push, couple, c0, c1, c2, free] = b.answer.load_all(simd, 0, j);
+            // see `Joint::rows`
+            let (w, v) = (bend_w, Lanes3::new(vx, vy, vz));
+            let (p, q) = (w * v.x - v.z * v.y, w * v.y + v.z * v.x);
+            let inv_c = cosine.recip();
+            let k = g1 * 0.5 + inv_c;
+            let g = g * 0.5;
+            let (kx, ky, inv_c2) = (k * v.x, k * v.y, inv_c * inv_c);
+            let (gw, gz) = (g * w, g * v.z);
+            let rows = [
+                Lanes3::new(gw + kx * p, gz + kx * q, -(g * v.y)),
+                Lanes3::new(ky * p - gz, gw + ky * q, g * v.x),
+            ];
+            let turn = matrix(b.edge.load_all(simd, FRAME, j));
+            let lead = turned(&turn, rows[0] * d0 + rows[1] * d1);
+            let side = turned(&turn, rows[1] * d0 - rows[0] * d1);
+            let about = turn[0] * (q * inv_c2) - turn[1] * (p * inv_c2) + turn[2];
+            let (before, after) = (Side::load(b, simd, j), Side::load(b, simd, j + 1));
+            let lead = pair(&before, &after, lead);
+            let [(w0, r0), (w1, r1)] = pair(&before, &after, side);
+            let side = [
+                (w0 + before.detour * (free * before.inverse), r0 + free),
+                (w1 + after.detour * (free * after.inverse), r1 + free),
+            ];
+            let about = pair(&before, &after, about);
+            for e in 0..2 {
+                b.joint
+                    .store3(GRADIENT[e], j + 1, lead[e].0 * push + about[e].0 * couple);
+                b.joint
+                    .store(TORQUE + e, j + 1, lead[e].1 * push + about[e].1 * couple);
+                b.joint.store3(LEAD[e], j + 1, lead[e].0);
+                b.joint.store(LEAD_ROLL + e, j + 1, lead[e].1);
+            }
+            // rows of the three angles, each with its stiffness
+            let all = [lead, side, about];
+            let c = [c0, c1, c2];
+            let edge = [
+                [all[0][0].0, all[1][0].0, all[2][0].0],
+                [all[0][1].0, all[1][1].0, all[2][1].0],
+            ];
+            for e in 0..2 {
+                let v = [
+                    edge[e][0].components(),
+                    edge[e][1].components(),
+                    edge[e][2].components(),
+                ];
+                let cv = [
+                    (edge[e][0] * c[0]).components(),
+                    (edge[e][1] * c[1]).components(),
+                    (edge[e][2] * c[2]).components(),
+                ];
+                let mut at = OWN[e];
+                for r in 0..3 {
+                    for s in 0..r + 1 {
+                        let sum = cv[0][r] * v[0][s] + cv[1][r] * v[1][s] + cv[2][r] * v[2][s];
+                        b.joint.store(at, j + 1, sum);
+                        at += 1;
+                    }
+                }
+                if e == 0 {
+                    let v = [
+                        edge[1][0].components(),
+                        edge[1][1].components(),
+                        edge[1][2].components(),
+                    ];
+                    for r in 0..3 {
+                        for s in 0..3 {
+                            let sum = cv[0][r] * v[0][s] + cv[1][r] * v[1][s] + cv[2][r] * v[2][s];
+                            b.joint.store(CROSS + 3 * r + s, j + 1, sum);
+                        }
+                    }
+                }
+            }
+            let r = [
+                [all[0][0].1, all[0][1].1],
+                [all[1][0].1, all[1][1].1],
+                [all[2][0].1, all[2][1].1],
+            ];
+            let cr = [
+                [r[0][0] * c[0], r[0][1] * c[0]],
+                [r[1][0] * c[1], r[1][1] * c[1]],
+                [r[2][0] * c[2], r[2][1] * c[2]],
+            ];
+            let which = [(0, 0), (0, 1), (1, 1)];
+            for k in 0..3 {
+                let (e, f) = which[k];
+                let sum = cr[0][e] * r[0][f] + cr[1][e] * r[1][f] + cr[2][e] * r[2][f];
+                b.joint.store(ROLL_OWN + k, j + 1, sum);
+            }
+            for e in 0..2 {
+                for f in 0..2 {
+                    let sum = all[0][f].0 * cr[0][e] + all[1][f].0 * cr[1][e] + all[2][f].0 * cr[2][e];
+                    b.joint.store3(ROLL_WITH[e][f], j + 1, sum);
+                }
+            }
+        }
+    }
+}
+
+/// Product of matrices, given by their columns, with vectors.
+#[inline(always)]
+fn turned<S: Simd>(m: &[Lanes3<S>; 3], r: Lanes3<S>) -> Lanes3<S> {
+    m[0] * r.x + m[1] * r.y + m[2] * r.z
+}
+
+/// Columns: the axes of frames (i, j, k, w).
+#[inline(always)]
+fn matrix<S: Simd>([x, y, z, w]: [Lanes<S>; 4]) -> [Lanes3<S>; 3] {
+    let (x2, y2, z2) = (x + x, y + y, z + z);
+    let (xx, yy, zz) = (x * x2, y * y2, z * z2);
+    let (xy, xz, yz) = (x * y2, x * z2, y * z2);
+    let (wx, wy, wz) = (w * x2, w * y2, w * z2);
+    let one = x.all(1.0);
+    [
+        Lanes3::new(one - yy - zz, xy + wz, xz - wy),
+        Lanes3::new(xy - wz, one - xx - zz, yz + wx),
+        Lanes3::new(xz + wy, yz - wx, one - xx - yy),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::lanes::{Width, at_most, width};
+    use crate::rod::{Section, frame_along, relative, twisted};
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    const LV: f64 = 0.5e-3;
+
+    /// A crooked wire: where it was, where it is, its plastic state.
+    struct Wire {
+        q: Vec<V3>,
+        roll: Vec<f64>,
+        frames: Vec<Quat>,
+        along: Vec<V3>,
+        clamps: [Option<Quat>; 2],
+        bend: Vec<Bend>,
+        twist: Vec<Scalar>,
+    }
+
+    fn wire(seed: u64, edges: usize, crooked: f64) -> Wire {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut number = move || rng.next_u32() as f64 / f64::from(u32::MAX) * 2.0 - 1.0;
+        let mut some = |size: f64| V3::new(number(), number(), number()) * size;
+        let mut q = vec![V3::zeros()];
+        let mut along = Vec::new();
+        let mut frames: Vec<Quat> = Vec::new();
+        let mut roll = Vec::new();
+        for j in 0..edges {
+            let d = V3::new(0.0, 0.0, LV) + some(crooked * LV);
+            q.push(q[j] + d);
+            let was = (d + some(0.1 * LV)).normalize();
+            let twist = relative([0.0; 2], some(crooked).x);
+            frames.push(frame_along(&was, frames.last()) * twist);
+            along.push(rotate(&frames[j], &V3::z()));
+            roll.push(some(if j % 5 == 0 { 0.1 } else { 1e-3 }).x);
+        }
+        let state = |k: V3| Bend {
+            curvature: [k.x, k.y],
+            rise: k.z.abs() * 1e-5,
+        };
+        Wire {
+            clamps: [Some(frames[0]), None],
+            bend: (0..=edges).map(|_| state(some(300.0))).collect(),
+            twist: (0..=edges)
+                .map(|_| Scalar {
+                    strain: some(20.0).x,
+                    rise: 0.0,
+                })
+                .collect(),
+            q,
+            roll,
+            frames,
+            along,
+        }
+    }
+
+    fn laws() -> Laws {
+        Laws::new(&Section {
+            m_y: 5.72e-3,
+            t_y: 6e-3,
+            ..Section::table1_elastic()
+        })
+    }
+
+    fn respond(w: &Wire) -> (Batch, f64, Vec<(u32, Knee)>) {
+        let mut batch = Batch::default();
+        let mut knees = Vec::new();
+        let edges = w.frames.len();
+        batch.begin(&w.frames, &w.along, w.clamps);
+        batch.place(&w.q, &w.roll);
+        let state = (&w.bend[..], &w.twist[..]);
+        let energy = batch.respond(&laws(), state, [0, edges - 1], |_| LV, &mut knees);
+        (batch, energy, knees)
+    }
+
+    /// The slow twin is one joint at a time.
+    #[test]
+    fn each_joint_is_that_of_the_rod_one_by_one() {
+        for (seed, edges, crooked) in [(1, 30, 0.05), (2, 7, 0.5), (3, 1, 1.0), (4, 17, 0.9)] {
+            let w = wire(seed, edges, crooked);
+            let (batch, energy, knees) = respond(&w);
+            let turned = |j: usize| {
+                let d = w.q[j + 1] - w.q[j];
+                let l = d.norm();
+                Turned::edge(&w.frames[j], &w.along[j], d / l, 1.0 / l, w.roll[j])
+            };
+            let mut before = w.clamps[0].map(Turned::clamp).expect("there is one");
+            let (mut sum, mut count) = (0.0, 0);
+            for j in 0..edges {
+                let after = turned(j);
+                let (bend, twist) = (&w.bend[j], &w.twist[j]);
+                let (bent, rolled) = twisted(&laws(), bend, twist, LV, [&before, &after]);
+                before = after;
+                sum += bent.energy;
+                let row = j + 1;
+                let mut pairs = Vec::new();
+                let list = |at: usize, n: usize| (0..n).map(move |k| (at, k));
+                let mut compare = |at: usize, want: &[f64]| {
+                    let size = want.iter().fold(0.0, |s: f64, x| s.max(x.abs()));
+                    for (at, k) in list(at, want.len()) {
+                        pairs.push((batch.joint.get(at + k, row), want[k], size));
+                    }
+                };
+                for e in 0..2 {
+                    compare(OWN[e], &bent.own[e]);
+                    compare(GRADIENT[e], [bent.before, bent.after][e].as_slice());
+                    for f in 0..2 {
+                        compare(ROLL_WITH[e][f], rolled.with[e][f].as_slice());
+                    }
+                }
+                compare(CROSS, bent.cross.as_flattened());
+                compare(ROLL_OWN, &rolled.own);
+                compare(TORQUE, &rolled.torque);
+                if let Some(knee) = bent.knee {
+                    let (number, own) = &knees[count];
+                    assert_eq!(*number, j as u32);
+                    count += 1;
+                    for e in 0..2 {
+                        let off = (own.rows[e] - knee.rows[e]).norm();
+                        assert!(off <= 1e-9 * knee.rows[e].norm() + 1e-12);
+                    }
+                    pairs.push((own.moment, knee.moment, knee.moment));
+                }
+                for (got, want, size) in pairs {
+                    assert!(
+                        (got - want).abs() <= 1e-9 * size.abs() + 1e-14,
+                        "joint {j} of {edges}: {got}, {want} one by one"
+                    );
+                }
+            }
+            assert!((energy - sum).abs() <= 1e-12 * sum.abs());
+            assert_eq!(count, knees.len());
+        }
+    }
+
+    /// As many at once as there may be: the same to the bit.
+    #[test]
+    fn width_is_no_matter() {
+        for (seed, edges, crooked) in [(5, 30, 0.05), (6, 23, 0.7), (7, 2, 0.2)] {
+            let w = wire(seed, edges, crooked);
+            let mut seen = Vec::new();
+            let all = [Width::One, Width::Four, Width::Eight].map(|most| {
+                at_most(most);
+                seen.push(width());
+                let (batch, energy, _) = respond(&w);
+                let numbers = (0..52).flat_map(|k| batch.joint.at(k, 0)[..edges + 1].to_vec());
+                let bits: Vec<u64> = numbers.map(f64::to_bits).collect();
+                (bits, energy.to_bits())
+            });
+            at_most(Width::Four);
+            assert!(all[0] == all[1] && all[1] == all[2], "widths {seen:?}");
+        }
+    }
+}
