@@ -144,9 +144,7 @@ impl<S: Simd> Lanes<S> {
     /// Negated in those lanes where `sign` is below 0.
     #[inline(always)]
     pub fn with_sign_of(self, sign: Self) -> Self {
-        let below = self
-            .simd
-            .less_than_f64s(sign.v, self.simd.splat_f64s(0.0));
+        let below = self.simd.less_than_f64s(sign.v, self.simd.splat_f64s(0.0));
         Self {
             simd: self.simd,
             v: self.simd.select_f64s(below, (-self).v, self.v),

@@ -514,7 +514,8 @@ impl WithSimd for Joints<'_> {
             }
             for e in 0..2 {
                 for f in 0..2 {
-                    let sum = all[0][f].0 * cr[0][e] + all[1][f].0 * cr[1][e] + all[2][f].0 * cr[2][e];
+                    let sum =
+                        all[0][f].0 * cr[0][e] + all[1][f].0 * cr[1][e] + all[2][f].0 * cr[2][e];
                     b.joint.store3(ROLL_WITH[e][f], j + 1, sum);
                 }
             }

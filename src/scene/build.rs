@@ -9,6 +9,14 @@ use crate::integrate::Twist;
 use crate::rod::Section;
 use std::path::{Path, PathBuf};
 
+/// Node spacing near the core that goes with a tolerance, m: 0.4 mm at 2e-6 m.
+///
+/// At a tolerance the steps are as its cube root, and both time and space are of second order: this
+/// keeps the shares of the error that come from either (`fig8`: at 1e-5 m and 0.4 mm nearly all was from the steps).
+fn spacing_for(tolerance: f64) -> f64 {
+    0.4e-3 * libm::cbrt(tolerance / 2e-6)
+}
+
 /// A length or force for a message: six digits are enough to act on.
 pub(super) fn si(x: f64) -> String {
     let rounded = format!("{x:.5e}").parse().unwrap_or(x);
@@ -41,7 +49,8 @@ impl SceneSettings {
         let mut decisions = Decisions::default();
         self.plasticity(&mut wire, &mut decisions);
         let twist = self.twist(integrator, &wire, &mut decisions)?;
-        let solver = self.solver_for(integrator, twist);
+        let span = self.nozzle.distance - extent.turning_radius;
+        let solver = self.solver_for(integrator, twist, (wire.diameter, span));
         self.check_spacing(&solver, &wire, &extent)?;
         let warnings = self.warnings(&solver, &wire, &core, &extent);
 
@@ -272,16 +281,29 @@ impl SceneSettings {
     }
 
     /// Solver settings with the spacing that suits the method where none is given.
-    fn solver_for(&self, integrator: Integrator, twist: Twist) -> Solver {
+    fn solver_for(
+        &self,
+        integrator: Integrator,
+        twist: Twist,
+        (diameter, span): (f64, f64),
+    ) -> Solver {
         // the explicit step falls with the square of the finest spacing wherever it is, so a coarse
         // free span saves little there and costs a refinement front
-        let (near, free, refine): (f64, f64, f64) = match integrator {
-            Integrator::Implicit => (0.4e-3, 3.2e-3, 3e-3),
-            Integrator::Rk4 | Integrator::Verlet => (0.5e-3, 1e-3, 6e-3),
-        };
-        let given = |x: f64, otherwise: f64| if x > 0.0 { x } else { otherwise };
         let s = &self.solver;
+        let given = |x: f64, otherwise: f64| if x > 0.0 { x } else { otherwise };
+        let implicit = integrator == Integrator::Implicit;
+        let (near, refine) = if implicit {
+            let near = spacing_for(s.tolerance).clamp(0.1 * diameter, 8.0 * diameter);
+            (near, 3e-3)
+        } else {
+            (0.5e-3, 6e-3)
+        };
         let spacing_near = given(s.spacing_near, near.min(given(s.spacing_free, near)));
+        let mut free = if implicit { 8.0 * spacing_near } else { 1e-3 };
+        while implicit && 3.0 * free > span && free > spacing_near {
+            // a power of two still, since edges are halved
+            free *= 0.5;
+        }
         Solver {
             integrator,
             twist,

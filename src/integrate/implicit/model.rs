@@ -5,9 +5,7 @@ use super::{Axial, Work, sheet};
 use crate::contact::{LineContact, own_wire};
 use crate::integrate::{Banded, Loads};
 use crate::math::V3;
-use crate::rod::{
-    Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched, turning,
-};
+use crate::rod::{Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched, turning};
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {

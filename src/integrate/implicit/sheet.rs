@@ -171,11 +171,7 @@ impl<const D: usize> WithSimd for Nodes<'_, D> {
             let k = mass * weight;
             let place = sheet.places.load3(simd, 0, i);
             let d = place - sheet.nodes.load3(simd, TARGET, i);
-            let pull = Lanes3::new(
-                mass * gravity.x,
-                mass * gravity.y,
-                mass * gravity.z,
-            );
+            let pull = Lanes3::new(mass * gravity.x, mass * gravity.y, mass * gravity.z);
             sheet
                 .energy
                 .store(0, i, d.dot(d) * (k * 0.5) - pull.dot(place));
@@ -201,14 +197,24 @@ impl<const D: usize> WithSimd for Nodes<'_, D> {
                     sum.store(&mut row[n]);
                 }
                 for s in 0..3 {
-                    let n = if r > s { r * (r + 1) / 2 + s } else { s * (s + 1) / 2 + r };
+                    let n = if r > s {
+                        r * (r + 1) / 2 + s
+                    } else {
+                        s * (s + 1) / 2 + r
+                    };
                     let near = here[3 * r + s] + next[3 * r + s] - own[1][n];
                     near.store(&mut row[10 + 4 * r + s]);
                     (-next[3 * r + s]).store(&mut row[26 + 4 * r + s]);
                 }
             }
-            let (back, ahead) = (b.roll_with(simd, 1, 0, i + 1), b.roll_with(simd, 1, 1, i + 1));
-            let (from, to) = (b.roll_with(simd, 0, 0, i + 2), b.roll_with(simd, 0, 1, i + 2));
+            let (back, ahead) = (
+                b.roll_with(simd, 1, 0, i + 1),
+                b.roll_with(simd, 1, 1, i + 1),
+            );
+            let (from, to) = (
+                b.roll_with(simd, 0, 0, i + 2),
+                b.roll_with(simd, 0, 1, i + 2),
+            );
             let other = b.roll_with(simd, 1, 0, i + 2);
             let own = (back - ahead - from).components();
             let near = (ahead + (from - to)).components();
