@@ -110,6 +110,14 @@ struct Carry<const D: usize> {
     second: Block<D>,
 }
 
+impl<const D: usize> Carry<D> {
+    const NONE: Self = Self {
+        first: Step::ZERO.own,
+        cross: Step::ZERO.own,
+        second: Step::ZERO.own,
+    };
+}
+
 /// The dense rest where the chains meet; only the lower half is used.
 type Middle = [[f64; WIDEST]; WIDEST];
 
@@ -124,6 +132,10 @@ pub struct Banded<const D: usize> {
     steps: Vec<Step<D>>,
     middle: Middle,
     step_factors: Vec<Step<D>>,
+    /// what the nodes before each step take away in it; one more for the middle
+    carries: Vec<Carry<D>>,
+    /// steps whose rows are still those that were factored last
+    kept: usize,
     /// `l` below the reciprocal pivots
     middle_factors: Middle,
 }
@@ -151,6 +163,8 @@ impl<const D: usize> Banded<D> {
             steps: Vec::new(),
             middle: [[0.0; WIDEST]; WIDEST],
             step_factors: Vec::new(),
+            carries: Vec::new(),
+            kept: 0,
             middle_factors: [[0.0; WIDEST]; WIDEST],
         }
     }
@@ -164,6 +178,8 @@ impl<const D: usize> Banded<D> {
         self.steps.resize(steps, Step::ZERO);
         // Factors are written before they are read: no need to clear them.
         self.step_factors.resize(steps, Step::ZERO);
+        self.carries.resize(steps + 1, Carry::NONE);
+        self.kept = 0;
         self.middle = [[0.0; WIDEST]; WIDEST];
     }
 
@@ -173,6 +189,13 @@ impl<const D: usize> Banded<D> {
         let steps = nodes.saturating_sub(2) / 2;
         self.steps.resize(steps, Step::ZERO);
         self.step_factors.resize(steps, Step::ZERO);
+        self.carries.resize(steps + 1, Carry::NONE);
+        self.kept = 0;
+    }
+
+    /// Whether anything of the first or the last node has changed since the last [`Banded::factor`].
+    pub fn ends_changed(&self) -> bool {
+        self.kept == 0
     }
 
     /// Puts what node `i` has: the lower half of its own block, and the blocks with its rows and the columns of the
@@ -246,6 +269,7 @@ impl<const D: usize> Banded<D> {
     pub fn add_diagonal<const B: usize>(&mut self, i: usize, block: &[[f64; B]; B]) {
         match self.place(i, i) {
             Place::Step(step, lane) => {
+                self.kept = self.kept.min(step);
                 let own = &mut self.steps[step].own;
                 for a in 0..B {
                     for b in 0..a + 1 {
@@ -276,6 +300,7 @@ impl<const D: usize> Banded<D> {
         );
         match self.place(i, i + k) {
             Place::Step(step, lane) => {
+                self.kept = self.kept.min(step);
                 let step = &mut self.steps[step];
                 let kept = if k == 1 {
                     &mut step.near
@@ -306,65 +331,15 @@ impl<const D: usize> Banded<D> {
         }
     }
 
-    /// Adds a block between node `i` and node `i + k` (0, 1 or 2) that is nothing but a last `column`, a last
-    /// `row` of as many entries, and their `corner`; of the column of a node with itself nothing is read.
-    #[inline]
-    pub fn add_border<const B: usize>(
-        &mut self,
-        i: usize,
-        k: usize,
-        column: &[f64; B],
-        row: &[f64; B],
-        corner: f64,
-    ) {
-        assert!(B + 1 == D, "a border of {B} and a corner");
-        match self.place(i, i + k) {
-            Place::Step(step, lane) => {
-                let step = &mut self.steps[step];
-                let kept = match k {
-                    0 => &mut step.own,
-                    1 => &mut step.near,
-                    _ => &mut step.far,
-                };
-                kept[B][B].0[lane] += corner;
-                if k == 0 {
-                    for b in 0..B {
-                        kept[B][b].0[lane] += row[b];
-                    }
-                } else if lane == 0 {
-                    for b in 0..B {
-                        kept[B][b].0[0] += row[b];
-                        kept[b][B].0[0] += column[b];
-                    }
-                } else {
-                    for b in 0..B {
-                        kept[b][B].0[1] += row[b];
-                        kept[B][b].0[1] += column[b];
-                    }
-                }
-            }
-            Place::Middle(first, second) => {
-                self.middle[second + B][first + B] += corner;
-                if k == 0 {
-                    for b in 0..B {
-                        self.middle[second + B][first + b] += row[b];
-                    }
-                } else {
-                    for b in 0..B {
-                        self.middle[second + b][first + B] += row[b];
-                        self.middle[second + B][first + b] += column[b];
-                    }
-                }
-            }
-        }
-    }
-
     /// Adds to the diagonal entry of unknown `a` of node `i`.
     #[inline]
     pub fn add_to_entry(&mut self, i: usize, a: usize, value: f64) {
         assert!(a < D, "a node has {D} unknowns, there is no number {a}");
         match self.place(i, i) {
-            Place::Step(step, lane) => self.steps[step].own[a][a].0[lane] += value,
+            Place::Step(step, lane) => {
+                self.kept = self.kept.min(step);
+                self.steps[step].own[a][a].0[lane] += value;
+            }
             Place::Middle(row, _) => self.middle[row + a][row + a] += value,
         }
     }
@@ -395,17 +370,17 @@ impl<const D: usize> Banded<D> {
     /// inwards, of two at equal distance the one nearer the start.
     /// The factors are not to be used then.
     pub fn factor(&mut self) -> Result<(), Loose> {
-        let mut carry = Carry {
-            first: Step::ZERO.own,
-            cross: Step::ZERO.own,
-            second: Step::ZERO.own,
-        };
-        for (step, (rows, factors)) in self.steps.iter().zip(&mut self.step_factors).enumerate() {
-            if !eliminate(rows, &mut carry, factors) {
+        // from the first step on that something has changed in
+        for step in std::mem::take(&mut self.kept)..self.steps.len() {
+            let (before, after) = self.carries.split_at_mut(step + 1);
+            let factors = &mut self.step_factors[step];
+            if !eliminate(&self.steps[step], &before[step], &mut after[0], factors) {
                 return Err(self.loose_in_step(step));
             }
         }
-        self.factor_middle(&carry)
+        self.factor_middle()?;
+        self.kept = self.steps.len();
+        Ok(())
     }
 
     /// Solves in place with the factors of the last [`Banded::factor`].
@@ -523,6 +498,7 @@ impl<const D: usize> Banded<D> {
         };
         match self.place(i, j) {
             Place::Step(step, lane) => {
+                self.kept = self.kept.min(step);
                 let rows = &mut self.steps[step];
                 let (row, column) = if lane == 0 { (a, b) } else { (b, a) };
                 let pair = match j - i {
@@ -553,8 +529,9 @@ impl<const D: usize> Banded<D> {
     }
 
     /// Takes what both chains carry from the middle and factors the rest.
-    fn factor_middle(&mut self, carry: &Carry<D>) -> Result<(), Loose> {
+    fn factor_middle(&mut self) -> Result<(), Loose> {
         let rows = self.middle_rows();
+        let carry = &self.carries[self.steps.len()];
         let m = &mut self.middle_factors;
         *m = self.middle;
         if !self.steps.is_empty() {
@@ -654,13 +631,18 @@ fn symmetric(entry: f64, row: usize, column: usize, x: &[f64], y: &mut [f64]) {
 /// Eliminates one node of each chain; false if a pivot is unsafe.
 ///
 /// The blocks of a node are finished before anything is taken from the next two: each number of
-/// `carry` is then summed over all pivots in a register and stored once.
+/// `after` is then summed over all pivots in a register and stored once.
 ///
 /// Never inlined, nor are the sweeps below: as locals of the caller's loop the numbers carried along
 /// would be taken apart into single lanes and put together again in every round; behind a reference
 /// they stay pairs.
 #[inline(never)]
-fn eliminate<const D: usize>(rows: &Step<D>, carry: &mut Carry<D>, factors: &mut Step<D>) -> bool {
+fn eliminate<const D: usize>(
+    rows: &Step<D>,
+    carry: &Carry<D>,
+    after: &mut Carry<D>,
+    factors: &mut Step<D>,
+) -> bool {
     let mut own = rows.own;
     let mut near = rows.near;
     let mut far = rows.far;
@@ -699,21 +681,21 @@ fn eliminate<const D: usize>(rows: &Step<D>, carry: &mut Carry<D>, factors: &mut
             for p in 0..D {
                 sum = sum + factors.near[p][x] * near[p][y];
             }
-            carry.first[x][y] = sum;
+            after.first[x][y] = sum;
         }
         for y in 0..D {
             let mut sum = factors.near[0][x] * far[0][y];
             for p in 1..D {
                 sum = sum + factors.near[p][x] * far[p][y];
             }
-            carry.cross[x][y] = sum;
+            after.cross[x][y] = sum;
         }
         for y in 0..x + 1 {
             let mut sum = factors.far[0][x] * far[0][y];
             for p in 1..D {
                 sum = sum + factors.far[p][x] * far[p][y];
             }
-            carry.second[x][y] = sum;
+            after.second[x][y] = sum;
         }
     });
     safe
@@ -1028,5 +1010,38 @@ mod tests {
         matrix.reset(0);
         assert_eq!(matrix.factor(), Ok(()));
         matrix.solve(&mut []);
+    }
+
+    /// After a change only the steps from it on are done again: the same factors to the bit as of a new matrix.
+    #[test]
+    fn factors_are_those_of_the_whole() {
+        for nodes in [2, 3, 7, 8, 23, 40] {
+            let seed: Vec<f64> = (0..97).map(|k| f64::from(k * 37 % 97) / 97.0 - 0.4).collect();
+            let dense = positive_definite(nodes, 4, &seed);
+            let bits = |matrix: &mut Banded<4>| {
+                matrix.factor().expect("positive definite");
+                let mut x: Vec<f64> = (0..4 * nodes).map(|k| (k as f64).sin()).collect();
+                matrix.solve(&mut x);
+                x.into_iter().map(f64::to_bits).collect::<Vec<_>>()
+            };
+            for i in 0..nodes {
+                let mut kept = banded::<4>(&dense);
+                let before = bits(&mut kept);
+                assert_eq!(kept.ends_changed(), nodes < 4);
+                let mut new = banded::<4>(&dense);
+                for matrix in [&mut kept, &mut new] {
+                    matrix.add_to_entry(i, 1, 0.3);
+                    if i + 1 < nodes {
+                        matrix.add(i, 1, &[[0.01; 4]; 4]);
+                    }
+                    if i == 1 {
+                        matrix.pin(0, 2);
+                    }
+                }
+                let after = bits(&mut kept);
+                assert!(after == bits(&mut new) && after != before, "node {i} of {nodes}");
+                assert!(after == bits(&mut kept), "nothing changed");
+            }
+        }
     }
 }

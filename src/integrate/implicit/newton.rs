@@ -260,14 +260,17 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
         if !any {
             break;
         }
-        model.pinned(nodes, |i, a| {
-            work.matrix.pin(i, a);
-            work.load[D * i + a] = 0.0;
-        });
-        if Work::<D>::ROLLS {
-            for i in work.rolls.pinned().into_iter().flatten() {
-                work.matrix.pin(i, 3);
-                work.load[D * i + 3] = 0.0;
+        // nothing but the ends is held, but for plane statics
+        if work.matrix.ends_changed() || model.flat {
+            model.pinned(nodes, |i, a| {
+                work.matrix.pin(i, a);
+                work.load[D * i + a] = 0.0;
+            });
+            if Work::<D>::ROLLS {
+                for i in work.rolls.pinned().into_iter().flatten() {
+                    work.matrix.pin(i, 3);
+                    work.load[D * i + 3] = 0.0;
+                }
             }
         }
         work.solves += 1;
