@@ -3,9 +3,10 @@
 //! Formulas are written once, for [`Lanes`] of numbers that never meet: each lane rounds as a lone number would
 //! (no fused multiply-add, no other order), so results are the same to the bit with one lane, with
 //! four (AVX2) and with eight (AVX-512). What the machine has is found out at run time; only what is inlined
-//! into [`run`] is compiled for it, and closures may not be. Numbers of a kind lie in a
-//! column each ([`Columns`]), so that neighbours in the wire are neighbours in memory.
+//! into [`run`] is compiled for it, and closures may not be. Numbers of a kind lie
+//! side by side, in columns of eight rows ([`Block`]).
 
+use crate::math::V3;
 use pulp::Simd;
 pub use pulp::WithSimd;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
@@ -307,104 +308,164 @@ impl<S: Simd> Mul<Lanes<S>> for Lanes3<S> {
     }
 }
 
-/// `N` columns of numbers, with room behind the last row for as many lanes as there may be.
-#[derive(Clone, Debug, Default)]
-pub struct Columns<const N: usize> {
-    stride: usize,
-    data: Vec<f64>,
+/// Rows that lie together in a [`Block`]: as many as there may be lanes.
+pub const ROWS: usize = 8;
+
+/// `N` columns of eight rows each, with the row before them and the one after them.
+///
+/// Loads begin at offset 0 (rows shifted back by one), 1 (the rows) or 2 (shifted on by one) and never leave the
+/// block: nothing to check at run time, and all of it close together in memory.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct Block<const N: usize>([[f64; ROWS + 2]; N]);
+
+impl<const N: usize> Default for Block<N> {
+    fn default() -> Self {
+        Self([[0.0; ROWS + 2]; N])
+    }
 }
 
-impl<const N: usize> Columns<N> {
-    /// Room behind the last row: lanes of a load that begins there, or two rows on.
-    const ROOM: usize = 16;
+impl<const N: usize> Block<N> {
+    /// Lanes of column `k` from row `first` of the block on, shifted by `offset - 1`.
+    #[inline(always)]
+    pub fn load<S: Simd>(&self, simd: S, k: usize, first: usize, offset: usize) -> Lanes<S> {
+        Lanes::load(simd, &self.0[k][first + offset..])
+    }
 
-    /// Makes room for `rows` rows; if there is not as much already, all become 0.
-    pub fn fit(&mut self, rows: usize) {
-        // an odd multiple of 64 bytes: columns must not fall into the same place of the cache
-        let stride = (rows + Self::ROOM).next_multiple_of(16) + 8;
-        if stride != self.stride {
-            self.stride = stride;
-            self.data.clear();
-            self.data.resize(N * stride, 0.0);
+    /// Lanes of columns `k`, `k + 1` and `k + 2`.
+    #[inline(always)]
+    pub fn load3<S: Simd>(&self, simd: S, k: usize, first: usize, offset: usize) -> Lanes3<S> {
+        Lanes3::new(
+            self.load(simd, k, first, offset),
+            self.load(simd, k + 1, first, offset),
+            self.load(simd, k + 2, first, offset),
+        )
+    }
+
+    /// Lanes of columns `k` to `k + M - 1`.
+    #[inline(always)]
+    pub fn load_all<S: Simd, const M: usize>(
+        &self,
+        simd: S,
+        k: usize,
+        first: usize,
+        offset: usize,
+    ) -> [Lanes<S>; M] {
+        // (a closure, as `from_fn` takes, would not be compiled for wide numbers)
+        let mut all = [Lanes::splat(simd, 0.0); M];
+        for a in 0..M {
+            all[a] = self.load(simd, k + a, first, offset);
+        }
+        all
+    }
+
+    /// Lanes into column `k` from row `first` of the block on.
+    #[inline(always)]
+    pub fn store<S: Simd>(&mut self, k: usize, first: usize, lanes: Lanes<S>) {
+        lanes.store(&mut self.0[k][first + 1..]);
+    }
+
+    /// Lanes into columns `k`, `k + 1` and `k + 2`.
+    #[inline(always)]
+    pub fn store3<S: Simd>(&mut self, k: usize, first: usize, lanes: Lanes3<S>) {
+        self.store(k, first, lanes.x);
+        self.store(k + 1, first, lanes.y);
+        self.store(k + 2, first, lanes.z);
+    }
+
+    /// Number of column `k` in row `row`; `ROWS` is the row after the block.
+    #[inline(always)]
+    pub fn get(&self, k: usize, row: usize) -> f64 {
+        self.0[k][row + 1]
+    }
+
+    /// Puts it.
+    #[inline(always)]
+    pub fn set(&mut self, k: usize, row: usize, x: f64) {
+        self.0[k][row + 1] = x;
+    }
+
+    /// Number of column `k` in the row before the block.
+    #[inline(always)]
+    pub fn before(&self, k: usize) -> f64 {
+        self.0[k][0]
+    }
+
+    /// The row before this block is the last of `before`, whose row after is the first of this.
+    #[inline(always)]
+    pub fn follow(&mut self, before: &mut Self) {
+        for (own, other) in self.0.iter_mut().zip(&mut before.0) {
+            own[0] = other[ROWS];
+            other[ROWS + 1] = own[1];
         }
     }
+}
 
-    /// Column `k` from row `i` on.
-    #[inline(always)]
-    pub fn at(&self, k: usize, i: usize) -> &[f64] {
-        &self.data[k * self.stride + i..]
+/// `N` columns of numbers, block by block.
+#[derive(Clone, Debug, Default)]
+pub struct Columns<const N: usize>(Vec<Block<N>>);
+
+impl<const N: usize> Columns<N> {
+    /// Makes room for `rows` rows; what is new is 0.
+    pub fn fit(&mut self, rows: usize) {
+        self.0.resize(rows.div_ceil(ROWS), Block::default());
     }
 
-    /// The same, to be written.
+    /// All blocks.
     #[inline(always)]
-    pub fn at_mut(&mut self, k: usize, i: usize) -> &mut [f64] {
-        &mut self.data[k * self.stride + i..]
+    pub fn blocks(&self) -> &[Block<N>] {
+        &self.0
+    }
+
+    /// All blocks, to be written.
+    #[inline(always)]
+    pub fn blocks_mut(&mut self) -> &mut [Block<N>] {
+        &mut self.0
     }
 
     /// Number `i` of column `k`.
     #[inline(always)]
     pub fn get(&self, k: usize, i: usize) -> f64 {
-        self.data[k * self.stride + i]
+        self.0[i / ROWS].get(k, i % ROWS)
     }
 
     /// Puts number `i` of column `k`.
     #[inline(always)]
     pub fn set(&mut self, k: usize, i: usize, x: f64) {
-        self.data[k * self.stride + i] = x;
-    }
-
-    /// Lanes of columns `k` to `k + M - 1` from row `i` on.
-    #[inline(always)]
-    pub fn load_all<S: Simd, const M: usize>(&self, simd: S, k: usize, i: usize) -> [Lanes<S>; M] {
-        // (a closure, as `from_fn` takes, would not be compiled for wide numbers)
-        let mut all = [Lanes::splat(simd, 0.0); M];
-        for a in 0..M {
-            all[a] = self.load(simd, k + a, i);
-        }
-        all
+        self.0[i / ROWS].set(k, i % ROWS, x);
     }
 
     /// Columns `k`, `k + 1` and `k + 2` at row `i`.
     #[inline(always)]
-    pub fn vector(&self, k: usize, i: usize) -> crate::math::V3 {
-        crate::math::V3::new(self.get(k, i), self.get(k + 1, i), self.get(k + 2, i))
+    pub fn vector(&self, k: usize, i: usize) -> V3 {
+        let (block, row) = (&self.0[i / ROWS], i % ROWS);
+        V3::new(
+            block.get(k, row),
+            block.get(k + 1, row),
+            block.get(k + 2, row),
+        )
     }
 
     /// Puts columns `k`, `k + 1` and `k + 2` at row `i`.
     #[inline(always)]
-    pub fn set_vector(&mut self, k: usize, i: usize, v: &crate::math::V3) {
-        for a in 0..3 {
-            self.set(k + a, i, v[a]);
+    pub fn set_vector(&mut self, k: usize, i: usize, v: &V3) {
+        let (block, row) = (&mut self.0[i / ROWS], i % ROWS);
+        block.set(k, row, v.x);
+        block.set(k + 1, row, v.y);
+        block.set(k + 2, row, v.z);
+    }
+
+    /// Puts the rows next to each block into it; the row before the first is left as it is.
+    #[inline(always)]
+    pub fn join(&mut self) {
+        for i in 1..self.0.len() {
+            let (before, rest) = self.0.split_at_mut(i);
+            rest[0].follow(&mut before[i - 1]);
         }
     }
 
-    /// Lanes of column `k` from row `i` on.
-    #[inline(always)]
-    pub fn load<S: Simd>(&self, simd: S, k: usize, i: usize) -> Lanes<S> {
-        Lanes::load(simd, self.at(k, i))
-    }
-
-    /// Lanes of columns `k`, `k + 1` and `k + 2` from row `i` on.
-    #[inline(always)]
-    pub fn load3<S: Simd>(&self, simd: S, k: usize, i: usize) -> Lanes3<S> {
-        Lanes3::new(
-            self.load(simd, k, i),
-            self.load(simd, k + 1, i),
-            self.load(simd, k + 2, i),
-        )
-    }
-
-    /// Lanes into column `k` from row `i` on.
-    #[inline(always)]
-    pub fn store<S: Simd>(&mut self, k: usize, i: usize, lanes: Lanes<S>) {
-        lanes.store(self.at_mut(k, i));
-    }
-
-    /// Lanes into columns `k`, `k + 1` and `k + 2` from row `i` on.
-    #[inline(always)]
-    pub fn store3<S: Simd>(&mut self, k: usize, i: usize, lanes: Lanes3<S>) {
-        self.store(k, i, lanes.x);
-        self.store(k + 1, i, lanes.y);
-        self.store(k + 2, i, lanes.z);
+    /// Puts number `k` of the row before the first.
+    pub fn set_before(&mut self, k: usize, x: f64) {
+        self.0[0].0[k][0] = x;
     }
 }

@@ -322,8 +322,8 @@ fn impossible_scenes_say_what_would_do() {
             &["too fine", "7e-5 to 0.007 m"],
         ),
         (
-            "[wire]\ndiameter_um = 30\n[tensioner]\ntension = 0.1",
-            &["default scene", "solver.spacing_near", "too coarse"],
+            "[wire]\ndiameter_um = 30\n[tensioner]\ntension = 0.1\n[solver]\nspacing_near_mm = 0.4",
+            &["spacing_near", "solver.spacing_near", "too coarse"],
         ),
         (
             "[solver]\nspacing_near_mm = 0.4\nspacing_free_mm = 0.3",

@@ -199,7 +199,7 @@ pub struct Memory {
 }
 
 impl Memory {
-    fn of(points: &[Point]) -> Self {
+    fn of(points: &[Box<Point>]) -> Self {
         let known = |p: &'_ Point| {
             (0..=p.passages as u8)
                 .zip(p.touch)
@@ -282,7 +282,8 @@ pub struct LineContact {
     pub between: Option<Between>,
     /// every surface near a point at the last evaluation
     near: Vec<Near>,
-    points: Vec<Point>,
+    /// (boxed: they are large, and nodes come and go in the middle)
+    points: Vec<Box<Point>>,
     /// points whose surroundings this attempt at a step looked up, as they were
     undo: Vec<(u32, Point)>,
     found: Vec<u32>,
@@ -291,7 +292,7 @@ pub struct LineContact {
 /// The part of [`LineContact`] that neither the scene nor the frozen wire gives.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct SavedLine {
-    points: Vec<Point>,
+    points: Vec<Box<Point>>,
     loss: ContactLoss,
     deepest: f64,
     /// wire that was taken back counts as well
@@ -357,7 +358,7 @@ impl LineContact {
             deepest: 0.0,
             between: None,
             near: Vec::new(),
-            points: vec![FRESH; 2 * nodes],
+            points: vec![Box::new(FRESH); 2 * nodes],
             undo: Vec::with_capacity(256),
             found: Vec::with_capacity(64),
         }
@@ -442,8 +443,8 @@ impl LineContact {
     /// A node was put in the middle of edge `j`: its point of contact becomes the node's.
     pub fn split(&mut self, j: usize) {
         // edge j's middle (2j + 1) turns into the new node's point, with new middles either side
-        self.points.insert(2 * j + 1, FRESH);
-        self.points.insert(2 * j + 3, FRESH);
+        self.points.insert(2 * j + 1, Box::new(FRESH));
+        self.points.insert(2 * j + 3, Box::new(FRESH));
         if let Some(b) = &mut self.between {
             b.split(j);
         }
@@ -466,7 +467,7 @@ impl LineContact {
     pub fn insert_front(&mut self, nodes: impl DoubleEndedIterator<Item = Memory>) {
         let mut count = 0;
         for memory in nodes.rev() {
-            self.points.splice(0..0, memory.points());
+            self.points.splice(0..0, memory.points().map(Box::new));
             count += 1;
         }
         if let Some(b) = &mut self.between {
@@ -537,7 +538,7 @@ impl LineContact {
     /// The attempt failed: everything it changed becomes what it was.
     pub fn undo_attempt(&mut self) {
         for (k, point) in self.undo.drain(..).rev() {
-            self.points[k as usize] = point;
+            *self.points[k as usize] = point;
         }
         for p in &mut self.points {
             if p.core_near || p.passages > 0 {
@@ -551,7 +552,7 @@ impl LineContact {
     fn look_up(&mut self, k: usize, p: V3, own: f64) {
         let skin = SKIN * 2.0 * self.tube.radius();
         let point = &mut self.points[k];
-        self.undo.push((k as u32, *point));
+        self.undo.push((k as u32, **point));
         point.centre = p;
         point.clear = 0.0;
         let core = self.shape.lower_bound(p);

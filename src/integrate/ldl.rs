@@ -1016,7 +1016,9 @@ mod tests {
     #[test]
     fn factors_are_those_of_the_whole() {
         for nodes in [2, 3, 7, 8, 23, 40] {
-            let seed: Vec<f64> = (0..97).map(|k| f64::from(k * 37 % 97) / 97.0 - 0.4).collect();
+            let seed: Vec<f64> = (0..97)
+                .map(|k| f64::from(k * 37 % 97) / 97.0 - 0.4)
+                .collect();
             let dense = positive_definite(nodes, 4, &seed);
             let bits = |matrix: &mut Banded<4>| {
                 matrix.factor().expect("positive definite");
@@ -1039,7 +1041,10 @@ mod tests {
                     }
                 }
                 let after = bits(&mut kept);
-                assert!(after == bits(&mut new) && after != before, "node {i} of {nodes}");
+                assert!(
+                    after == bits(&mut new) && after != before,
+                    "node {i} of {nodes}"
+                );
                 assert!(after == bits(&mut kept), "nothing changed");
             }
         }

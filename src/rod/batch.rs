@@ -1,15 +1,15 @@
 //! All joints of a rod with twist at once, many side by side: what [`super::twisted()`] does for one.
 //!
 //! Three passes: edges with their frames, angles of the joints, then, after every joint has answered by its law,
-//! gradients and Hessians. What comes of each lies in columns; a joint's or an edge's own row is its number plus one, so that
-//! what is before the first and behind the last is there, and zero or a clamp.
+//! gradients and Hessians, a block of joints at a time for whoever puts them together. The row before the first edge is the
+//! clamp there, the row after the last the clamp at the other end.
 
 use super::forces::Laws;
 use super::joint::{Joint, align, rotate};
 use super::knee::Knee;
 use super::plasticity::{Bend, Scalar};
 use super::twisted::{Answer, Turned, answer};
-use crate::lanes::{Columns, Lanes, Lanes3, WithSimd, run};
+use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
 use crate::math::{Quat, V3};
 use pulp::Simd;
 
@@ -36,21 +36,29 @@ const G1: usize = 9;
 /// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free roll.
 const ANSWER: usize = 8;
 
-/// Columns of a joint's gradient and Hessian: those of [`super::Bent`] and [`super::Rolled`], then the derivative of its angle along
-/// the moment by edge vectors and by rolls.
-const OWN: [usize; 2] = [0, 6];
-const CROSS: usize = 12;
-const ROLL_OWN: usize = 21;
-const ROLL_WITH: [[usize; 2]; 2] = [[24, 27], [30, 33]];
-const GRADIENT: [usize; 2] = [36, 39];
-const TORQUE: usize = 42;
+/// Columns of a joint's gradient and Hessian, see [`super::Bent`] and [`super::Rolled`].
+pub const JOINT: usize = 52;
+/// Hessian by the edge vector before the joint and after it, lower halves.
+pub const OWN: [usize; 2] = [0, 6];
+/// Hessian, rows before, columns after.
+pub const CROSS: usize = 12;
+/// Hessian, roll by roll: before-before, before-after, after-after.
+pub const ROLL_OWN: usize = 21;
+/// Hessian, roll of the edge before or after by either edge vector.
+pub const ROLL_WITH: [[usize; 2]; 2] = [[24, 27], [30, 33]];
+/// Gradient by the edge vectors.
+pub const GRADIENT: [usize; 2] = [36, 39];
+/// Gradient by the rolls.
+pub const TORQUE: usize = 42;
+/// Derivative of the angle along the moment by the edge vectors ...
 const LEAD: [usize; 2] = [44, 47];
+/// ... and by the rolls.
 const LEAD_ROLL: usize = 50;
 
 /// Below this the sine and cosine of a roll are series, see [`align`].
 const SMALL_ROLL: f64 = 2e-3;
 
-/// Columns of all edges and joints.
+/// All edges and joints.
 #[derive(Clone, Debug, Default)]
 pub struct Batch {
     edges: usize,
@@ -60,36 +68,36 @@ pub struct Batch {
     edge: Columns<12>,
     angle: Columns<10>,
     answer: Columns<ANSWER>,
-    joint: Columns<52>,
 }
 
 impl Batch {
     /// Frames and directions of all edges at the last accepted instant, and of the clamps.
     pub fn begin(&mut self, frames: &[Quat], along: &[V3], clamps: [Option<Quat>; 2]) {
         self.edges = frames.len();
-        let rows = self.edges + 3;
+        let rows = self.edges + 1;
         self.places.fit(rows);
         self.roll.fit(rows);
         self.from.fit(rows);
         self.edge.fit(rows);
         self.angle.fit(rows);
         self.answer.fit(rows);
-        self.joint.fit(rows);
         for (j, (f, t)) in frames.iter().zip(along).enumerate() {
             for a in 0..4 {
                 self.from.set(FROM + a, j, f.coords[a]);
             }
             self.from.set_vector(START, j, t);
         }
-        for (end, row) in [(0, 0), (1, self.edges + 1)] {
-            // without a clamp there is no joint; any frame will do
-            let frame = clamps[end].unwrap_or(frames[if end == 0 { 0 } else { self.edges - 1 }]);
-            for a in 0..4 {
-                self.edge.set(FRAME + a, row, frame.coords[a]);
-            }
-            self.edge.set_vector(ALONG, row, &rotate(&frame, &V3::z()));
-            self.edge.set(INVERSE, row, 0.0);
-            self.edge.set_vector(DETOUR, row, &V3::zeros());
+        // without a clamp there is no joint; any frame will do
+        let of = |end: usize| clamps[end].unwrap_or(frames[end * (self.edges - 1)]);
+        for (k, x) in clamp(&of(0)).into_iter().enumerate() {
+            self.edge.set_before(k, x);
+        }
+        self.put_clamp(&of(1));
+    }
+
+    fn put_clamp(&mut self, frame: &Quat) {
+        for (k, x) in clamp(frame).into_iter().enumerate() {
+            self.edge.set(k, self.edges, x);
         }
     }
 
@@ -98,79 +106,81 @@ impl Batch {
         for (i, p) in q.iter().enumerate() {
             self.places.set_vector(0, i, p);
         }
-        self.roll.at_mut(0, 0)[..roll.len()].copy_from_slice(roll);
-        // the pass over the edges runs over the far clamp's row
-        let clamp: [f64; 12] = std::array::from_fn(|k| self.edge.get(k, self.edges + 1));
-        run(Edges(self));
-        for (k, x) in clamp.into_iter().enumerate() {
-            self.edge.set(k, self.edges + 1, x);
+        self.places.join();
+        for (j, roll) in roll.iter().enumerate() {
+            self.roll.set(0, j, *roll);
         }
+        // the pass over the edges goes over the far clamp's row
+        let far = self.frame(self.edges);
+        run(Edges(self));
+        self.put_clamp(&far);
         for (j, roll) in roll.iter().enumerate() {
             if roll.abs() >= SMALL_ROLL {
-                let from = Quat::from_vector(nalgebra::Vector4::from_fn(|a, _| {
-                    self.from.get(FROM + a, j)
-                }));
+                let from = quaternion(|a| self.from.get(FROM + a, j));
                 let frame = align(&from, &self.along(j), *roll);
                 for a in 0..4 {
-                    self.edge.set(FRAME + a, j + 1, frame.coords[a]);
+                    self.edge.set(FRAME + a, j, frame.coords[a]);
                 }
             }
         }
+        self.edge.join();
         run(Angles(self));
         for j in 0..=self.edges {
-            let (s2, ratio) = (
-                self.angle.get(V, j).powi(2) + self.angle.get(V + 1, j).powi(2),
-                self.angle.get(V + 2, j) / self.angle.get(W, j),
-            );
-            if s2 >= Joint::SERIES || ratio.is_nan() || ratio.abs() >= Joint::TWIST_SERIES {
-                let joint = Joint::between(&self.frame(j), &self.frame(j + 1));
-                let (bend, g) = (joint.bend, joint.series());
-                self.angle.set(BEND, j, bend[0]);
-                self.angle.set(BEND + 1, j, bend[1]);
-                self.angle.set(TWIST, j, joint.twist);
-                self.angle.set(G, j, g[0]);
-                self.angle.set(G1, j, g[1]);
+            let v = self.angle.vector(V, j);
+            let ratio = v.z / self.angle.get(W, j);
+            let small = v.x * v.x + v.y * v.y < Joint::SERIES && ratio.abs() < Joint::TWIST_SERIES;
+            if !small {
+                self.put_large_angles(j);
             }
         }
     }
 
-    /// Frame in row `row`.
-    fn frame(&self, row: usize) -> Quat {
-        Quat::from_vector(nalgebra::Vector4::from_fn(|a, _| {
-            self.edge.get(FRAME + a, row)
-        }))
+    #[cold]
+    fn put_large_angles(&mut self, j: usize) {
+        let before = match j {
+            0 => quaternion(|a| self.edge.blocks()[0].before(FRAME + a)),
+            _ => self.frame(j - 1),
+        };
+        let joint = Joint::between(&before, &self.frame(j));
+        let (bend, g) = (joint.bend, joint.series());
+        self.angle.set(BEND, j, bend[0]);
+        self.angle.set(BEND + 1, j, bend[1]);
+        self.angle.set(TWIST, j, joint.twist);
+        self.angle.set(G, j, g[0]);
+        self.angle.set(G1, j, g[1]);
+    }
+
+    /// Frame of edge `j`; the far clamp's after the last.
+    fn frame(&self, j: usize) -> Quat {
+        quaternion(|a| self.edge.get(FRAME + a, j))
     }
 
     /// Direction of edge `j`.
     #[inline]
     pub fn along(&self, j: usize) -> V3 {
-        self.edge.vector(ALONG, j + 1)
+        self.edge.vector(ALONG, j)
     }
 
     /// Length of edge `j`, m.
     #[inline]
     pub fn length(&self, j: usize) -> f64 {
-        self.edge.get(LENGTH, j + 1)
+        self.edge.get(LENGTH, j)
     }
 
     /// Inverse length of edge `j`, 1/m.
     #[inline]
     pub fn inverse(&self, j: usize) -> f64 {
-        self.edge.get(INVERSE, j + 1)
+        self.edge.get(INVERSE, j)
     }
 
     /// Edge `j` as [`super::twisted()`] takes it.
     pub fn turned(&self, j: usize) -> Turned {
-        Turned::known(
-            self.frame(j + 1),
-            self.along(j),
-            self.inverse(j),
-            self.edge.vector(DETOUR, j + 1),
-        )
+        let detour = self.edge.vector(DETOUR, j);
+        Turned::known(self.frame(j), self.along(j), self.inverse(j), detour)
     }
 
-    /// Gradients and Hessians of the joints from `first` to `last`; returns their energy. `length` is the length
-    /// that a joint stands for. `knees` gets those joints that may change their branch.
+    /// Lets the joints from `first` to `last` answer; returns their energy. `length` is the length
+    /// that a joint stands for. `knees` gets those joints that may change their branch, for [`Self::joints`] to complete.
     pub fn respond(
         &mut self,
         laws: &Laws,
@@ -181,14 +191,17 @@ impl Batch {
     ) -> f64 {
         let mut energy = 0.0;
         for j in 0..=self.edges {
+            let (block, row) = (j / ROWS, j % ROWS);
+            let answers = &mut self.answer.blocks_mut()[block];
             if j < first || j > last {
                 for k in 0..ANSWER {
-                    self.answer.set(k, j, 0.0);
+                    answers.set(k, row, 0.0);
                 }
                 continue;
             }
-            let bend = [self.angle.get(BEND, j), self.angle.get(BEND + 1, j)];
-            let twist = self.angle.get(TWIST, j);
+            let angles = &self.angle.blocks()[block];
+            let bend = [angles.get(BEND, row), angles.get(BEND + 1, row)];
+            let twist = angles.get(TWIST, row);
             let Answer {
                 energy: own,
                 along,
@@ -199,79 +212,76 @@ impl Batch {
                 knee,
             } = answer(laws, &state.0[j], &state.1[j], length(j), bend, twist);
             energy += own;
-            let all = [
-                along[0],
-                along[1],
-                push,
-                torque,
-                stiffness[0],
-                stiffness[1],
-                stiffness[2],
-                free,
-            ];
-            for (k, x) in all.into_iter().enumerate() {
-                self.answer.set(k, j, x);
+            answers.set(0, row, along[0]);
+            answers.set(1, row, along[1]);
+            answers.set(2, row, push);
+            answers.set(3, row, torque);
+            for k in 0..3 {
+                answers.set(4 + k, row, stiffness[k]);
             }
+            answers.set(7, row, free);
             if let Some(knee) = knee {
                 knees.push((j as u32, knee));
-            }
-        }
-        run(Joints(self));
-        for (j, knee) in knees {
-            let row = *j as usize + 1;
-            for k in 0..2 {
-                knee.rows[k] = self.joint.vector(LEAD[k], row);
-                knee.rolls[k] = self.joint.get(LEAD_ROLL + k, row);
             }
         }
         energy
     }
 
-    /// Directions and inverse lengths of edges from `j` on.
-    #[inline(always)]
-    pub fn edges<S: Simd>(&self, simd: S, j: usize) -> (Lanes3<S>, Lanes<S>) {
-        (
-            self.edge.load3(simd, ALONG, j + 1),
-            self.edge.load(simd, INVERSE, j + 1),
-        )
+    /// Blocks of eight edges or joints.
+    pub fn blocks(&self) -> usize {
+        self.edge.blocks().len()
     }
 
-    /// Hessian by the edge vector before a joint with itself (`side` 0) or after it (1), lower half; `row` is the
-    /// first joint's number plus one, here and below.
+    /// Directions of the edges of `block` from row `first` on.
     #[inline(always)]
-    pub fn own<S: Simd>(&self, simd: S, side: usize, row: usize) -> [Lanes<S>; 6] {
-        self.joint.load_all(simd, OWN[side], row)
+    pub fn directions<S: Simd>(&self, simd: S, block: usize, first: usize) -> Lanes3<S> {
+        self.edge.blocks()[block].load3(simd, ALONG, first, 1)
     }
 
-    /// Hessian, rows before, columns after.
+    /// Gradients and Hessians of the joints of `block`. The first of `knees` that are not complete yet and lie in it
+    /// become so, and go out of the slice.
     #[inline(always)]
-    pub fn cross<S: Simd>(&self, simd: S, row: usize) -> [Lanes<S>; 9] {
-        self.joint.load_all(simd, CROSS, row)
+    pub fn joints<S: Simd>(
+        &self,
+        simd: S,
+        block: usize,
+        out: &mut Block<JOINT>,
+        knees: &mut &mut [(u32, Knee)],
+    ) {
+        for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
+            let all = (
+                &self.edge.blocks()[block],
+                &self.angle.blocks()[block],
+                &self.answer.blocks()[block],
+            );
+            joints(simd, all, first, out);
+        }
+        while let Some((j, _)) = knees.first()
+            && *j as usize / ROWS == block
+        {
+            let (one, rest) = std::mem::take(knees).split_at_mut(1);
+            *knees = rest;
+            let (j, knee) = &mut one[0];
+            let row = *j as usize % ROWS;
+            for k in 0..2 {
+                let at = |a: usize| out.get(LEAD[k] + a, row);
+                knee.rows[k] = V3::new(at(0), at(1), at(2));
+                knee.rolls[k] = out.get(LEAD_ROLL + k, row);
+            }
+        }
     }
+}
 
-    /// Gradient by the edge vector before or after.
-    #[inline(always)]
-    pub fn gradient<S: Simd>(&self, simd: S, side: usize, row: usize) -> Lanes3<S> {
-        self.joint.load3(simd, GRADIENT[side], row)
-    }
+/// Columns of a clamp as an edge.
+fn clamp(frame: &Quat) -> [f64; 12] {
+    let mut all = [0.0; 12];
+    all[ALONG..ALONG + 3].copy_from_slice(rotate(frame, &V3::z()).as_slice());
+    all[FRAME..FRAME + 4].copy_from_slice(frame.coords.as_slice());
+    all
+}
 
-    /// Gradient by the roll of the edge before or after.
-    #[inline(always)]
-    pub fn torque<S: Simd>(&self, simd: S, side: usize, row: usize) -> Lanes<S> {
-        self.joint.load(simd, TORQUE + side, row)
-    }
-
-    /// Hessian, roll by roll: before-before, before-after, after-after.
-    #[inline(always)]
-    pub fn roll<S: Simd>(&self, simd: S, which: usize, row: usize) -> Lanes<S> {
-        self.joint.load(simd, ROLL_OWN + which, row)
-    }
-
-    /// Hessian, roll of the edge `side` by edge vector `by`.
-    #[inline(always)]
-    pub fn roll_with<S: Simd>(&self, simd: S, side: usize, by: usize, row: usize) -> Lanes3<S> {
-        self.joint.load3(simd, ROLL_WITH[side][by], row)
-    }
+fn quaternion(of: impl Fn(usize) -> f64) -> Quat {
+    Quat::from_vector(nalgebra::Vector4::new(of(0), of(1), of(2), of(3)))
 }
 
 /// First pass: directions, lengths and frames of the edges.
@@ -284,43 +294,47 @@ impl WithSimd for Edges<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let b = self.0;
         let one = Lanes::splat(simd, 1.0);
-        for j in (0..b.edges).step_by(Lanes::<S>::COUNT) {
-            let d = b.places.load3(simd, 0, j + 1) - b.places.load3(simd, 0, j);
-            let length = d.dot(d).sqrt();
-            let inverse = length.recip();
-            let t = d * inverse;
-            let from: [_; 4] = b.from.load_all(simd, FROM, j);
-            // see `align`: the direction in the body frame, then swing and roll as one turn
-            let v = Lanes3::new(from[0], from[1], from[2]);
-            let u = t.cross(v);
-            let u = u + u;
-            let body = t + u * from[3] + u.cross(v);
-            let half = b.roll.load(simd, 0, j) * 0.5;
-            let h2 = half * half;
-            let c = one - h2 * 0.5 + h2 * h2 * (1.0 / 24.0);
-            let s = half * (one - h2 * (one * (1.0 / 6.0) - h2 * (1.0 / 120.0)));
-            let w = body.z + 1.0;
-            let turn = [
-                body.x * s - body.y * c,
-                body.x * c + body.y * s,
-                w * s,
-                w * c,
-            ];
-            let frame = product(from, turn);
-            let norm = frame[0] * frame[0]
-                + frame[1] * frame[1]
-                + frame[2] * frame[2]
-                + frame[3] * frame[3];
-            let norm = norm.sqrt().recip();
-            let start = b.from.load3(simd, START, j);
-            let detour = t.cross(start) * (start.dot(t) + 1.0).recip();
-            b.edge.store3(ALONG, j + 1, t);
-            b.edge.store(INVERSE, j + 1, inverse);
-            b.edge.store(LENGTH, j + 1, length);
-            for k in 0..4 {
-                b.edge.store(FRAME + k, j + 1, frame[k] * norm);
+        let places = b.places.blocks().iter();
+        let inputs = places.zip(b.from.blocks()).zip(b.roll.blocks());
+        for (((q, before), rolls), edge) in inputs.zip(b.edge.blocks_mut()) {
+            for j in (0..ROWS).step_by(Lanes::<S>::COUNT) {
+                let d = q.load3(simd, 0, j, 2) - q.load3(simd, 0, j, 1);
+                let length = d.dot(d).sqrt();
+                let inverse = length.recip();
+                let t = d * inverse;
+                let from: [_; 4] = before.load_all(simd, FROM, j, 1);
+                // see `align`: the direction in the body frame, then swing and roll as one turn
+                let v = Lanes3::new(from[0], from[1], from[2]);
+                let u = t.cross(v);
+                let u = u + u;
+                let body = t + u * from[3] + u.cross(v);
+                let half = rolls.load(simd, 0, j, 1) * 0.5;
+                let h2 = half * half;
+                let c = one - h2 * 0.5 + h2 * h2 * (1.0 / 24.0);
+                let s = half * (one - h2 * (one * (1.0 / 6.0) - h2 * (1.0 / 120.0)));
+                let w = body.z + 1.0;
+                let turn = [
+                    body.x * s - body.y * c,
+                    body.x * c + body.y * s,
+                    w * s,
+                    w * c,
+                ];
+                let frame = product(from, turn);
+                let norm = frame[0] * frame[0]
+                    + frame[1] * frame[1]
+                    + frame[2] * frame[2]
+                    + frame[3] * frame[3];
+                let norm = norm.sqrt().recip();
+                let start = before.load3(simd, START, j, 1);
+                let detour = t.cross(start) * (start.dot(t) + 1.0).recip();
+                edge.store3(ALONG, j, t);
+                edge.store(INVERSE, j, inverse);
+                edge.store(LENGTH, j, length);
+                for k in 0..4 {
+                    edge.store(FRAME + k, j, frame[k] * norm);
+                }
+                edge.store3(DETOUR, j, detour);
             }
-            b.edge.store3(DETOUR, j + 1, detour);
         }
     }
 }
@@ -345,26 +359,28 @@ impl WithSimd for Angles<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let b = self.0;
-        for j in (0..=b.edges).step_by(Lanes::<S>::COUNT) {
-            let p: [_; 4] = b.edge.load_all(simd, FRAME, j);
-            let n = b.edge.load_all(simd, FRAME, j + 1);
-            let [x, y, z, w] = product([-p[0], -p[1], -p[2], p[3]], n);
-            let (x, y, z) = (x.with_sign_of(w), y.with_sign_of(w), z.with_sign_of(w));
-            let w = w.with_sign_of(w);
-            let s2 = x * x + y * y;
-            let c = (w * w + z * z).sqrt();
-            let g = series(&Joint::ANGLE, s2);
-            let g1 = series(&Joint::ANGLE_SLOPE, s2);
-            let ratio = z.over(w);
-            let twist = ratio * series(&Joint::TWIST, ratio * ratio);
-            b.angle.store(BEND, j, g * x);
-            b.angle.store(BEND + 1, j, g * y);
-            b.angle.store(TWIST, j, twist);
-            b.angle.store(W, j, w);
-            b.angle.store3(V, j, Lanes3::new(x, y, z));
-            b.angle.store(COSINE, j, c);
-            b.angle.store(G, j, g);
-            b.angle.store(G1, j, g1);
+        for (edge, angle) in b.edge.blocks().iter().zip(b.angle.blocks_mut()) {
+            for j in (0..ROWS).step_by(Lanes::<S>::COUNT) {
+                let p: [_; 4] = edge.load_all(simd, FRAME, j, 0);
+                let n = edge.load_all(simd, FRAME, j, 1);
+                let [x, y, z, w] = product([-p[0], -p[1], -p[2], p[3]], n);
+                let (x, y, z) = (x.with_sign_of(w), y.with_sign_of(w), z.with_sign_of(w));
+                let w = w.with_sign_of(w);
+                let s2 = x * x + y * y;
+                let c = (w * w + z * z).sqrt();
+                let g = series(&Joint::ANGLE, s2);
+                let g1 = series(&Joint::ANGLE_SLOPE, s2);
+                let ratio = z.over(w);
+                let twist = ratio * series(&Joint::TWIST, ratio * ratio);
+                angle.store(BEND, j, g * x);
+                angle.store(BEND + 1, j, g * y);
+                angle.store(TWIST, j, twist);
+                angle.store(W, j, w);
+                angle.store3(V, j, Lanes3::new(x, y, z));
+                angle.store(COSINE, j, c);
+                angle.store(G, j, g);
+                angle.store(G1, j, g1);
+            }
         }
     }
 }
@@ -388,11 +404,11 @@ struct Side<S: Simd> {
 
 impl<S: Simd> Side<S> {
     #[inline(always)]
-    fn load(b: &Batch, simd: S, row: usize) -> Self {
+    fn load(edge: &Block<12>, simd: S, first: usize, offset: usize) -> Self {
         Self {
-            along: b.edge.load3(simd, ALONG, row),
-            inverse: b.edge.load(simd, INVERSE, row),
-            detour: b.edge.load3(simd, DETOUR, row),
+            along: edge.load3(simd, ALONG, first, offset),
+            inverse: edge.load(simd, INVERSE, first, offset),
+            detour: edge.load3(simd, DETOUR, first, offset),
         }
     }
 
@@ -412,113 +428,106 @@ fn pair<S: Simd>(before: &Side<S>, after: &Side<S>, row: Lanes3<S>) -> [(Lanes3<
     [(-w0, -r0), after.derivative(row)]
 }
 
-/// Third pass: gradients and Hessians of the joints from their answers.
-struct Joints<'a>(&'a mut Batch);
-
-impl WithSimd for Joints<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let b = self.0;
-        for j in (0..=b.edges).step_by(Lanes::<S>::COUNT) {
-            let [bend_w, vx, vy, vz, cosine, g, g1] = b.angle.load_all(simd, W, j);
-            let [d0, d1, push, couple, c0, c1, c2, free] = b.answer.load_all(simd, 0, j);
-            // see `Joint::rows`
-            let (w, v) = (bend_w, Lanes3::new(vx, vy, vz));
-            let (p, q) = (w * v.x - v.z * v.y, w * v.y + v.z * v.x);
-            let inv_c = cosine.recip();
-            let k = g1 * 0.5 + inv_c;
-            let g = g * 0.5;
-            let (kx, ky, inv_c2) = (k * v.x, k * v.y, inv_c * inv_c);
-            let (gw, gz) = (g * w, g * v.z);
-            let rows = [
-                Lanes3::new(gw + kx * p, gz + kx * q, -(g * v.y)),
-                Lanes3::new(ky * p - gz, gw + ky * q, g * v.x),
-            ];
-            let turn = matrix(b.edge.load_all(simd, FRAME, j));
-            let lead = turned(&turn, rows[0] * d0 + rows[1] * d1);
-            let side = turned(&turn, rows[1] * d0 - rows[0] * d1);
-            let about = turn[0] * (q * inv_c2) - turn[1] * (p * inv_c2) + turn[2];
-            let (before, after) = (Side::load(b, simd, j), Side::load(b, simd, j + 1));
-            let lead = pair(&before, &after, lead);
-            let [(w0, r0), (w1, r1)] = pair(&before, &after, side);
-            let side = [
-                (w0 + before.detour * (free * before.inverse), r0 + free),
-                (w1 + after.detour * (free * after.inverse), r1 + free),
-            ];
-            let about = pair(&before, &after, about);
-            for e in 0..2 {
-                b.joint
-                    .store3(GRADIENT[e], j + 1, lead[e].0 * push + about[e].0 * couple);
-                b.joint
-                    .store(TORQUE + e, j + 1, lead[e].1 * push + about[e].1 * couple);
-                b.joint.store3(LEAD[e], j + 1, lead[e].0);
-                b.joint.store(LEAD_ROLL + e, j + 1, lead[e].1);
+/// Third pass: gradients and Hessians of joints from their answers.
+#[inline(always)]
+fn joints<S: Simd>(
+    simd: S,
+    (edge, angle, law): (&Block<12>, &Block<10>, &Block<ANSWER>),
+    j: usize,
+    out: &mut Block<JOINT>,
+) {
+    let [bend_w, vx, vy, vz, cosine, g, g1] = angle.load_all(simd, W, j, 1);
+    let [d0, d1, push, couple, c0, c1, c2, free] = law.load_all(simd, 0, j, 1);
+    // see `Joint::rows`
+    let (w, v) = (bend_w, Lanes3::new(vx, vy, vz));
+    let (p, q) = (w * v.x - v.z * v.y, w * v.y + v.z * v.x);
+    let inv_c = cosine.recip();
+    let k = g1 * 0.5 + inv_c;
+    let g = g * 0.5;
+    let (kx, ky, inv_c2) = (k * v.x, k * v.y, inv_c * inv_c);
+    let (gw, gz) = (g * w, g * v.z);
+    let rows = [
+        Lanes3::new(gw + kx * p, gz + kx * q, -(g * v.y)),
+        Lanes3::new(ky * p - gz, gw + ky * q, g * v.x),
+    ];
+    let turn = matrix(edge.load_all(simd, FRAME, j, 0));
+    let lead = turned(&turn, rows[0] * d0 + rows[1] * d1);
+    let side = turned(&turn, rows[1] * d0 - rows[0] * d1);
+    let about = turn[0] * (q * inv_c2) - turn[1] * (p * inv_c2) + turn[2];
+    let (before, after) = (Side::load(edge, simd, j, 0), Side::load(edge, simd, j, 1));
+    let lead = pair(&before, &after, lead);
+    let [(w0, r0), (w1, r1)] = pair(&before, &after, side);
+    let side = [
+        (w0 + before.detour * (free * before.inverse), r0 + free),
+        (w1 + after.detour * (free * after.inverse), r1 + free),
+    ];
+    let about = pair(&before, &after, about);
+    for e in 0..2 {
+        out.store3(GRADIENT[e], j, lead[e].0 * push + about[e].0 * couple);
+        out.store(TORQUE + e, j, lead[e].1 * push + about[e].1 * couple);
+        out.store3(LEAD[e], j, lead[e].0);
+        out.store(LEAD_ROLL + e, j, lead[e].1);
+    }
+    // rows of the three angles, each with its stiffness
+    let all = [lead, side, about];
+    let c = [c0, c1, c2];
+    let edge = [
+        [all[0][0].0, all[1][0].0, all[2][0].0],
+        [all[0][1].0, all[1][1].0, all[2][1].0],
+    ];
+    for e in 0..2 {
+        let v = [
+            edge[e][0].components(),
+            edge[e][1].components(),
+            edge[e][2].components(),
+        ];
+        let cv = [
+            (edge[e][0] * c[0]).components(),
+            (edge[e][1] * c[1]).components(),
+            (edge[e][2] * c[2]).components(),
+        ];
+        let mut at = OWN[e];
+        for r in 0..3 {
+            for s in 0..r + 1 {
+                let sum = cv[0][r] * v[0][s] + cv[1][r] * v[1][s] + cv[2][r] * v[2][s];
+                out.store(at, j, sum);
+                at += 1;
             }
-            // rows of the three angles, each with its stiffness
-            let all = [lead, side, about];
-            let c = [c0, c1, c2];
-            let edge = [
-                [all[0][0].0, all[1][0].0, all[2][0].0],
-                [all[0][1].0, all[1][1].0, all[2][1].0],
+        }
+        if e == 0 {
+            let v = [
+                edge[1][0].components(),
+                edge[1][1].components(),
+                edge[1][2].components(),
             ];
-            for e in 0..2 {
-                let v = [
-                    edge[e][0].components(),
-                    edge[e][1].components(),
-                    edge[e][2].components(),
-                ];
-                let cv = [
-                    (edge[e][0] * c[0]).components(),
-                    (edge[e][1] * c[1]).components(),
-                    (edge[e][2] * c[2]).components(),
-                ];
-                let mut at = OWN[e];
-                for r in 0..3 {
-                    for s in 0..r + 1 {
-                        let sum = cv[0][r] * v[0][s] + cv[1][r] * v[1][s] + cv[2][r] * v[2][s];
-                        b.joint.store(at, j + 1, sum);
-                        at += 1;
-                    }
-                }
-                if e == 0 {
-                    let v = [
-                        edge[1][0].components(),
-                        edge[1][1].components(),
-                        edge[1][2].components(),
-                    ];
-                    for r in 0..3 {
-                        for s in 0..3 {
-                            let sum = cv[0][r] * v[0][s] + cv[1][r] * v[1][s] + cv[2][r] * v[2][s];
-                            b.joint.store(CROSS + 3 * r + s, j + 1, sum);
-                        }
-                    }
+            for r in 0..3 {
+                for s in 0..3 {
+                    let sum = cv[0][r] * v[0][s] + cv[1][r] * v[1][s] + cv[2][r] * v[2][s];
+                    out.store(CROSS + 3 * r + s, j, sum);
                 }
             }
-            let r = [
-                [all[0][0].1, all[0][1].1],
-                [all[1][0].1, all[1][1].1],
-                [all[2][0].1, all[2][1].1],
-            ];
-            let cr = [
-                [r[0][0] * c[0], r[0][1] * c[0]],
-                [r[1][0] * c[1], r[1][1] * c[1]],
-                [r[2][0] * c[2], r[2][1] * c[2]],
-            ];
-            let which = [(0, 0), (0, 1), (1, 1)];
-            for k in 0..3 {
-                let (e, f) = which[k];
-                let sum = cr[0][e] * r[0][f] + cr[1][e] * r[1][f] + cr[2][e] * r[2][f];
-                b.joint.store(ROLL_OWN + k, j + 1, sum);
-            }
-            for e in 0..2 {
-                for f in 0..2 {
-                    let sum =
-                        all[0][f].0 * cr[0][e] + all[1][f].0 * cr[1][e] + all[2][f].0 * cr[2][e];
-                    b.joint.store3(ROLL_WITH[e][f], j + 1, sum);
-                }
-            }
+        }
+    }
+    let r = [
+        [all[0][0].1, all[0][1].1],
+        [all[1][0].1, all[1][1].1],
+        [all[2][0].1, all[2][1].1],
+    ];
+    let cr = [
+        [r[0][0] * c[0], r[0][1] * c[0]],
+        [r[1][0] * c[1], r[1][1] * c[1]],
+        [r[2][0] * c[2], r[2][1] * c[2]],
+    ];
+    let which = [(0, 0), (0, 1), (1, 1)];
+    for k in 0..3 {
+        let (e, f) = which[k];
+        let sum = cr[0][e] * r[0][f] + cr[1][e] * r[1][f] + cr[2][e] * r[2][f];
+        out.store(ROLL_OWN + k, j, sum);
+    }
+    for e in 0..2 {
+        for f in 0..2 {
+            let sum = all[0][f].0 * cr[0][e] + all[1][f].0 * cr[1][e] + all[2][f].0 * cr[2][e];
+            out.store3(ROLL_WITH[e][f], j, sum);
         }
     }
 }
@@ -610,7 +619,25 @@ mod tests {
         })
     }
 
-    fn respond(w: &Wire) -> (Batch, f64, Vec<(u32, Knee)>) {
+    /// All blocks of joints.
+    struct All<'a>(&'a Batch, &'a mut [(u32, Knee)]);
+
+    impl WithSimd for All<'_> {
+        type Output = Vec<Block<JOINT>>;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let Self(batch, mut knees) = self;
+            let mut all = vec![Block::default(); batch.blocks()];
+            for (block, out) in all.iter_mut().enumerate() {
+                batch.joints(simd, block, out, &mut knees);
+            }
+            assert!(knees.is_empty());
+            all
+        }
+    }
+
+    fn respond(w: &Wire) -> (Vec<Block<JOINT>>, f64, Vec<(u32, Knee)>) {
         let mut batch = Batch::default();
         let mut knees = Vec::new();
         let edges = w.frames.len();
@@ -618,7 +645,7 @@ mod tests {
         batch.place(&w.q, &w.roll);
         let state = (&w.bend[..], &w.twist[..]);
         let energy = batch.respond(&laws(), state, [0, edges - 1], |_| LV, &mut knees);
-        (batch, energy, knees)
+        (run(All(&batch, &mut knees)), energy, knees)
     }
 
     /// The slow twin is one joint at a time.
@@ -626,7 +653,7 @@ mod tests {
     fn each_joint_is_that_of_the_rod_one_by_one() {
         for (seed, edges, crooked) in [(1, 30, 0.05), (2, 7, 0.5), (3, 1, 1.0), (4, 17, 0.9)] {
             let w = wire(seed, edges, crooked);
-            let (batch, energy, knees) = respond(&w);
+            let (joints, energy, knees) = respond(&w);
             let turned = |j: usize| {
                 let d = w.q[j + 1] - w.q[j];
                 let l = d.norm();
@@ -640,13 +667,12 @@ mod tests {
                 let (bent, rolled) = twisted(&laws(), bend, twist, LV, [&before, &after]);
                 before = after;
                 sum += bent.energy;
-                let row = j + 1;
                 let mut pairs = Vec::new();
                 let list = |at: usize, n: usize| (0..n).map(move |k| (at, k));
                 let mut compare = |at: usize, want: &[f64]| {
                     let size = want.iter().fold(0.0, |s: f64, x| s.max(x.abs()));
                     for (at, k) in list(at, want.len()) {
-                        pairs.push((batch.joint.get(at + k, row), want[k], size));
+                        pairs.push((joints[j / ROWS].get(at + k, j % ROWS), want[k], size));
                     }
                 };
                 for e in 0..2 {
@@ -690,9 +716,11 @@ mod tests {
             let all = [Width::One, Width::Four, Width::Eight].map(|most| {
                 at_most(most);
                 seen.push(width());
-                let (batch, energy, _) = respond(&w);
-                let numbers = (0..52).flat_map(|k| batch.joint.at(k, 0)[..edges + 1].to_vec());
-                let bits: Vec<u64> = numbers.map(f64::to_bits).collect();
+                let (joints, energy, _) = respond(&w);
+                let mut bits = Vec::new();
+                for j in 0..edges {
+                    bits.extend((0..JOINT).map(|k| joints[j / ROWS].get(k, j % ROWS).to_bits()));
+                }
                 (bits, energy.to_bits())
             });
             at_most(Width::Four);

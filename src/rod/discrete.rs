@@ -211,7 +211,7 @@ pub(super) fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3
         let e = 0.5 * n2 / law.modulus;
         let n = n2.sqrt();
         let dir = if Knee::matters(law, n, rise) {
-            trial / n
+            trial * (1.0 / n)
         } else {
             V3::zeros()
         };

@@ -43,8 +43,7 @@ impl Knee {
     /// Puts the tangent at an `angle` farther on in the place of one that promised something else; returns the
     /// changes of stiffness and moment.
     pub fn foresee(&mut self, law: &Law, angle: f64) -> Option<(f64, f64)> {
-        if self.branch == 0
-            && (self.trial + self.stiffness * angle).abs() <= law.limit + self.rise
+        if self.branch == 0 && (self.trial + self.stiffness * angle).abs() <= law.limit + self.rise
         {
             return None;
         }

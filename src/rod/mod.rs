@@ -4,7 +4,7 @@
 //! Node 0 is the oldest wire (the clamp), the last node the youngest (the nozzle); edge `j` runs
 //! from node `j` to node `j + 1`; joint `i` is the bend and twist at node `i`.
 
-mod batch;
+pub mod batch;
 mod discrete;
 mod forces;
 mod joint;

@@ -142,7 +142,7 @@ pub(super) fn answer(
         laws.twist.modulus
     };
     let n = trial.norm();
-    let d = if n > 0.0 { trial / n } else { V3::x() };
+    let d = if n > 0.0 { trial * (1.0 / n) } else { V3::x() };
     // a joint whose edges roll alike sees its curvature turn: the energy curves by `curved (curved - elastic)` there
     let curved = (angle[0] * d.x + angle[1] * d.y) * inv;
     let kept = (curved * (curved - n / laws.bend.modulus)).max(0.0).sqrt();

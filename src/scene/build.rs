@@ -9,12 +9,13 @@ use crate::integrate::Twist;
 use crate::rod::Section;
 use std::path::{Path, PathBuf};
 
-/// Node spacing near the core that goes with a tolerance, m: 0.4 mm at 2e-6 m.
+/// Node spacing near the core that goes with a tolerance, m: 0.4 mm to 2e-6 m.
 ///
-/// At a tolerance the steps are as its cube root, and both time and space are of second order: this
-/// keeps the shares of the error that come from either (`fig8`: at 1e-5 m and 0.4 mm nearly all was from the steps).
+/// Above, steps are as the cube root of the tolerance, and both time and space are of second order: a
+/// spacing as that root too keeps the shares of the error that come from either (`fig8` at 1e-5 m and 0.4 mm:
+/// nearly all was from the steps).
 fn spacing_for(tolerance: f64) -> f64 {
-    0.4e-3 * libm::cbrt(tolerance / 2e-6)
+    0.4e-3 * libm::cbrt((tolerance / 2e-6).max(1.0))
 }
 
 /// A length or force for a message: six digits are enough to act on.
@@ -293,7 +294,7 @@ impl SceneSettings {
         let given = |x: f64, otherwise: f64| if x > 0.0 { x } else { otherwise };
         let implicit = integrator == Integrator::Implicit;
         let (near, refine) = if implicit {
-            let near = spacing_for(s.tolerance).clamp(0.1 * diameter, 8.0 * diameter);
+            let near = spacing_for(s.tolerance).min(8.0 * diameter);
             (near, 3e-3)
         } else {
             (0.5e-3, 6e-3)

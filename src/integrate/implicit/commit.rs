@@ -171,7 +171,7 @@ impl System {
         self.internal(true);
         self.begin_past();
         self.place_points();
-        self.settle_forces(0.0, false);
+        self.touch_forces(0.0, false);
     }
 
     /// Puts the present places of the contact points on record.
@@ -190,6 +190,11 @@ impl System {
     /// state, frames and anchors on after a step of `h`.
     pub(super) fn settle_forces(&mut self, h: f64, commit: bool) {
         self.internal(commit);
+        self.touch_forces(h, commit);
+    }
+
+    /// Adds the forces of contact to those in `load`.
+    fn touch_forces(&mut self, h: f64, commit: bool) {
         let spin = Spin::new(self.spindle.angle);
         let mut moment = 0.0;
         if let Some(line) = &mut self.line {

@@ -5,50 +5,50 @@
 
 use super::Work;
 use crate::integrate::Banded;
-use crate::lanes::{Columns, Lanes, Lanes3, WithSimd, run};
+use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
 use crate::math::V3;
-use crate::rod::Batch;
+use crate::rod::Knee;
+use crate::rod::batch::{Batch, CROSS, GRADIENT, JOINT, OWN, ROLL_OWN, ROLL_WITH, TORQUE};
 use pulp::Simd;
 
-/// Columns of a node: where it would go without forces, and its mass.
+/// Columns of a node: where it would go without forces, its mass, where it is.
+const NODE: usize = 7;
 const TARGET: usize = 0;
 const MASS: usize = 3;
+const PLACE: usize = 4;
 
 /// Columns of an edge: tension, tangent stiffness along and across itself.
+const PULL: usize = 3;
 const TENSION: usize = 0;
 const STIFF: usize = 1;
 const ACROSS: usize = 2;
 
 /// Columns of an edge with the joints at its ends: lower half of the Hessian, gradient.
-const OWN: usize = 0;
-const GRADIENT: usize = 6;
+const EDGE: usize = 9;
+const EDGE_OWN: usize = 0;
+const EDGE_GRADIENT: usize = 6;
 
-/// Lanes there may be.
-const MOST: usize = 8;
 /// Numbers of a node's row of the matrix: lower half of its own block, blocks with the next node and the one after.
 const ROW: usize = 10 + 16 + 16;
+const NEAR: usize = 10;
+const FAR: usize = 26;
 
 /// What an evaluation has laid out in columns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sheet {
     pub(super) batch: Batch,
-    nodes: Columns<4>,
-    stretch: Columns<3>,
-    /// row 0 is before the first edge
-    edges: Columns<9>,
-    places: Columns<3>,
-    energy: Columns<1>,
+    nodes: Columns<NODE>,
+    stretch: Columns<PULL>,
+    /// energy of each node
+    energy: Vec<f64>,
 }
 
 impl Sheet {
     /// Targets and masses of all nodes.
     pub(super) fn begin(&mut self, target: &[V3], mass: &[f64]) {
-        let rows = target.len() + 2;
-        self.nodes.fit(rows);
-        self.stretch.fit(rows);
-        self.edges.fit(rows);
-        self.places.fit(rows);
-        self.energy.fit(rows);
+        self.nodes.fit(target.len());
+        self.stretch.fit(target.len());
+        self.energy.resize(target.len(), 0.0);
         for (i, (t, m)) in target.iter().zip(mass).enumerate() {
             self.nodes.set_vector(TARGET, i, t);
             self.nodes.set(MASS, i, *m);
@@ -64,7 +64,7 @@ impl Sheet {
     }
 }
 
-/// Puts gradient and matrix of rod and inertia; returns the energy of inertia and `gravity`.
+/// Puts gradient and matrix of rod and inertia, and completes the knees; returns the energy of inertia and `gravity`.
 pub(super) fn gather<const D: usize>(work: &mut Work<D>, weight: f64, gravity: V3) -> f64 {
     let nodes = work.q.len();
     let Work {
@@ -73,75 +73,32 @@ pub(super) fn gather<const D: usize>(work: &mut Work<D>, weight: f64, gravity: V
         gradient,
         matrix,
         rolls,
+        knees,
         ..
     } = work;
     for (i, p) in q.iter().enumerate() {
-        sheet.places.set_vector(0, i, p);
-    }
-    run(Edges(sheet, nodes - 1));
-    for k in 0..9 {
-        // there is no edge behind the last node
-        sheet.edges.set(k, nodes, 0.0);
+        sheet.nodes.set_vector(PLACE, i, p);
     }
     matrix.resize(nodes);
     gradient.resize(nodes, V3::zeros());
     rolls.gradient.resize(nodes, 0.0);
-    run(Nodes {
+    run(Gather {
         sheet,
+        knees,
         gradient,
         torque: &mut rolls.gradient,
         matrix,
         weight,
         gravity,
     });
-    sheet.energy.at(0, 0)[..nodes].iter().sum()
+    sheet.energy.iter().sum()
 }
 
-/// Sums of an edge and the two joints at its ends.
-struct Edges<'a>(&'a mut Sheet, usize);
-
-impl WithSimd for Edges<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self(sheet, edges) = self;
-        for j in (0..edges).step_by(Lanes::<S>::COUNT) {
-            let (t, _) = sheet.batch.edges(simd, j);
-            let pull = sheet.stretch.load(simd, TENSION, j);
-            let across = sheet.stretch.load(simd, ACROSS, j);
-            let along = sheet.stretch.load(simd, STIFF, j) - across;
-            let (start, end) = (
-                sheet.batch.own(simd, 1, j + 1),
-                sheet.batch.own(simd, 0, j + 2),
-            );
-            let (t, t_along) = (t.components(), (t * along).components());
-            let mut k = 0;
-            for r in 0..3 {
-                for s in 0..r + 1 {
-                    let mut sum = t_along[r] * t[s] + (start[k] + end[k]);
-                    if r == s {
-                        sum += across;
-                    }
-                    sheet.edges.store(OWN + k, j + 1, sum);
-                    k += 1;
-                }
-            }
-            let (start, end) = (
-                sheet.batch.gradient(simd, 1, j + 1),
-                sheet.batch.gradient(simd, 0, j + 2),
-            );
-            let t = Lanes3::new(t[0], t[1], t[2]);
-            sheet
-                .edges
-                .store3(GRADIENT, j + 1, t * pull + (start + end));
-        }
-    }
-}
-
-/// Rows of the matrix and the gradient, node by node.
-struct Nodes<'a, const D: usize> {
+/// Joints, edges and nodes, block by block: edges need the joints at both ends, nodes the edges on both sides, so
+/// these follow one block behind.
+struct Gather<'a, const D: usize> {
     sheet: &'a mut Sheet,
+    knees: &'a mut [(u32, Knee)],
     gradient: &'a mut [V3],
     torque: &'a mut [f64],
     matrix: &'a mut Banded<D>,
@@ -149,95 +106,171 @@ struct Nodes<'a, const D: usize> {
     gravity: V3,
 }
 
-impl<const D: usize> WithSimd for Nodes<'_, D> {
+impl<const D: usize> WithSimd for Gather<'_, D> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self {
-            sheet,
-            gradient,
-            torque,
-            matrix,
-            weight,
-            gravity,
-        } = self;
-        let nodes = gradient.len();
-        let mut row = [[0.0; MOST]; ROW];
-        let mut force = [[0.0; MOST]; 4];
-        for i in (0..nodes).step_by(Lanes::<S>::COUNT) {
-            let b = &sheet.batch;
-            let mass = sheet.nodes.load(simd, MASS, i);
-            let k = mass * weight;
-            let place = sheet.places.load3(simd, 0, i);
-            let d = place - sheet.nodes.load3(simd, TARGET, i);
-            let pull = Lanes3::new(mass * gravity.x, mass * gravity.y, mass * gravity.z);
-            sheet
-                .energy
-                .store(0, i, d.dot(d) * (k * 0.5) - pull.dot(place));
-            let g = sheet.edges.load3(simd, GRADIENT, i) - sheet.edges.load3(simd, GRADIENT, i + 1)
-                + (d * k - pull);
-            g.x.store(&mut force[0]);
-            g.y.store(&mut force[1]);
-            g.z.store(&mut force[2]);
-            (b.torque(simd, 1, i + 1) + b.torque(simd, 0, i + 2)).store(&mut force[3]);
-
-            let own: [[_; 6]; 2] = [
-                sheet.edges.load_all(simd, OWN, i),
-                sheet.edges.load_all(simd, OWN, i + 1),
-            ];
-            let (here, next) = (b.cross(simd, i + 1), b.cross(simd, i + 2));
-            for r in 0..3 {
-                for s in 0..r + 1 {
-                    let n = r * (r + 1) / 2 + s;
-                    let mut sum = own[0][n] + own[1][n] - (here[3 * r + s] + here[3 * s + r]);
-                    if r == s {
-                        sum += k;
-                    }
-                    sum.store(&mut row[n]);
-                }
-                for s in 0..3 {
-                    let n = if r > s {
-                        r * (r + 1) / 2 + s
-                    } else {
-                        s * (s + 1) / 2 + r
-                    };
-                    let near = here[3 * r + s] + next[3 * r + s] - own[1][n];
-                    near.store(&mut row[10 + 4 * r + s]);
-                    (-next[3 * r + s]).store(&mut row[26 + 4 * r + s]);
+    fn with_simd<S: Simd>(mut self, simd: S) {
+        let blocks = self.sheet.batch.blocks();
+        let edges = self.gradient.len() - 1;
+        let (mut joints, mut next) = (Block::<JOINT>::default(), Block::<JOINT>::default());
+        let (mut before, mut around) = (Block::<EDGE>::default(), Block::<EDGE>::default());
+        // (made once: clearing them is a tenth of the work)
+        let (mut row, mut force) = ([[0.0; ROWS]; ROW], [[0.0; ROWS]; 5]);
+        let mut knees = std::mem::take(&mut self.knees);
+        self.sheet.batch.joints(simd, 0, &mut joints, &mut knees);
+        for block in 0..blocks {
+            if block + 1 < blocks {
+                let batch = &self.sheet.batch;
+                batch.joints(simd, block + 1, &mut next, &mut knees);
+            } else {
+                next = Block::default();
+            }
+            next.follow(&mut joints);
+            for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
+                let along = self.sheet.batch.directions(simd, block, first);
+                let stretch = &self.sheet.stretch.blocks()[block];
+                edge(simd, (along, stretch, &joints), first, &mut around);
+            }
+            for row in edges.saturating_sub(block * ROWS)..ROWS {
+                // there is no edge behind the last node
+                for k in 0..EDGE {
+                    around.set(k, row, 0.0);
                 }
             }
-            let (back, ahead) = (
-                b.roll_with(simd, 1, 0, i + 1),
-                b.roll_with(simd, 1, 1, i + 1),
-            );
-            let (from, to) = (
-                b.roll_with(simd, 0, 0, i + 2),
-                b.roll_with(simd, 0, 1, i + 2),
-            );
-            let other = b.roll_with(simd, 1, 0, i + 2);
-            let own = (back - ahead - from).components();
-            let near = (ahead + (from - to)).components();
-            let (far, column) = (to.components(), other.components());
+            around.follow(&mut before);
+            for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
+                if block * ROWS + first <= edges {
+                    let out = (&mut row, &mut force);
+                    self.node(simd, (&joints, &around), out, block, first);
+                }
+            }
+            std::mem::swap(&mut joints, &mut next);
+            std::mem::swap(&mut before, &mut around);
+        }
+    }
+}
+
+/// Sums of edges and the two joints at their ends.
+#[inline(always)]
+fn edge<S: Simd>(
+    simd: S,
+    (t, stretch, joints): (Lanes3<S>, &Block<PULL>, &Block<JOINT>),
+    first: usize,
+    out: &mut Block<EDGE>,
+) {
+    let pull = stretch.load(simd, TENSION, first, 1);
+    let across = stretch.load(simd, ACROSS, first, 1);
+    let along = stretch.load(simd, STIFF, first, 1) - across;
+    let start: [_; 6] = joints.load_all(simd, OWN[1], first, 1);
+    let end: [_; 6] = joints.load_all(simd, OWN[0], first, 2);
+    let (a, b) = (t.components(), (t * along).components());
+    for r in 0..3 {
+        for s in 0..r + 1 {
+            let k = lower(r, s);
+            let mut sum = b[r] * a[s] + (start[k] + end[k]);
+            if r == s {
+                sum += across;
+            }
+            out.store(EDGE_OWN + k, first, sum);
+        }
+    }
+    let start = joints.load3(simd, GRADIENT[1], first, 1);
+    let end = joints.load3(simd, GRADIENT[0], first, 2);
+    out.store3(EDGE_GRADIENT, first, t * pull + (start + end));
+}
+
+/// Place of an entry in the lower half of a symmetric block.
+#[inline(always)]
+fn lower(r: usize, s: usize) -> usize {
+    if r > s {
+        r * (r + 1) / 2 + s
+    } else {
+        s * (s + 1) / 2 + r
+    }
+}
+
+impl<const D: usize> Gather<'_, D> {
+    /// Rows of the matrix and the gradient of as many nodes as there are lanes.
+    #[inline(always)]
+    fn node<S: Simd>(
+        &mut self,
+        simd: S,
+        (joints, edges): (&Block<JOINT>, &Block<EDGE>),
+        (row, force): (&mut [[f64; ROWS]; ROW], &mut [[f64; ROWS]; 5]),
+        block: usize,
+        first: usize,
+    ) {
+        let node = &self.sheet.nodes.blocks()[block];
+        let mass = node.load(simd, MASS, first, 1);
+        let k = mass * self.weight;
+        let place = node.load3(simd, PLACE, first, 1);
+        let d = place - node.load3(simd, TARGET, first, 1);
+        let gravity = self.gravity;
+        let pull = Lanes3::new(mass * gravity.x, mass * gravity.y, mass * gravity.z);
+        let behind = edges.load3(simd, EDGE_GRADIENT, first, 0);
+        let g = behind - edges.load3(simd, EDGE_GRADIENT, first, 1) + (d * k - pull);
+        g.x.store(&mut force[0]);
+        g.y.store(&mut force[1]);
+        g.z.store(&mut force[2]);
+        let torque = joints.load(simd, TORQUE + 1, first, 1) + joints.load(simd, TORQUE, first, 2);
+        torque.store(&mut force[3]);
+        (d.dot(d) * (k * 0.5) - pull.dot(place)).store(&mut force[4]);
+
+        let behind: [_; 6] = edges.load_all(simd, EDGE_OWN, first, 0);
+        let ahead: [_; 6] = edges.load_all(simd, EDGE_OWN, first, 1);
+        let here: [_; 9] = joints.load_all(simd, CROSS, first, 1);
+        let next: [_; 9] = joints.load_all(simd, CROSS, first, 2);
+        for r in 0..3 {
+            for s in 0..r + 1 {
+                let n = lower(r, s);
+                let mut sum = behind[n] + ahead[n] - (here[3 * r + s] + here[3 * s + r]);
+                if r == s {
+                    sum += k;
+                }
+                sum.store(&mut row[n]);
+            }
             for s in 0..3 {
-                own[s].store(&mut row[6 + s]);
-                near[s].store(&mut row[10 + 12 + s]);
-                (-column[s]).store(&mut row[10 + 4 * s + 3]);
-                far[s].store(&mut row[26 + 12 + s]);
+                let near = here[3 * r + s] + next[3 * r + s] - ahead[lower(r, s)];
+                near.store(&mut row[NEAR + 4 * r + s]);
+                (-next[3 * r + s]).store(&mut row[FAR + 4 * r + s]);
             }
-            (b.roll(simd, 2, i + 1) + b.roll(simd, 0, i + 2)).store(&mut row[9]);
-            b.roll(simd, 1, i + 2).store(&mut row[10 + 15]);
+        }
+        // rolls: that of the edge before a joint is an unknown of the node before it
+        let with = |e: usize, f: usize| ROLL_WITH[e][f];
+        let back = joints.load3(simd, with(1, 0), first, 1);
+        let on = joints.load3(simd, with(1, 1), first, 1);
+        let from = joints.load3(simd, with(0, 0), first, 2);
+        let to = joints.load3(simd, with(0, 1), first, 2);
+        let other = (-joints.load3(simd, with(1, 0), first, 2)).components();
+        let own = (back - on - from).components();
+        let near = (on + (from - to)).components();
+        let far = to.components();
+        for s in 0..3 {
+            own[s].store(&mut row[6 + s]);
+            near[s].store(&mut row[NEAR + 12 + s]);
+            other[s].store(&mut row[NEAR + 4 * s + 3]);
+            far[s].store(&mut row[FAR + 12 + s]);
+        }
+        let corner =
+            joints.load(simd, ROLL_OWN + 2, first, 1) + joints.load(simd, ROLL_OWN, first, 2);
+        corner.store(&mut row[9]);
+        joints
+            .load(simd, ROLL_OWN + 1, first, 2)
+            .store(&mut row[NEAR + 15]);
 
-            for l in 0..Lanes::<S>::COUNT.min(nodes - i) {
-                gradient[i + l] = V3::new(force[0][l], force[1][l], force[2][l]);
-                torque[i + l] = force[3][l];
-                matrix.put(
-                    i + l,
-                    |r, s| row[r * (r + 1) / 2 + s][l],
-                    |r, s| row[10 + 4 * r + s][l],
-                    |r, s| row[26 + 4 * r + s][l],
-                );
-            }
+        let start = block * ROWS + first;
+        for l in 0..Lanes::<S>::COUNT.min(self.gradient.len() - start) {
+            let i = start + l;
+            self.gradient[i] = V3::new(force[0][l], force[1][l], force[2][l]);
+            self.torque[i] = force[3][l];
+            self.sheet.energy[i] = force[4][l];
+            self.matrix.put(
+                i,
+                |r, s| row[lower(r, s)][l],
+                |r, s| row[NEAR + 4 * r + s][l],
+                |r, s| row[FAR + 4 * r + s][l],
+            );
         }
     }
 }
