@@ -22,6 +22,8 @@ const PASSAGES: usize = 4;
 const SKIN: f64 = 0.15;
 /// Error of a contact force that an update may promise, as a depth, m.
 pub(super) const FORESIGHT: f64 = 1e-7;
+/// Change of an update that nothing new can come of, m.
+const SAME: f64 = 0.2 * FORESIGHT;
 /// Depth over which the normal force sets in, m. Ten times as much takes a tenth off the evaluations, and adds
 /// 4.5 um to the depth at rest.
 const ONSET: f64 = 1e-6;
@@ -314,6 +316,8 @@ struct Near {
     hessian: Block,
     /// way from there without any push, while it has none, m
     room: f64,
+    /// way that was looked ahead along last, m
+    seen: V3,
 }
 
 /// Which friction limit a push takes.
@@ -626,6 +630,7 @@ impl LineContact {
                     gradient: V3::zeros(),
                     hessian: Block::default(),
                     room: point.clear - way,
+                    seen: V3::zeros(),
                 });
                 return None;
             }
@@ -699,6 +704,7 @@ impl LineContact {
             gradient: sum.gradient,
             hessian: sum.hessian,
             room: point.clear,
+            seen: V3::zeros(),
         });
         any.then_some(sum)
     }
@@ -772,6 +778,11 @@ impl LineContact {
             if far <= n.room * n.room || far <= FORESIGHT * FORESIGHT {
                 continue;
             }
+            // as good as where it was looked at before, and right there
+            if (way - n.seen).norm_squared() <= SAME * SAME {
+                continue;
+            }
+            n.seen = way;
             let there = self.push_there(n.point as usize, n.place + way, n.length, step);
             let off = there.gradient - n.gradient - times(&n.hessian, &way);
             if off.amax() <= FORESIGHT * self.law.stiffness * n.length {

@@ -1,20 +1,41 @@
 //! Which pieces of a long wire pass through which cell of a uniform grid.
 //!
 //! A query looks at the cells round a point, so its cost depends on how densely the wire is laid
-//! there and only as a logarithm on how much there is. Pieces come and go at the wire's end like
+//! there and not on how much there is. Pieces come and go at the wire's end like
 //! on a stack; then a piece is the last entry of each of its cells.
 
 use crate::math::V3;
-use std::collections::BTreeMap;
+use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 type Cell = [i32; 3];
+
+/// Spreads the coordinates of cells; the same on every machine and in every run.
+#[derive(Clone, Copy, Debug, Default)]
+struct Spread(u64);
+
+impl Hasher for Spread {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for chunk in bytes.chunks(8) {
+            let mut word = [0; 8];
+            word[..chunk.len()].copy_from_slice(chunk);
+            // an odd number near 2^64 over the golden ratio, and its high bits back down
+            let mixed = (self.0 ^ u64::from_le_bytes(word)).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+            self.0 = mixed ^ (mixed >> 29);
+        }
+    }
+}
 
 /// Pieces by cell, both in ascending order.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Grid {
     /// edge of a cell, m
     edge: f64,
-    cells: BTreeMap<Cell, Vec<u32>>,
+    cells: HashMap<Cell, Vec<u32>, BuildHasherDefault<Spread>>,
 }
 
 impl Grid {
@@ -26,7 +47,7 @@ impl Grid {
         );
         Self {
             edge,
-            cells: BTreeMap::new(),
+            cells: HashMap::default(),
         }
     }
 
@@ -65,7 +86,7 @@ impl Grid {
         }
     }
 
-    /// Calls `visit` with the pieces of each cell within `reach` of `p` along every axis; a piece
+    /// Calls `visit` with the pieces of each cell within `reach` of `p` along every axis, in no order; a piece
     /// shows up once for each of its cells.
     pub(super) fn visit_near(&self, p: V3, reach: f64, mut visit: impl FnMut(&[u32])) {
         let low = self.cell(p - V3::repeat(reach));
@@ -74,20 +95,18 @@ impl Grid {
             return;
         }
         let wide = |axis: usize| (i64::from(high[axis]) - i64::from(low[axis])) as f64 + 1.0;
-        if wide(0) * wide(1) > self.cells.len() as f64 {
-            // More columns than cells: a reach beyond the whole coil.
-            for (cell, pieces) in self.cells.range(low..=high) {
-                if (1..3).all(|axis| (low[axis]..=high[axis]).contains(&cell[axis])) {
+        if wide(0) * wide(1) * wide(2) > self.cells.len() as f64 {
+            // More of them than there are cells: a reach beyond the whole coil.
+            for (cell, pieces) in &self.cells {
+                if (0..3).all(|axis| (low[axis]..=high[axis]).contains(&cell[axis])) {
                     visit(pieces);
                 }
             }
             return;
         }
-        for x in low[0]..=high[0] {
-            for y in low[1]..=high[1] {
-                for (_, pieces) in self.cells.range([x, y, low[2]]..=[x, y, high[2]]) {
-                    visit(pieces);
-                }
+        for cell in cells_between(low, high) {
+            if let Some(pieces) = self.cells.get(&cell) {
+                visit(pieces);
             }
         }
     }

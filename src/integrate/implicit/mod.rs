@@ -33,6 +33,8 @@ const GROWTH: f64 = 1.7;
 /// Share of the tolerance that a step length is chosen for: fewer steps thrown away outweigh more
 /// steps (at 0.7 a fifth of all steps was rejected, at 0.4 a tenth, for a tenth less work in all).
 const AIM: f64 = 0.4;
+/// Steps below this multiple of the shortest are taken in trouble only.
+const SHORT: f64 = 1e3;
 /// Newton's update at which a solve is done, over the tolerance.
 const CLOSE: f64 = 0.1;
 
@@ -226,6 +228,7 @@ impl Implicit {
             // two equal steps to the end instead of a long and a very short one
             h = 0.5 * most;
         }
+        let mut failures = 0;
         loop {
             let step = Step::new(self.scheme, &sys.past, h);
             let spindle = sys.spindle.after(step.share * h);
@@ -248,10 +251,10 @@ impl Implicit {
                 &mut model,
                 work,
                 CLOSE * self.tolerance,
-                newton::Reach {
-                    damped: self.scheme == Scheme::Bdf2,
-                    ..newton::Reach::STEP
-                },
+                newton::Reach::of_step(
+                    failures > 2 || h < SHORT * self.shortest || self.fixed.is_some(),
+                    self.scheme == Scheme::Bdf2,
+                ),
             );
             self.effort.evaluations += std::mem::take(&mut work.evaluations);
             self.effort.solves += std::mem::take(&mut work.solves);
@@ -290,6 +293,7 @@ impl Implicit {
                 }
                 Err(stuck) => {
                     self.effort.stalls += 1;
+                    failures += 1;
                     if h <= self.shortest || self.fixed.is_some() {
                         return Err(Stopped::at(h, &stuck));
                     }

@@ -133,6 +133,7 @@ impl Implicit {
             steps: if Work::<D>::ROLLS { 200 } else { 40 },
             longest: f64::INFINITY,
             turn: 0.4,
+            cuts: 12,
             damped: true,
         };
         let mut taken = 0;
