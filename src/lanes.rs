@@ -26,6 +26,7 @@ pub enum Width {
     Eight = 8,
 }
 
+/// Eight are slower than four in whole runs on the machine that was measured (the processor lowers its clock).
 static WIDEST: AtomicU8 = AtomicU8::new(Width::Four as u8);
 
 /// No more than `width` numbers at once from here on, in the whole process: for tests and measurements, since

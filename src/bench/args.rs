@@ -1,6 +1,7 @@
 //! What a benchmark is asked for, and which combinations make sense.
 
 use super::BenchError;
+use crate::lanes::Width;
 use crate::scene::assignment;
 use clap::ValueEnum;
 use std::path::PathBuf;
@@ -75,6 +76,10 @@ pub struct BenchArgs {
     /// Method: implicit, verlet or rk4
     #[arg(long, value_enum, value_name = "NAME")]
     pub integrator: Option<Method>,
+    /// Most numbers worked on at once, as far as the machine can: 1, 4 (AVX2) or 8 (AVX-512); no result depends on
+    /// it [default: 4]
+    #[arg(long, value_enum, value_name = "N")]
+    pub lanes: Option<Width>,
     /// Runs; the line has the median of their times [default: 1]
     #[arg(long, value_name = "K")]
     pub repeat: Option<usize>,
@@ -112,6 +117,7 @@ impl BenchArgs {
             dt: None,
             tol: None,
             integrator: None,
+            lanes: None,
             repeat: None,
             a: None,
             omega: None,

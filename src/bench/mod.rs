@@ -24,6 +24,7 @@ pub use winding::Wound;
 use crate::integrate::{
     Effort, RK4_LIMIT, Support, System, Twist, VERLET_LIMIT, highest_frequency, longest_step,
 };
+use crate::lanes;
 use crate::math::V3;
 use crate::rod::{Rod, Section, frame_along};
 use crate::scene::{Scene, SceneError, SceneSettings};
@@ -71,6 +72,9 @@ pub enum BenchError {
 /// A computation that fails on the way is no error here: its line says `"ok": false` and why.
 pub fn run(args: &BenchArgs) -> Result<Record, BenchError> {
     args.check()?;
+    if let Some(lanes) = args.lanes {
+        lanes::at_most(lanes);
+    }
     let count = args.repeat.unwrap_or(1);
     let once = || match args.problem {
         Problem::P1 => p1::run(args),

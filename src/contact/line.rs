@@ -284,7 +284,10 @@ pub struct LineContact {
     pub between: Option<Between>,
     /// every surface near a point at the last evaluation
     near: Vec<Near>,
-    /// (boxed: they are large, and nodes come and go in the middle)
+    #[expect(
+        clippy::vec_box,
+        reason = "they are large, and nodes come and go in the middle"
+    )]
     points: Vec<Box<Point>>,
     /// points whose surroundings this attempt at a step looked up, as they were
     undo: Vec<(u32, Point)>,
@@ -294,6 +297,7 @@ pub struct LineContact {
 /// The part of [`LineContact`] that neither the scene nor the frozen wire gives.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct SavedLine {
+    #[expect(clippy::vec_box, reason = "those of the line")]
     points: Vec<Box<Point>>,
     loss: ContactLoss,
     deepest: f64,
