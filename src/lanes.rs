@@ -456,6 +456,16 @@ impl<const N: usize> Columns<N> {
         block.set(k + 2, row, v.z);
     }
 
+    /// Lets `set` put each of `values` into its row of its block.
+    #[inline(always)]
+    pub fn put<T>(&mut self, values: &[T], set: impl Fn(&mut Block<N>, usize, &T)) {
+        for (block, values) in self.0.iter_mut().zip(values.chunks(ROWS)) {
+            for (row, value) in values.iter().enumerate() {
+                set(block, row & (ROWS - 1), value);
+            }
+        }
+    }
+
     /// Puts the rows next to each block into it; the row before the first is left as it is.
     #[inline(always)]
     pub fn join(&mut self) {

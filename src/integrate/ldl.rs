@@ -213,7 +213,7 @@ impl<const D: usize> Banded<D> {
                 let kept = &mut self.steps[step].own;
                 for a in 0..D {
                     for b in 0..a + 1 {
-                        kept[a][b].0[lane] = own(a, b);
+                        kept[a][b].0[lane & 1] = own(a, b);
                     }
                 }
             }
@@ -243,11 +243,15 @@ impl<const D: usize> Banded<D> {
                 } else {
                     &mut step.far
                 };
-                for a in 0..D {
-                    for b in 0..D {
-                        if lane == 0 {
+                if lane == 0 {
+                    for a in 0..D {
+                        for b in 0..D {
                             kept[a][b].0[0] = block(a, b);
-                        } else {
+                        }
+                    }
+                } else {
+                    for a in 0..D {
+                        for b in 0..D {
                             kept[b][a].0[1] = block(a, b);
                         }
                     }

@@ -103,13 +103,13 @@ impl Batch {
 
     /// Edges and angles with the nodes at `q` and edges rolled by `roll`.
     pub fn place(&mut self, q: &[V3], roll: &[f64]) {
-        for (i, p) in q.iter().enumerate() {
-            self.places.set_vector(0, i, p);
-        }
+        self.places.put(q, |block, row, p| {
+            block.set(0, row, p.x);
+            block.set(1, row, p.y);
+            block.set(2, row, p.z);
+        });
         self.places.join();
-        for (j, roll) in roll.iter().enumerate() {
-            self.roll.set(0, j, *roll);
-        }
+        self.roll.put(roll, |block, row, x| block.set(0, row, *x));
         // the pass over the edges goes over the far clamp's row
         let far = self.frame(self.edges);
         run(Edges(self));
@@ -126,9 +126,14 @@ impl Batch {
         self.edge.join();
         run(Angles(self));
         for j in 0..=self.edges {
-            let v = self.angle.vector(V, j);
-            let ratio = v.z / self.angle.get(W, j);
-            let small = v.x * v.x + v.y * v.y < Joint::SERIES && ratio.abs() < Joint::TWIST_SERIES;
+            let (angle, row) = (&self.angle.blocks()[j / ROWS], j % ROWS);
+            let (x, y, z) = (
+                angle.get(V, row),
+                angle.get(V + 1, row),
+                angle.get(V + 2, row),
+            );
+            let small =
+                x * x + y * y < Joint::SERIES && z.abs() < Joint::TWIST_SERIES * angle.get(W, row);
             if !small {
                 self.put_large_angles(j);
             }

@@ -76,9 +76,11 @@ pub(super) fn gather<const D: usize>(work: &mut Work<D>, weight: f64, gravity: V
         knees,
         ..
     } = work;
-    for (i, p) in q.iter().enumerate() {
-        sheet.nodes.set_vector(PLACE, i, p);
-    }
+    sheet.nodes.put(q, |block, row, p| {
+        block.set(PLACE, row, p.x);
+        block.set(PLACE + 1, row, p.y);
+        block.set(PLACE + 2, row, p.z);
+    });
     matrix.resize(nodes);
     gradient.resize(nodes, V3::zeros());
     rolls.gradient.resize(nodes, 0.0);
@@ -261,7 +263,7 @@ impl<const D: usize> Gather<'_, D> {
 
         let start = block * ROWS + first;
         for l in 0..Lanes::<S>::COUNT.min(self.gradient.len() - start) {
-            let i = start + l;
+            let (i, l) = (start + l, l & (ROWS - 1));
             self.gradient[i] = V3::new(force[0][l], force[1][l], force[2][l]);
             self.torque[i] = force[3][l];
             self.sheet.energy[i] = force[4][l];
