@@ -10,7 +10,10 @@ use std::path::{Path, PathBuf};
 const RUNTIME: &str = include_str!("../licenses/runtime.txt");
 
 /// Crates that come without a text, and the crate of the same repository and licence that has it.
-const TEXT_OF: [(&str, &str); 1] = [("winapi-x86_64-pc-windows-gnu", "winapi")];
+const TEXT_OF: [(&str, &str); 2] = [
+    ("pulp-wasm-simd-flag", "pulp"),
+    ("winapi-x86_64-pc-windows-gnu", "winapi"),
+];
 
 /// Beginnings of the names of licence files, in lower case.
 const FILE_NAMES: [&str; 5] = ["license", "licence", "copying", "unlicense", "notice"];

@@ -136,8 +136,8 @@ struct Watch {
     /// sums of what the spindle and the feed did, either way, J
     through: f64,
     before: [f64; 2],
-    /// live and frozen nodes at the last look
-    nodes: (usize, usize),
+    /// which nodes there were at the last look
+    nodes: Vec<u64>,
 }
 
 type Found = Result<(), (Invariant, String)>;
@@ -151,7 +151,7 @@ impl Watch {
             looks: 0,
             through: sim.system().stored(),
             before: [0.0; 2],
-            nodes: (0, 0),
+            nodes: Vec::new(),
         }
     }
 
@@ -176,8 +176,10 @@ impl Watch {
         self.wire(sim)?;
         // nodes put in or taken out move the points that touch and share out tension; the next step brings
         // that in line
-        let nodes = (sim.system().rod.nodes(), sim.centreline().frozen);
-        if std::mem::replace(&mut self.nodes, nodes) == nodes {
+        let nodes = nodes_of(sim);
+        let same = self.nodes == nodes;
+        self.nodes = nodes;
+        if same {
             cone(sim, m)?;
             tension(sim)?;
         }
@@ -286,6 +288,14 @@ fn finite(sim: &Simulation) -> Found {
         Some(i) => Err((Invariant::Finite, format!("live node {i}"))),
         None => Ok(()),
     }
+}
+
+/// Tells nodes from others: their number may be the same where one came and one went. The unstretched lengths between them
+/// are theirs, but for the last, which grows.
+fn nodes_of(sim: &Simulation) -> Vec<u64> {
+    let rest = &sim.system().rod.rest;
+    let lengths = rest[..rest.len() - 1].iter().map(|l| l.to_bits());
+    lengths.chain([sim.centreline().frozen as u64]).collect()
 }
 
 fn tension(sim: &Simulation) -> Found {
