@@ -54,7 +54,7 @@ def write(found, pictures, path):
     lines = found["precision"]
     parts = [
         "# Performance",
-        "`scripts/bench.sh` wrote this page: error against CPU time, one thread, medians of 5 runs (a setting whose runs took two minutes"
+        "`scripts/bench.sh` wrote this page: error against CPU time, one thread, medians of 5 runs (a setting whose runs took twenty seconds"
         " together has fewer). The clock of a peer starts after import, compilation and set-up; that of coilwind includes the making of the rod."
         " What was tried in tuning each peer stands at the top of `scripts/bench/*_peer.py`.",
         machine(found["versions"]),

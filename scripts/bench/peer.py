@@ -13,7 +13,7 @@ import sys
 import time
 
 # no further repeats of a setting once its runs have taken this long, s
-ENOUGH = 120.0
+ENOUGH = 20.0
 # what peers raise when they cannot go on
 FAILURES = (ArithmeticError, RuntimeError, ValueError)
 
