@@ -171,23 +171,18 @@ impl<const D: usize> Banded<D> {
 
     /// Becomes the zero matrix of `nodes` nodes.
     pub fn reset(&mut self, nodes: usize) {
-        self.nodes = nodes;
-        // Two nodes at least must be left, or the last of one chain would couple with the other's.
-        let steps = nodes.saturating_sub(2) / 2;
-        self.steps.clear();
-        self.steps.resize(steps, Step::ZERO);
-        // Factors are written before they are read: no need to clear them.
-        self.step_factors.resize(steps, Step::ZERO);
-        self.carries.resize(steps + 1, Carry::NONE);
-        self.kept = 0;
+        self.resize(nodes);
+        self.steps.fill(Step::ZERO);
         self.middle = [[0.0; WIDEST]; WIDEST];
     }
 
     /// Becomes a matrix of `nodes` nodes, every row of which is put next.
     pub fn resize(&mut self, nodes: usize) {
         self.nodes = nodes;
+        // Two nodes at least must be left, or the last of one chain would couple with the other's.
         let steps = nodes.saturating_sub(2) / 2;
         self.steps.resize(steps, Step::ZERO);
+        // Factors are written before they are read: no need to clear them.
         self.step_factors.resize(steps, Step::ZERO);
         self.carries.resize(steps + 1, Carry::NONE);
         self.kept = 0;
