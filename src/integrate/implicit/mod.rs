@@ -253,6 +253,11 @@ impl Implicit {
                 CLOSE * self.tolerance,
                 newton::Reach::of_step(
                     failures > 2 || h < SHORT * self.shortest || self.fixed.is_some(),
+                    if h > self.shortest && self.fixed.is_none() {
+                        self.tolerance / step.error
+                    } else {
+                        f64::INFINITY
+                    },
                     self.scheme == Scheme::Bdf2,
                 ),
             );
@@ -290,6 +295,11 @@ impl Implicit {
                     }
                     self.effort.rejects += 1;
                     h * factor.clamp(0.2, 0.8)
+                }
+                Err(newton::Stuck { far: Some(way), .. }) => {
+                    self.effort.rejects += 1;
+                    let factor = libm::cbrt(AIM * self.tolerance / (step.error * way));
+                    h * factor.clamp(0.3, 0.8)
                 }
                 Err(stuck) => {
                     self.effort.stalls += 1;
@@ -472,6 +482,16 @@ impl<const D: usize> Work<D> {
             };
             w.set[i] = mid_frame_vector(&p, &n, k);
         }
+    }
+
+    /// Root mean square of the update over the wire, m.
+    fn mean_update(&self) -> f64 {
+        let (mut sum, mut mass) = (0.0, 0.0);
+        for (i, m) in self.mass.iter().enumerate() {
+            sum += m * self.update_of(i).norm_squared();
+            mass += m;
+        }
+        (sum / mass).sqrt()
     }
 
     /// Root mean square over the wire of what Newton's method moved the guess by, m.

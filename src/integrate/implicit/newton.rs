@@ -24,6 +24,8 @@ pub(super) struct Reach {
     pub(super) longest: f64,
     /// largest move of an edge's end against its start, over its length
     pub(super) turn: f64,
+    /// root mean square of the first update from which on the solve isn't worth its while, m
+    pub(super) far: f64,
     /// halvings of one Newton step before the solve counts as failed
     pub(super) cuts: usize,
     /// the scheme forgets a small error: a guess that is good enough may stand
@@ -36,14 +38,19 @@ impl Reach {
         steps: 12,
         longest: 0.5e-3,
         turn: f64::INFINITY,
+        far: f64::INFINITY,
         cuts: 12,
         damped: true,
     };
 
     /// That of a time step, a `short` one or one that may as well be shorter. Then that is cheaper than a long search
     /// for a smaller Newton step (`fig8` at 30 rad/s: a tenth of all evaluations).
-    pub(super) fn of_step(short: bool, damped: bool) -> Self {
+    ///
+    /// The first update tells how far the guess is off, within a few per cent where the solve comes to an end: one
+    /// beyond `far` saves the rest of a solve that the error would throw away.
+    pub(super) fn of_step(short: bool, far: f64, damped: bool) -> Self {
         Self {
+            far,
             cuts: if short { Self::STEP.cuts } else { 2 },
             damped,
             ..Self::STEP
@@ -79,6 +86,8 @@ pub(super) struct Stuck {
     pub(super) update: f64,
     /// Newton steps taken
     pub(super) steps: usize,
+    /// root mean square of the first update, m, if that was too far
+    pub(super) far: Option<f64>,
 }
 
 /// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
@@ -118,6 +127,7 @@ pub(super) fn solve<const D: usize>(
                 node,
                 update: f64::NAN,
                 steps: step,
+                far: None,
             });
         }
         if slope(work) >= 0.0 {
@@ -137,7 +147,19 @@ pub(super) fn solve<const D: usize>(
                 node,
                 update,
                 steps: step,
+                far: None,
             });
+        }
+        if step == 1 {
+            let way = work.mean_update();
+            if way > reach.far {
+                return Err(Stuck {
+                    node,
+                    update,
+                    steps: step,
+                    far: Some(way),
+                });
+            }
         }
         let mut share = reach.share(work, update);
         work.start.clone_from(&work.q);
@@ -173,6 +195,7 @@ pub(super) fn solve<const D: usize>(
                     node,
                     update,
                     steps: step,
+                    far: None,
                 });
             }
             share *= 0.5;
@@ -184,6 +207,7 @@ pub(super) fn solve<const D: usize>(
         node: worst.0,
         update: worst.1,
         steps: reach.steps,
+        far: None,
     })
 }
 

@@ -133,6 +133,7 @@ impl Implicit {
             steps: if Work::<D>::ROLLS { 200 } else { 40 },
             longest: f64::INFINITY,
             turn: 0.4,
+            far: f64::INFINITY,
             cuts: 12,
             damped: true,
         };
