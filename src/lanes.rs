@@ -153,6 +153,17 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
+    /// `least` in those lanes that are below it.
+    #[inline(always)]
+    pub fn at_least(self, least: f64) -> Self {
+        let least = self.simd.splat_f64s(least);
+        let below = self.simd.less_than_f64s(self.v, least);
+        Self {
+            simd: self.simd,
+            v: self.simd.select_f64s(below, least, self.v),
+        }
+    }
+
     /// The same number in every lane.
     #[inline(always)]
     pub fn all(self, x: f64) -> Self {

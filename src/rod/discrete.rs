@@ -12,7 +12,31 @@ use super::plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
 use crate::math::V3;
 
 /// Smallest `1 + cos` of a turning angle: just short of a complete fold.
-const FOLD: f64 = 1e-6;
+pub(super) const FOLD: f64 = 1e-6;
+
+/// Below this square of the tangent of half an angle series stand for [`angle_over_tangent`], to 1e-16 ...
+pub(super) const SERIES: f64 = 0.012;
+/// ... its terms ...
+pub(super) const TERMS: [f64; 8] = [
+    1.0,
+    -1.0 / 3.0,
+    1.0 / 5.0,
+    -1.0 / 7.0,
+    1.0 / 9.0,
+    -1.0 / 11.0,
+    1.0 / 13.0,
+    -1.0 / 15.0,
+];
+/// ... and those of the derivative.
+pub(super) const SLOPE_TERMS: [f64; 7] = [
+    -1.0 / 12.0,
+    2.0 / 20.0,
+    -3.0 / 28.0,
+    4.0 / 36.0,
+    -5.0 / 44.0,
+    6.0 / 52.0,
+    -7.0 / 60.0,
+];
 
 /// An edge at a length.
 #[derive(Clone, Copy, Debug, Default)]
@@ -244,21 +268,11 @@ pub fn turning(t: [&V3; 2]) -> V3 {
 
 /// Turning angle over `y = 2 tan(angle / 2)`, and the derivative of that ratio by `y^2`.
 #[inline]
-fn angle_over_tangent(y2: f64) -> (f64, f64) {
+pub(super) fn angle_over_tangent(y2: f64) -> (f64, f64) {
     let z2 = 0.25 * y2;
-    if z2 < 0.012 {
-        // atan(z)/z to 1e-16
-        let s = 1.0
-            - z2 * (1.0 / 3.0
-                - z2 * (0.2
-                    - z2 * (1.0 / 7.0
-                        - z2 * (1.0 / 9.0 - z2 * (1.0 / 11.0 - z2 * (1.0 / 13.0 - z2 / 15.0))))));
-        let d = -1.0 / 3.0
-            + z2 * (0.4
-                - z2 * (3.0 / 7.0
-                    - z2 * (4.0 / 9.0
-                        - z2 * (5.0 / 11.0 - z2 * (6.0 / 13.0 - z2 * (7.0 / 15.0))))));
-        (s, 0.25 * d)
+    if z2 < SERIES {
+        let sum = |terms: &[f64]| terms.iter().rev().fold(0.0, |sum, c| sum * z2 + c);
+        (sum(&TERMS), sum(&SLOPE_TERMS))
     } else {
         let z = z2.sqrt();
         let s = libm::atan(z) / z;

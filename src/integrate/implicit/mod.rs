@@ -428,11 +428,13 @@ impl<const D: usize> Work<D> {
         w.q.clone_from(&w.guess);
         if Self::ROLLS {
             self.rolls.prepare(sys, step, spindle, support, inert);
-            self.rolls.lay_out(&mut self.sheet.batch);
-            self.sheet.begin(&self.target, &self.mass);
+            self.rolls.lay_out(&mut self.sheet.rolling);
         } else {
             self.turn_plastic_curvature(sys, spindle, support);
+            let clamps = clamp_directions(support, spindle);
+            self.sheet.plain.begin(rod.edges(), clamps);
         }
+        self.sheet.begin(&self.target, &self.mass);
         let (spec, feed) = sys.feed.as_ref()?;
         let last = rod.edges() - 1;
         Some(NozzleEdge::new(

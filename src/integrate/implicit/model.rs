@@ -5,7 +5,7 @@ use super::{Axial, Work, sheet};
 use crate::contact::{LineContact, own_wire};
 use crate::integrate::{Banded, Loads};
 use crate::math::V3;
-use crate::rod::{Bent, Block, Laws, Rod, Symmetric, add_square, bent, stretched, turning};
+use crate::rod::{Block, Laws, Rod, stretched, turning};
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {
@@ -43,48 +43,40 @@ pub(super) struct Value {
     pub(super) now: f64,
 }
 
-const NO_JOINT: Bent = Bent {
-    energy: 0.0,
-    before: V3::new(0.0, 0.0, 0.0),
-    after: V3::new(0.0, 0.0, 0.0),
-    own: [[0.0; 6]; 2],
-    cross: [[0.0; 3]; 3],
-    knee: None,
-};
-
 impl Model<'_> {
     /// Evaluates at `work.q` into `work.gradient` and `work.matrix`.
     pub(super) fn evaluate<const D: usize>(&mut self, work: &mut Work<D>) -> Value {
+        self.evaluate_with::<D, true>(work)
+    }
+
+    /// Evaluates at `work.q` into `work.gradient`; `work.matrix` stays what it was, knees are forgotten.
+    pub(super) fn evaluate_forces<const D: usize>(&mut self, work: &mut Work<D>) -> Value {
+        self.evaluate_with::<D, false>(work)
+    }
+
+    #[inline(always)]
+    fn evaluate_with<const D: usize, const HESSIAN: bool>(&mut self, work: &mut Work<D>) -> Value {
         work.evaluations += 1;
         let nodes = work.q.len();
-        let mut energy;
-        let stretch;
-        if Work::<D>::ROLLS {
-            (energy, stretch) = self.rolling_rod(work);
-        } else {
-            work.gradient.clear();
-            work.gradient.resize(nodes, V3::zeros());
-            work.matrix.reset(nodes);
-            energy = self.inertia(work);
-            let bending;
-            (bending, stretch) = self.rod_forces(work);
-            energy += bending;
-        }
-        energy += self.loads(work);
+        let (rod, stretch) = self.rod_and_inertia::<D, HESSIAN>(work);
+        let energy = rod + self.loads::<D, HESSIAN>(work);
         let mut value = Value {
             merit: energy + stretch.merit,
             now: energy + stretch.now,
         };
-        self.contact(work, &mut value);
+        self.contact::<D, HESSIAN>(work, &mut value);
         let Work {
             matrix, gradient, ..
         } = work;
         self.pinned(nodes, |i, a| {
-            matrix.pin(i, a);
             gradient[i][a] = 0.0;
+            if HESSIAN {
+                matrix.pin(i, a);
+            }
         });
         if Work::<D>::ROLLS {
-            work.rolls.pin(&mut work.matrix);
+            let matrix = HESSIAN.then_some(&mut work.matrix);
+            work.rolls.pin(matrix);
         }
         value
     }
@@ -105,21 +97,7 @@ impl Model<'_> {
         }
     }
 
-    fn inertia<const D: usize>(&self, work: &mut Work<D>) -> f64 {
-        let weight = 1.0 / (self.gamma * self.gamma);
-        let gravity = self.back.to_core(self.loads.gravity);
-        let mut energy = 0.0;
-        for i in 0..work.q.len() {
-            let m = work.mass[i];
-            let d = work.q[i] - work.target[i];
-            let k = m * weight;
-            energy += 0.5 * k * d.norm_squared() - m * gravity.dot(&work.q[i]);
-            work.gradient[i] += d * k - gravity * m;
-        }
-        energy
-    }
-
-    fn loads<const D: usize>(&self, work: &mut Work<D>) -> f64 {
+    fn loads<const D: usize, const HESSIAN: bool>(&self, work: &mut Work<D>) -> f64 {
         let mut energy = 0.0;
         if self.loads.drag > 0.0 {
             // against the lab-frame velocity (x - x*) / gamma
@@ -128,14 +106,17 @@ impl Model<'_> {
                 let k = work.mass[i] * self.loads.drag / self.gamma;
                 energy += 0.5 * k * d.norm_squared();
                 work.gradient[i] += d * k;
-                for a in 0..3 {
-                    work.matrix.add_to_entry(i, a, k);
+                if HESSIAN {
+                    for a in 0..3 {
+                        work.matrix.add_to_entry(i, a, k);
+                    }
                 }
             }
         }
         if Work::<D>::ROLLS {
             let drag = self.loads.drag;
-            energy += work.rolls.add_inertia(self.gamma, drag, &mut work.matrix);
+            let matrix = HESSIAN.then_some(&mut work.matrix);
+            energy += work.rolls.add_inertia(self.gamma, drag, matrix);
         }
         for (i, f) in &self.loads.nodal {
             let f = self.back.to_core(*f);
@@ -153,7 +134,7 @@ impl Model<'_> {
             let mut couple = m.cross(&t) / length;
             if Work::<D>::ROLLS {
                 let about = m.dot(&t);
-                couple = work.sheet.batch.turned(*j).derivative(&m).0;
+                couple = work.sheet.rolling.turned(*j).derivative(&m).0;
                 energy -= about * (work.rolls.angle[*j] - work.rolls.guess[*j]);
                 work.rolls.gradient[*j] -= about;
             }
@@ -161,103 +142,6 @@ impl Model<'_> {
             work.gradient[*j] += couple;
         }
         energy
-    }
-
-    /// Energy of bending, and of stretch, where no twist is carried.
-    fn rod_forces<const D: usize>(&self, work: &mut Work<D>) -> (f64, Value) {
-        let edges = work.q.len() - 1;
-        work.knees.clear();
-        let mut energy = 0.0;
-        let mut axial = Value::default();
-        // edge in hand, the joint at its start, the cross block there
-        let mut before = (self.clamp[0], 0.0);
-        let mut at_start = NO_JOINT;
-        let mut stretch = [0.0; 6];
-        // what the edge before puts on the node in hand
-        let mut carried = [0.0; 6];
-        let weight = 1.0 / (self.gamma * self.gamma);
-        let mut pull = V3::zeros();
-        for j in 0..=edges {
-            let (mut after, mut length) = ((self.clamp[1], 0.0), 0.0);
-            if j < edges {
-                let d = work.q[j + 1] - work.q[j];
-                length = d.norm();
-                let il = 1.0 / length;
-                after = (Some(d * il), il);
-            }
-            let mut joint = NO_JOINT;
-            if let (Some(p), Some(n)) = (&before.0, &after.0) {
-                joint = bent(
-                    &self.laws.bend,
-                    &work.set[j],
-                    self.rod.bend[j].rise,
-                    self.rod.voronoi(j),
-                    [p, n],
-                    [before.1, after.1],
-                );
-                energy += joint.energy;
-                if let Some(knee) = joint.knee {
-                    work.knees.push((j as u32, knee));
-                }
-            }
-            if j > 0 {
-                // edge j - 1 is complete
-                let e = j - 1;
-                let g = pull + at_start.after + joint.before;
-                work.gradient[j] += g;
-                work.gradient[e] -= g;
-                let (b, next) = (&at_start.cross, &joint.cross);
-                let own: Symmetric =
-                    std::array::from_fn(|k| stretch[k] + at_start.own[1][k] + joint.own[0][k]);
-                let k = work.mass[e] * weight;
-                work.matrix.add_diagonal(
-                    e,
-                    &[
-                        [carried[0] + own[0] - 2.0 * b[0][0] + k, 0.0, 0.0],
-                        [
-                            carried[1] + own[1] - b[1][0] - b[0][1],
-                            carried[2] + own[2] - 2.0 * b[1][1] + k,
-                            0.0,
-                        ],
-                        [
-                            carried[3] + own[3] - b[2][0] - b[0][2],
-                            carried[4] + own[4] - b[2][1] - b[1][2],
-                            carried[5] + own[5] - 2.0 * b[2][2] + k,
-                        ],
-                    ],
-                );
-                carried = own;
-                let whole = [
-                    [own[0], own[1], own[3]],
-                    [own[1], own[2], own[4]],
-                    [own[3], own[4], own[5]],
-                ];
-                let off = combine(|r, c| b[r][c] + next[r][c] - whole[r][c]);
-                work.matrix.add(e, 1, &off);
-                if j < edges {
-                    work.matrix.add(e, 2, &combine(|r, c| -next[r][c]));
-                } else {
-                    let k = work.mass[j] * weight;
-                    let last = [
-                        [own[0] + k, 0.0, 0.0],
-                        [own[1], own[2] + k, 0.0],
-                        [own[3], own[4], own[5] + k],
-                    ];
-                    work.matrix.add_diagonal(j, &last);
-                }
-            }
-            if j < edges {
-                let t = after.0.unwrap_or_default();
-                let across = self.stretch(work, j, (t, length, after.1), &mut axial);
-                let s = work.axial[j];
-                pull = t * s.tension;
-                stretch = [across, 0.0, across, 0.0, 0.0, across];
-                add_square(&mut stretch, &t, s.stiffness - across);
-            }
-            before = after;
-            at_start = joint;
-        }
-        (energy, axial)
     }
 
     /// Stretch of edge `j` with its direction, length and inverse length: into `work.axial` and the energy in
@@ -301,32 +185,55 @@ impl Model<'_> {
         expected.tension.max(0.0) * inverse
     }
 
-    /// Energy of inertia, gravity, bending and twist, and of stretch, where twist is carried: the same as
-    /// [`Self::inertia`] and [`Self::rod_forces`] with joints of four unknowns, many at once.
-    fn rolling_rod<const D: usize>(&self, work: &mut Work<D>) -> (f64, Value) {
-        work.sheet.batch.place(&work.q, &work.rolls.angle);
-        work.knees.clear();
-        let mut energy = work.sheet.batch.respond(
-            self.laws,
-            (&self.rod.bend, &self.rod.twist),
-            work.rolls.joints(),
-            |j| self.rod.voronoi(j),
-            &mut work.knees,
-        );
+    /// Energy of inertia, gravity and joints, and of stretch.
+    fn rod_and_inertia<const D: usize, const HESSIAN: bool>(
+        &self,
+        work: &mut Work<D>,
+    ) -> (f64, Value) {
+        let Work {
+            sheet,
+            q,
+            rolls,
+            set,
+            knees,
+            ..
+        } = work;
+        knees.clear();
+        let length = |j| self.rod.voronoi(j);
+        let mut energy;
+        if Work::<D>::ROLLS {
+            sheet.rolling.place(q, &rolls.angle);
+            let state = (&self.rod.bend[..], &self.rod.twist[..]);
+            let ends = rolls.joints();
+            energy = (sheet.rolling).respond(self.laws, state, ends, length, knees);
+        } else {
+            sheet.plain.place(q);
+            let state = (&set[..], &self.rod.bend[..]);
+            energy = (sheet.plain).respond(&self.laws.bend, state, length, knees);
+        }
         let mut axial = Value::default();
         for j in 0..self.rod.edges() {
-            let batch = &work.sheet.batch;
-            let edge = (batch.along(j), batch.length(j), batch.inverse(j));
+            let edge = if Work::<D>::ROLLS {
+                let all = &work.sheet.rolling;
+                (all.along(j), all.length(j), all.inverse(j))
+            } else {
+                let all = &work.sheet.plain;
+                (all.along(j), all.length(j), all.inverse(j))
+            };
             let across = self.stretch(work, j, edge, &mut axial);
             let s = work.axial[j];
             work.sheet.stretch(j, s.tension, s.stiffness, across);
         }
+        if !HESSIAN {
+            work.knees.clear();
+        }
         let weight = 1.0 / (self.gamma * self.gamma);
-        energy += sheet::gather(work, weight, self.back.to_core(self.loads.gravity));
+        let gravity = self.back.to_core(self.loads.gravity);
+        energy += sheet::gather::<D, HESSIAN>(work, weight, gravity);
         (energy, axial)
     }
 
-    fn contact<const D: usize>(&mut self, work: &mut Work<D>, value: &mut Value) {
+    fn contact<const D: usize, const HESSIAN: bool>(&mut self, work: &mut Work<D>, value: &mut Value) {
         let Some(line) = self.line.as_deref_mut() else {
             return;
         };
@@ -342,13 +249,8 @@ impl Model<'_> {
                 if let Some(push) = line.push(2 * j, p, length, own, self.elapsed) {
                     value.merit += push.energy_lagged;
                     value.now += push.energy;
-                    spread(
-                        work,
-                        j - 1,
-                        &[0.125, 0.75, 0.125],
-                        &push.gradient,
-                        &push.hessian,
-                    );
+                    let weights = [0.125, 0.75, 0.125];
+                    spread::<D, HESSIAN>(work, j - 1, &weights, &push.gradient, &push.hessian);
                 }
             }
             let p = (work.q[j] + work.q[j + 1]) * 0.5;
@@ -356,7 +258,7 @@ impl Model<'_> {
             if let Some(push) = line.push(2 * j + 1, p, 0.5 * rest, own, self.elapsed) {
                 value.merit += push.energy_lagged;
                 value.now += push.energy;
-                spread(work, j, &[0.5, 0.5], &push.gradient, &push.hessian);
+                spread::<D, HESSIAN>(work, j, &[0.5, 0.5], &push.gradient, &push.hessian);
             }
             arc += rest;
         }
@@ -388,7 +290,12 @@ impl Model<'_> {
                 value.merit += push.energy_lagged;
                 value.now += push.energy;
                 for side in [&cross.young, &cross.old] {
-                    spread_block(gradient, matrix, side, &push.gradient, &cross.block);
+                    for (i, w) in side.0.iter().zip(side.1) {
+                        gradient[*i] += push.gradient * w;
+                    }
+                    if HESSIAN {
+                        add_block(matrix, side, &cross.block);
+                    }
                 }
             },
         );
@@ -402,20 +309,6 @@ pub(in crate::integrate) fn point_length(rod: &Rod, point: usize) -> f64 {
     } else {
         rod.rest[point / 2]
     }
-}
-
-/// Adds a point's gradient and Hessian to three neighbouring nodes.
-fn spread_block<const D: usize>(
-    gradient: &mut [V3],
-    matrix: &mut Banded<D>,
-    (nodes, weights): &([usize; 3], [f64; 3]),
-    g: &V3,
-    block: &Block,
-) {
-    for (i, w) in nodes.iter().zip(weights) {
-        gradient[*i] += g * *w;
-    }
-    add_block(matrix, &(*nodes, *weights), block);
 }
 
 /// Adds a point's Hessian to three neighbouring nodes.
@@ -446,7 +339,7 @@ pub(in crate::integrate) fn spline_point(q: &[V3], i: usize) -> V3 {
 }
 
 #[inline]
-fn spread<const D: usize>(
+fn spread<const D: usize, const HESSIAN: bool>(
     work: &mut Work<D>,
     first: usize,
     weight: &[f64],
@@ -455,6 +348,9 @@ fn spread<const D: usize>(
 ) {
     for (a, wa) in weight.iter().enumerate() {
         work.gradient[first + a] += gradient * *wa;
+        if !HESSIAN {
+            continue;
+        }
         let own = combine(|r, c| hessian[r][c] * (wa * wa));
         work.matrix.add_diagonal(first + a, &own);
         for (b, wb) in weight.iter().enumerate().skip(a + 1) {

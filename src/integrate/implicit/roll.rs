@@ -10,7 +10,7 @@
 use super::scheme::{Past, Scheme, Step, extrapolation};
 use crate::integrate::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, V3};
-use crate::rod::{Batch, rotate};
+use crate::rod::{RollingJoints, rotate};
 
 /// Unknowns of a node with twist: place and roll.
 pub(super) const WITH_ROLL: usize = 4;
@@ -100,7 +100,7 @@ impl Rolls {
     }
 
     /// Hands what stays the same in a step to `batch`.
-    pub(super) fn lay_out(&self, batch: &mut Batch) {
+    pub(super) fn lay_out(&self, batch: &mut RollingJoints) {
         batch.begin(&self.frame, &self.along, self.clamp);
     }
 
@@ -113,12 +113,12 @@ impl Rolls {
         ]
     }
 
-    /// Adds inertia and drag of the rolls; returns their potential.
+    /// Adds inertia and drag of the rolls, to the matrix if there is one; returns their potential.
     pub(super) fn add_inertia<const D: usize>(
         &mut self,
         gamma: f64,
         drag: f64,
-        matrix: &mut Banded<D>,
+        mut matrix: Option<&mut Banded<D>>,
     ) -> f64 {
         let mut energy = 0.0;
         for j in 0..self.angle.len() {
@@ -130,15 +130,19 @@ impl Rolls {
             let c = drag * self.inertia[j] / gamma;
             energy += 0.5 * (k * d * d + c * way * way);
             self.gradient[j] += k * d + c * way;
-            matrix.add_to_entry(j, 3, k + c);
+            if let Some(matrix) = &mut matrix {
+                matrix.add_to_entry(j, 3, k + c);
+            }
         }
         energy
     }
 
     /// Holds what is no unknown.
-    pub(super) fn pin<const D: usize>(&mut self, matrix: &mut Banded<D>) {
+    pub(super) fn pin<const D: usize>(&mut self, mut matrix: Option<&mut Banded<D>>) {
         for i in self.pinned().into_iter().flatten() {
-            matrix.pin(i, 3);
+            if let Some(matrix) = &mut matrix {
+                matrix.pin(i, 3);
+            }
             self.gradient[i] = 0.0;
         }
     }

@@ -136,6 +136,7 @@ impl Implicit {
             far: f64::INFINITY,
             cuts: 12,
             damped: true,
+            chord: false,
         };
         let mut taken = 0;
         for _ in 0..PASSES {

@@ -1,14 +1,16 @@
-//! Gradient and Hessian of a rod with twist, gathered node by node from its joints and edges.
+//! Gradient and Hessian of the rod, gathered node by node from its joints and edges.
 //!
 //! Nothing is added up in memory: each block of the matrix is put once, as the sum of what the
-//! joints and edges around its node have ([`Batch`]), many nodes side by side.
+//! joints and edges around its node have ([`Joints`]), many nodes side by side.
 
 use super::Work;
 use crate::integrate::Banded;
 use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
 use crate::math::V3;
 use crate::rod::Knee;
-use crate::rod::batch::{Batch, CROSS, GRADIENT, JOINT, OWN, ROLL_OWN, ROLL_WITH, TORQUE};
+use crate::rod::batch::{
+    CROSS, GRADIENT, JOINT, Joints, OWN, PlainJoints, ROLL_OWN, ROLL_WITH, RollingJoints, TORQUE,
+};
 use pulp::Simd;
 
 /// Columns of a node: where it would go without forces, its mass, where it is.
@@ -36,7 +38,9 @@ const FAR: usize = 26;
 /// What an evaluation has laid out in columns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sheet {
-    pub(super) batch: Batch,
+    /// joints with twist, or without
+    pub(super) rolling: RollingJoints,
+    pub(super) plain: PlainJoints,
     nodes: Columns<NODE>,
     stretch: Columns<PULL>,
     /// energy of each node
@@ -64,8 +68,13 @@ impl Sheet {
     }
 }
 
-/// Puts gradient and matrix of rod and inertia, and completes the knees; returns the energy of inertia and `gravity`.
-pub(super) fn gather<const D: usize>(work: &mut Work<D>, weight: f64, gravity: V3) -> f64 {
+/// Puts the gradient of rod and inertia, and with `HESSIAN` the matrix, and completes the knees; returns the energy of
+/// inertia and `gravity`.
+pub(super) fn gather<const D: usize, const HESSIAN: bool>(
+    work: &mut Work<D>,
+    weight: f64,
+    gravity: V3,
+) -> f64 {
     let nodes = work.q.len();
     let Work {
         sheet,
@@ -76,31 +85,56 @@ pub(super) fn gather<const D: usize>(work: &mut Work<D>, weight: f64, gravity: V
         knees,
         ..
     } = work;
-    sheet.nodes.put(q, |block, row, p| {
+    let Sheet {
+        rolling,
+        plain,
+        nodes: columns,
+        stretch,
+        energy,
+    } = sheet;
+    columns.put(q, |block, row, p| {
         block.set(PLACE, row, p.x);
         block.set(PLACE + 1, row, p.y);
         block.set(PLACE + 2, row, p.z);
     });
-    matrix.resize(nodes);
+    if HESSIAN {
+        matrix.resize(nodes);
+    }
     gradient.resize(nodes, V3::zeros());
-    rolls.gradient.resize(nodes, 0.0);
-    run(Gather {
-        sheet,
-        knees,
+    if Work::<D>::ROLLS {
+        rolls.gradient.resize(nodes, 0.0);
+    }
+    let out = Out {
+        nodes: columns,
+        stretch,
+        energy,
         gradient,
         torque: &mut rolls.gradient,
         matrix,
         weight,
         gravity,
-    });
-    sheet.energy.iter().sum()
+    };
+    if Work::<D>::ROLLS {
+        run(Gather::<D, _, HESSIAN>(rolling, knees, out));
+    } else {
+        run(Gather::<D, _, HESSIAN>(plain, knees, out));
+    }
+    energy.iter().sum()
 }
 
 /// Joints, edges and nodes, block by block: edges need the joints at both ends, nodes the edges on both sides, so
 /// these follow one block behind.
-struct Gather<'a, const D: usize> {
-    sheet: &'a mut Sheet,
-    knees: &'a mut [(u32, Knee)],
+struct Gather<'a, const D: usize, J, const HESSIAN: bool>(
+    &'a J,
+    &'a mut [(u32, Knee)],
+    Out<'a, D>,
+);
+
+/// What nodes have, and what is put for them.
+struct Out<'a, const D: usize> {
+    nodes: &'a Columns<NODE>,
+    stretch: &'a Columns<PULL>,
+    energy: &'a mut [f64],
     gradient: &'a mut [V3],
     torque: &'a mut [f64],
     matrix: &'a mut Banded<D>,
@@ -108,31 +142,32 @@ struct Gather<'a, const D: usize> {
     gravity: V3,
 }
 
-impl<const D: usize> WithSimd for Gather<'_, D> {
+impl<const D: usize, J: Joints, const HESSIAN: bool> WithSimd for Gather<'_, D, J, HESSIAN> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) {
-        let blocks = self.sheet.batch.blocks();
-        let edges = self.gradient.len() - 1;
-        let (mut joints, mut next) = (Block::<JOINT>::default(), Block::<JOINT>::default());
-        let (mut before, mut around) = (Block::<EDGE>::default(), Block::<EDGE>::default());
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self(all, mut knees, mut out) = self;
+        let blocks = all.blocks();
+        let edges = out.gradient.len() - 1;
+        let mut blocks_of_joints = [Block::<JOINT>::default(); 2];
+        let mut blocks_of_edges = [Block::<EDGE>::default(); 2];
+        let [mut joints, mut next] = blocks_of_joints.each_mut();
+        let [mut before, mut around] = blocks_of_edges.each_mut();
         // (made once: clearing them is a tenth of the work)
         let (mut row, mut force) = ([[0.0; ROWS]; ROW], [[0.0; ROWS]; 5]);
-        let mut knees = std::mem::take(&mut self.knees);
-        self.sheet.batch.joints(simd, 0, &mut joints, &mut knees);
+        all.joints::<S, HESSIAN>(simd, 0, joints, &mut knees);
         for block in 0..blocks {
             if block + 1 < blocks {
-                let batch = &self.sheet.batch;
-                batch.joints(simd, block + 1, &mut next, &mut knees);
+                all.joints::<S, HESSIAN>(simd, block + 1, next, &mut knees);
             } else {
-                next = Block::default();
+                *next = Block::default();
             }
-            next.follow(&mut joints);
+            next.follow(joints);
             for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
-                let along = self.sheet.batch.directions(simd, block, first);
-                let stretch = &self.sheet.stretch.blocks()[block];
-                edge(simd, (along, stretch, &joints), first, &mut around);
+                let along = all.directions(simd, block, first);
+                let stretch = &out.stretch.blocks()[block];
+                edge::<S, HESSIAN>(simd, (along, stretch, joints), first, around);
             }
             for row in edges.saturating_sub(block * ROWS)..ROWS {
                 // there is no edge behind the last node
@@ -140,11 +175,11 @@ impl<const D: usize> WithSimd for Gather<'_, D> {
                     around.set(k, row, 0.0);
                 }
             }
-            around.follow(&mut before);
+            around.follow(before);
             for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
                 if block * ROWS + first <= edges {
-                    let out = (&mut row, &mut force);
-                    self.node(simd, (&joints, &around), out, block, first);
+                    let scratch = (&mut row, &mut force);
+                    out.node::<S, HESSIAN>(simd, (joints, around), scratch, block, first);
                 }
             }
             std::mem::swap(&mut joints, &mut next);
@@ -155,13 +190,19 @@ impl<const D: usize> WithSimd for Gather<'_, D> {
 
 /// Sums of edges and the two joints at their ends.
 #[inline(always)]
-fn edge<S: Simd>(
+fn edge<S: Simd, const HESSIAN: bool>(
     simd: S,
     (t, stretch, joints): (Lanes3<S>, &Block<PULL>, &Block<JOINT>),
     first: usize,
     out: &mut Block<EDGE>,
 ) {
     let pull = stretch.load(simd, TENSION, first, 1);
+    let start = joints.load3(simd, GRADIENT[1], first, 1);
+    let end = joints.load3(simd, GRADIENT[0], first, 2);
+    out.store3(EDGE_GRADIENT, first, t * pull + (start + end));
+    if !HESSIAN {
+        return;
+    }
     let across = stretch.load(simd, ACROSS, first, 1);
     let along = stretch.load(simd, STIFF, first, 1) - across;
     let start: [_; 6] = joints.load_all(simd, OWN[1], first, 1);
@@ -177,9 +218,6 @@ fn edge<S: Simd>(
             out.store(EDGE_OWN + k, first, sum);
         }
     }
-    let start = joints.load3(simd, GRADIENT[1], first, 1);
-    let end = joints.load3(simd, GRADIENT[0], first, 2);
-    out.store3(EDGE_GRADIENT, first, t * pull + (start + end));
 }
 
 /// Place of an entry in the lower half of a symmetric block.
@@ -192,10 +230,10 @@ fn lower(r: usize, s: usize) -> usize {
     }
 }
 
-impl<const D: usize> Gather<'_, D> {
+impl<const D: usize> Out<'_, D> {
     /// Rows of the matrix and the gradient of as many nodes as there are lanes.
     #[inline(always)]
-    fn node<S: Simd>(
+    fn node<S: Simd, const HESSIAN: bool>(
         &mut self,
         simd: S,
         (joints, edges): (&Block<JOINT>, &Block<EDGE>),
@@ -203,7 +241,7 @@ impl<const D: usize> Gather<'_, D> {
         block: usize,
         first: usize,
     ) {
-        let node = &self.sheet.nodes.blocks()[block];
+        let node = &self.nodes.blocks()[block];
         let mass = node.load(simd, MASS, first, 1);
         let k = mass * self.weight;
         let place = node.load3(simd, PLACE, first, 1);
@@ -215,9 +253,23 @@ impl<const D: usize> Gather<'_, D> {
         g.x.store(&mut force[0]);
         g.y.store(&mut force[1]);
         g.z.store(&mut force[2]);
-        let torque = joints.load(simd, TORQUE + 1, first, 1) + joints.load(simd, TORQUE, first, 2);
-        torque.store(&mut force[3]);
-        (d.dot(d) * (k * 0.5) - pull.dot(place)).store(&mut force[4]);
+        (d.dot(d) * (k * 0.5) - pull.dot(place)).store(&mut force[3]);
+        if Work::<D>::ROLLS {
+            let behind = joints.load(simd, TORQUE + 1, first, 1);
+            (behind + joints.load(simd, TORQUE, first, 2)).store(&mut force[4]);
+        }
+        let start = block * ROWS + first;
+        for l in 0..Lanes::<S>::COUNT.min(self.gradient.len() - start) {
+            let (i, l) = (start + l, l & (ROWS - 1));
+            self.gradient[i] = V3::new(force[0][l], force[1][l], force[2][l]);
+            self.energy[i] = force[3][l];
+            if Work::<D>::ROLLS {
+                self.torque[i] = force[4][l];
+            }
+        }
+        if !HESSIAN {
+            return;
+        }
 
         let behind: [_; 6] = edges.load_all(simd, EDGE_OWN, first, 0);
         let ahead: [_; 6] = edges.load_all(simd, EDGE_OWN, first, 1);
@@ -238,35 +290,11 @@ impl<const D: usize> Gather<'_, D> {
                 (-next[3 * r + s]).store(&mut row[FAR + 4 * r + s]);
             }
         }
-        // rolls: that of the edge before a joint is an unknown of the node before it
-        let with = |e: usize, f: usize| ROLL_WITH[e][f];
-        let back = joints.load3(simd, with(1, 0), first, 1);
-        let on = joints.load3(simd, with(1, 1), first, 1);
-        let from = joints.load3(simd, with(0, 0), first, 2);
-        let to = joints.load3(simd, with(0, 1), first, 2);
-        let other = (-joints.load3(simd, with(1, 0), first, 2)).components();
-        let own = (back - on - from).components();
-        let near = (on + (from - to)).components();
-        let far = to.components();
-        for s in 0..3 {
-            own[s].store(&mut row[6 + s]);
-            near[s].store(&mut row[NEAR + 12 + s]);
-            other[s].store(&mut row[NEAR + 4 * s + 3]);
-            far[s].store(&mut row[FAR + 12 + s]);
+        if Work::<D>::ROLLS {
+            rolls(simd, joints, first, row);
         }
-        let corner =
-            joints.load(simd, ROLL_OWN + 2, first, 1) + joints.load(simd, ROLL_OWN, first, 2);
-        corner.store(&mut row[9]);
-        joints
-            .load(simd, ROLL_OWN + 1, first, 2)
-            .store(&mut row[NEAR + 15]);
-
-        let start = block * ROWS + first;
         for l in 0..Lanes::<S>::COUNT.min(self.gradient.len() - start) {
             let (i, l) = (start + l, l & (ROWS - 1));
-            self.gradient[i] = V3::new(force[0][l], force[1][l], force[2][l]);
-            self.torque[i] = force[3][l];
-            self.sheet.energy[i] = force[4][l];
             self.matrix.put(
                 i,
                 |r, s| row[lower(r, s)][l],
@@ -275,4 +303,34 @@ impl<const D: usize> Gather<'_, D> {
             );
         }
     }
+}
+
+/// What rolls put into the rows of nodes: that of the edge before a joint is an unknown of the node before it.
+#[inline(always)]
+fn rolls<S: Simd>(
+    simd: S,
+    joints: &Block<JOINT>,
+    first: usize,
+    row: &mut [[f64; ROWS]; ROW],
+) {
+    let back = joints.load3(simd, ROLL_WITH[1][0], first, 1);
+    let on = joints.load3(simd, ROLL_WITH[1][1], first, 1);
+    let from = joints.load3(simd, ROLL_WITH[0][0], first, 2);
+    let to = joints.load3(simd, ROLL_WITH[0][1], first, 2);
+    let other = (-joints.load3(simd, ROLL_WITH[1][0], first, 2)).components();
+    let own = (back - on - from).components();
+    let near = (on + (from - to)).components();
+    let far = to.components();
+    for s in 0..3 {
+        own[s].store(&mut row[6 + s]);
+        near[s].store(&mut row[NEAR + 12 + s]);
+        other[s].store(&mut row[NEAR + 4 * s + 3]);
+        far[s].store(&mut row[FAR + 12 + s]);
+    }
+    let corner =
+        joints.load(simd, ROLL_OWN + 2, first, 1) + joints.load(simd, ROLL_OWN, first, 2);
+    corner.store(&mut row[9]);
+    joints
+        .load(simd, ROLL_OWN + 1, first, 2)
+        .store(&mut row[NEAR + 15]);
 }

@@ -123,6 +123,7 @@ impl Implicit {
         let close = (1e-4 * CLOSE * self.tolerance).max(ROUNDING);
         let reach = newton::Reach {
             damped: false,
+            chord: false,
             ..newton::Reach::STEP
         };
         newton::solve(&mut model, work, close, reach)

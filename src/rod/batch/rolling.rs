@@ -1,16 +1,16 @@
-//! All joints of a rod with twist at once, many side by side: what [`super::twisted()`] does for one.
-//!
-//! Three passes: edges with their frames, angles of the joints, then, after every joint has answered by its law,
-//! gradients and Hessians, a block of joints at a time for whoever puts them together. The row before the first edge is the
-//! clamp there, the row after the last the clamp at the other end.
+//! Joints of a rod with twist: what [`twisted`](crate::rod::twisted()) does for one.
 
-use super::forces::Laws;
-use super::joint::{Joint, align, rotate};
-use super::knee::Knee;
-use super::plasticity::{Bend, Scalar};
-use super::twisted::{Answer, Turned, answer};
+use super::{
+    CROSS, GRADIENT, JOINT, Joints, LEAD, LEAD_ROLL, OWN, ROLL_OWN, ROLL_WITH, TORQUE, put_places,
+    series,
+};
 use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
 use crate::math::{Quat, V3};
+use crate::rod::forces::Laws;
+use crate::rod::joint::{Joint, align, rotate};
+use crate::rod::knee::Knee;
+use crate::rod::plasticity::{Bend, Scalar};
+use crate::rod::twisted::{Answer, Turned, answer};
 use pulp::Simd;
 
 /// Columns of an edge: direction, inverse length, length, frame (i, j, k, w), detour of its shortest way.
@@ -36,31 +36,12 @@ const G1: usize = 9;
 /// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free roll.
 const ANSWER: usize = 8;
 
-/// Columns of a joint's gradient and Hessian, see [`super::Bent`] and [`super::Rolled`].
-pub const JOINT: usize = 52;
-/// Hessian by the edge vector before the joint and after it, lower halves.
-pub const OWN: [usize; 2] = [0, 6];
-/// Hessian, rows before, columns after.
-pub const CROSS: usize = 12;
-/// Hessian, roll by roll: before-before, before-after, after-after.
-pub const ROLL_OWN: usize = 21;
-/// Hessian, roll of the edge before or after by either edge vector.
-pub const ROLL_WITH: [[usize; 2]; 2] = [[24, 27], [30, 33]];
-/// Gradient by the edge vectors.
-pub const GRADIENT: [usize; 2] = [36, 39];
-/// Gradient by the rolls.
-pub const TORQUE: usize = 42;
-/// Derivative of the angle along the moment by the edge vectors ...
-const LEAD: [usize; 2] = [44, 47];
-/// ... and by the rolls.
-const LEAD_ROLL: usize = 50;
-
 /// Below this the sine and cosine of a roll are series, see [`align`].
 const SMALL_ROLL: f64 = 2e-3;
 
-/// All edges and joints.
+/// All edges and joints of a rod with twist.
 #[derive(Clone, Debug, Default)]
-pub struct Batch {
+pub struct RollingJoints {
     edges: usize,
     places: Columns<3>,
     roll: Columns<1>,
@@ -70,7 +51,7 @@ pub struct Batch {
     answer: Columns<ANSWER>,
 }
 
-impl Batch {
+impl RollingJoints {
     /// Frames and directions of all edges at the last accepted instant, and of the clamps.
     pub fn begin(&mut self, frames: &[Quat], along: &[V3], clamps: [Option<Quat>; 2]) {
         self.edges = frames.len();
@@ -103,12 +84,7 @@ impl Batch {
 
     /// Edges and angles with the nodes at `q` and edges rolled by `roll`.
     pub fn place(&mut self, q: &[V3], roll: &[f64]) {
-        self.places.put(q, |block, row, p| {
-            block.set(0, row, p.x);
-            block.set(1, row, p.y);
-            block.set(2, row, p.z);
-        });
-        self.places.join();
+        put_places(&mut self.places, q);
         self.roll.put(roll, |block, row, x| block.set(0, row, *x));
         // the pass over the edges goes over the far clamp's row
         let far = self.frame(self.edges);
@@ -231,49 +207,33 @@ impl Batch {
         }
         energy
     }
+}
 
-    /// Blocks of eight edges or joints.
-    pub fn blocks(&self) -> usize {
+impl Joints for RollingJoints {
+    fn blocks(&self) -> usize {
         self.edge.blocks().len()
     }
 
-    /// Directions of the edges of `block` from row `first` on.
     #[inline(always)]
-    pub fn directions<S: Simd>(&self, simd: S, block: usize, first: usize) -> Lanes3<S> {
+    fn directions<S: Simd>(&self, simd: S, block: usize, first: usize) -> Lanes3<S> {
         self.edge.blocks()[block].load3(simd, ALONG, first, 1)
     }
 
-    /// Gradients and Hessians of the joints of `block`. The first of `knees` that are not complete yet and lie in it
-    /// become so, and go out of the slice.
     #[inline(always)]
-    pub fn joints<S: Simd>(
+    fn derive<S: Simd, const HESSIAN: bool>(
         &self,
         simd: S,
         block: usize,
+        first: usize,
+        _near: bool,
         out: &mut Block<JOINT>,
-        knees: &mut &mut [(u32, Knee)],
     ) {
-        for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
-            let all = (
-                &self.edge.blocks()[block],
-                &self.angle.blocks()[block],
-                &self.answer.blocks()[block],
-            );
-            joints(simd, all, first, out);
-        }
-        while let Some((j, _)) = knees.first()
-            && *j as usize / ROWS == block
-        {
-            let (one, rest) = std::mem::take(knees).split_at_mut(1);
-            *knees = rest;
-            let (j, knee) = &mut one[0];
-            let row = *j as usize % ROWS;
-            for k in 0..2 {
-                let at = |a: usize| out.get(LEAD[k] + a, row);
-                knee.rows[k] = V3::new(at(0), at(1), at(2));
-                knee.rolls[k] = out.get(LEAD_ROLL + k, row);
-            }
-        }
+        let all = (
+            &self.edge.blocks()[block],
+            &self.angle.blocks()[block],
+            &self.answer.blocks()[block],
+        );
+        joints::<S, HESSIAN>(simd, all, first, out);
     }
 }
 
@@ -290,7 +250,7 @@ fn quaternion(of: impl Fn(usize) -> f64) -> Quat {
 }
 
 /// First pass: directions, lengths and frames of the edges.
-struct Edges<'a>(&'a mut Batch);
+struct Edges<'a>(&'a mut RollingJoints);
 
 impl WithSimd for Edges<'_> {
     type Output = ();
@@ -356,7 +316,7 @@ fn product<S: Simd>(p: [Lanes<S>; 4], q: [Lanes<S>; 4]) -> [Lanes<S>; 4] {
 }
 
 /// Second pass: angles of the joints, see [`Joint::between`]; large ones are put right afterwards.
-struct Angles<'a>(&'a mut Batch);
+struct Angles<'a>(&'a mut RollingJoints);
 
 impl WithSimd for Angles<'_> {
     type Output = ();
@@ -388,16 +348,6 @@ impl WithSimd for Angles<'_> {
             }
         }
     }
-}
-
-/// A polynomial by its coefficients.
-#[inline(always)]
-fn series<S: Simd, const N: usize>(terms: &[f64; N], x: Lanes<S>) -> Lanes<S> {
-    let mut sum = x * terms[N - 1];
-    for k in (1..N - 1).rev() {
-        sum = x * (sum + terms[k]);
-    }
-    sum + terms[0]
 }
 
 /// An edge as the third pass sees it.
@@ -435,7 +385,7 @@ fn pair<S: Simd>(before: &Side<S>, after: &Side<S>, row: Lanes3<S>) -> [(Lanes3<
 
 /// Third pass: gradients and Hessians of joints from their answers.
 #[inline(always)]
-fn joints<S: Simd>(
+fn joints<S: Simd, const HESSIAN: bool>(
     simd: S,
     (edge, angle, law): (&Block<12>, &Block<10>, &Block<ANSWER>),
     j: usize,
@@ -457,19 +407,24 @@ fn joints<S: Simd>(
     ];
     let turn = matrix(edge.load_all(simd, FRAME, j, 0));
     let lead = turned(&turn, rows[0] * d0 + rows[1] * d1);
-    let side = turned(&turn, rows[1] * d0 - rows[0] * d1);
     let about = turn[0] * (q * inv_c2) - turn[1] * (p * inv_c2) + turn[2];
     let (before, after) = (Side::load(edge, simd, j, 0), Side::load(edge, simd, j, 1));
     let lead = pair(&before, &after, lead);
+    let about = pair(&before, &after, about);
+    for e in 0..2 {
+        out.store3(GRADIENT[e], j, lead[e].0 * push + about[e].0 * couple);
+        out.store(TORQUE + e, j, lead[e].1 * push + about[e].1 * couple);
+    }
+    if !HESSIAN {
+        return;
+    }
+    let side = turned(&turn, rows[1] * d0 - rows[0] * d1);
     let [(w0, r0), (w1, r1)] = pair(&before, &after, side);
     let side = [
         (w0 + before.detour * (free * before.inverse), r0 + free),
         (w1 + after.detour * (free * after.inverse), r1 + free),
     ];
-    let about = pair(&before, &after, about);
     for e in 0..2 {
-        out.store3(GRADIENT[e], j, lead[e].0 * push + about[e].0 * couple);
-        out.store(TORQUE + e, j, lead[e].1 * push + about[e].1 * couple);
         out.store3(LEAD[e], j, lead[e].0);
         out.store(LEAD_ROLL + e, j, lead[e].1);
     }
@@ -625,7 +580,7 @@ mod tests {
     }
 
     /// All blocks of joints.
-    struct All<'a>(&'a Batch, &'a mut [(u32, Knee)]);
+    struct All<'a>(&'a RollingJoints, &'a mut [(u32, Knee)]);
 
     impl WithSimd for All<'_> {
         type Output = Vec<Block<JOINT>>;
@@ -635,7 +590,7 @@ mod tests {
             let Self(batch, mut knees) = self;
             let mut all = vec![Block::default(); batch.blocks()];
             for (block, out) in all.iter_mut().enumerate() {
-                batch.joints(simd, block, out, &mut knees);
+                batch.joints::<S, true>(simd, block, out, &mut knees);
             }
             assert!(knees.is_empty());
             all
@@ -643,7 +598,7 @@ mod tests {
     }
 
     fn respond(w: &Wire) -> (Vec<Block<JOINT>>, f64, Vec<(u32, Knee)>) {
-        let mut batch = Batch::default();
+        let mut batch = RollingJoints::default();
         let mut knees = Vec::new();
         let edges = w.frames.len();
         batch.begin(&w.frames, &w.along, w.clamps);

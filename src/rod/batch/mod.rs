@@ -1,0 +1,104 @@
+//! All joints of a rod at once, many side by side: with twist ([`RollingJoints`]) what [`super::twisted()`] does for
+//! one, without it ([`PlainJoints`]) what [`super::bent()`] does.
+//!
+//! Three passes: edges, angles of the joints, then, after every joint has answered by its law,
+//! gradients and Hessians, a block of joints at a time for whoever puts them together ([`Joints`]). The row before
+//! the first edge is the clamp there, the row after the last the clamp at the other end.
+
+mod plain;
+mod rolling;
+
+use super::knee::Knee;
+use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS};
+use crate::math::V3;
+pub use plain::PlainJoints;
+use pulp::Simd;
+pub use rolling::RollingJoints;
+
+/// Columns of a joint's gradient and Hessian, see [`super::Bent`] and [`super::Rolled`].
+pub const JOINT: usize = 52;
+/// Hessian by the edge vector before the joint and after it, lower halves.
+pub const OWN: [usize; 2] = [0, 6];
+/// Hessian, rows before, columns after.
+pub const CROSS: usize = 12;
+/// Hessian, roll by roll: before-before, before-after, after-after.
+pub const ROLL_OWN: usize = 21;
+/// Hessian, roll of the edge before or after by either edge vector.
+pub const ROLL_WITH: [[usize; 2]; 2] = [[24, 27], [30, 33]];
+/// Gradient by the edge vectors.
+pub const GRADIENT: [usize; 2] = [36, 39];
+/// Gradient by the rolls.
+pub const TORQUE: usize = 42;
+/// Derivative of the angle along the moment by the edge vectors ...
+const LEAD: [usize; 2] = [44, 47];
+/// ... and by the rolls.
+const LEAD_ROLL: usize = 50;
+
+/// Joints whose laws have answered, on their way into whatever puts them together.
+pub trait Joints {
+    /// Blocks of eight edges or joints.
+    fn blocks(&self) -> usize;
+
+    /// Directions of the edges of `block` from row `first` on.
+    fn directions<S: Simd>(&self, simd: S, block: usize, first: usize) -> Lanes3<S>;
+
+    /// Gradients, and Hessians where asked for, of the joints of `block` from row `first` on; `near`: with what knees need.
+    fn derive<S: Simd, const HESSIAN: bool>(
+        &self,
+        simd: S,
+        block: usize,
+        first: usize,
+        near: bool,
+        out: &mut Block<JOINT>,
+    );
+
+    /// Gradients and Hessians of the joints of `block`. The first of `knees` that are not complete yet and lie in it
+    /// become so, and go out of the slice.
+    #[inline(always)]
+    fn joints<S: Simd, const HESSIAN: bool>(
+        &self,
+        simd: S,
+        block: usize,
+        out: &mut Block<JOINT>,
+        knees: &mut &mut [(u32, Knee)],
+    ) {
+        let here = |knees: &[(u32, Knee)]| {
+            let first = knees.first()?.0 as usize;
+            (first / ROWS == block).then_some(first % ROWS)
+        };
+        let near = here(knees).is_some();
+        for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
+            self.derive::<S, HESSIAN>(simd, block, first, near, out);
+        }
+        while let Some(row) = here(knees) {
+            let (one, rest) = std::mem::take(knees).split_at_mut(1);
+            *knees = rest;
+            let knee = &mut one[0].1;
+            for k in 0..2 {
+                let at = |a: usize| out.get(LEAD[k] + a, row);
+                knee.rows[k] = V3::new(at(0), at(1), at(2));
+                knee.rolls[k] = out.get(LEAD_ROLL + k, row);
+            }
+        }
+    }
+}
+
+/// Places of all nodes into the first three of some columns.
+fn put_places(columns: &mut Columns<3>, q: &[V3]) {
+    columns.put(q, |block, row, p| {
+        block.set(0, row, p.x);
+        block.set(1, row, p.y);
+        block.set(2, row, p.z);
+    });
+    columns.join();
+}
+
+/// A polynomial by its coefficients.
+#[inline(always)]
+fn series<S: Simd, const N: usize>(terms: &[f64; N], x: Lanes<S>) -> Lanes<S> {
+    let mut sum = x * terms[N - 1];
+    for k in (1..N - 1).rev() {
+        sum = x * (sum + terms[k]);
+    }
+    sum + terms[0]
+}
