@@ -233,7 +233,11 @@ impl Model<'_> {
         (energy, axial)
     }
 
-    fn contact<const D: usize, const HESSIAN: bool>(&mut self, work: &mut Work<D>, value: &mut Value) {
+    fn contact<const D: usize, const HESSIAN: bool>(
+        &mut self,
+        work: &mut Work<D>,
+        value: &mut Value,
+    ) {
         let Some(line) = self.line.as_deref_mut() else {
             return;
         };

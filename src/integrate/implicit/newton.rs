@@ -138,7 +138,7 @@ pub(super) fn solve<const D: usize>(
         if slope(work) >= 0.0 {
             work.update.clone_from(&work.plain);
         }
-        let (update, node) = largest_update(model, work);
+        let (update, node, rolls) = largest_update(model, work);
         if !update.is_finite() {
             return Err(Stuck {
                 node,
@@ -190,7 +190,12 @@ pub(super) fn solve<const D: usize>(
             }
             cuts += 1;
             work.cuts += 1;
-            if cuts > reach.cuts {
+            let most = if rolls {
+                Reach::STEP.cuts.max(reach.cuts)
+            } else {
+                reach.cuts
+            };
+            if cuts > most {
                 return Err(Stuck {
                     node,
                     update,
@@ -242,7 +247,7 @@ fn end_by_chord<const D: usize>(
     load_gradient(work);
     std::mem::swap(&mut work.update, &mut work.load);
     work.matrix.solve(&mut work.update);
-    let (second, _) = largest_update(model, work);
+    let (second, ..) = largest_update(model, work);
     if second >= close && second * second > first * close {
         std::mem::swap(&mut work.update, &mut work.plain);
         return false;
@@ -263,18 +268,18 @@ fn load_gradient<const D: usize>(work: &mut Work<D>) {
     }
 }
 
-/// Largest update of an unknown, m, and its node; a roll counts by the way of the wire's surface.
-fn largest_update<const D: usize>(model: &Model, work: &Work<D>) -> (f64, usize) {
+/// Largest update of an unknown, m, its node, and whether it is a roll, which counts by the way of the wire's surface.
+fn largest_update<const D: usize>(model: &Model, work: &Work<D>) -> (f64, usize, bool) {
     let radius = 0.5 * model.diameter;
-    let (mut update, mut node) = (0.0, 0);
+    let (mut update, mut at) = (0.0, 0);
     for (k, u) in work.update.iter().enumerate() {
         let size = if k % D < 3 { u.abs() } else { u.abs() * radius };
         let size = if size.is_nan() { f64::INFINITY } else { size };
         if size > update {
-            (update, node) = (size, k / D);
+            (update, at) = (size, k);
         }
     }
-    (update, node)
+    (update, at / D, at % D == 3)
 }
 
 fn hold_limits(model: &mut Model, hold: bool) {

@@ -124,11 +124,7 @@ pub(super) fn gather<const D: usize, const HESSIAN: bool>(
 
 /// Joints, edges and nodes, block by block: edges need the joints at both ends, nodes the edges on both sides, so
 /// these follow one block behind.
-struct Gather<'a, const D: usize, J, const HESSIAN: bool>(
-    &'a J,
-    &'a mut [(u32, Knee)],
-    Out<'a, D>,
-);
+struct Gather<'a, const D: usize, J, const HESSIAN: bool>(&'a J, &'a mut [(u32, Knee)], Out<'a, D>);
 
 /// What nodes have, and what is put for them.
 struct Out<'a, const D: usize> {
@@ -307,12 +303,7 @@ impl<const D: usize> Out<'_, D> {
 
 /// What rolls put into the rows of nodes: that of the edge before a joint is an unknown of the node before it.
 #[inline(always)]
-fn rolls<S: Simd>(
-    simd: S,
-    joints: &Block<JOINT>,
-    first: usize,
-    row: &mut [[f64; ROWS]; ROW],
-) {
+fn rolls<S: Simd>(simd: S, joints: &Block<JOINT>, first: usize, row: &mut [[f64; ROWS]; ROW]) {
     let back = joints.load3(simd, ROLL_WITH[1][0], first, 1);
     let on = joints.load3(simd, ROLL_WITH[1][1], first, 1);
     let from = joints.load3(simd, ROLL_WITH[0][0], first, 2);
@@ -327,8 +318,7 @@ fn rolls<S: Simd>(
         other[s].store(&mut row[NEAR + 4 * s + 3]);
         far[s].store(&mut row[FAR + 12 + s]);
     }
-    let corner =
-        joints.load(simd, ROLL_OWN + 2, first, 1) + joints.load(simd, ROLL_OWN, first, 2);
+    let corner = joints.load(simd, ROLL_OWN + 2, first, 1) + joints.load(simd, ROLL_OWN, first, 2);
     corner.store(&mut row[9]);
     joints
         .load(simd, ROLL_OWN + 1, first, 2)

@@ -217,10 +217,7 @@ impl Joints for PlainJoints {
     ) {
         let (edge, angle) = (&self.edge.blocks()[block], &self.angle.blocks()[block]);
         let law = &self.answer.blocks()[block];
-        let t = [
-            edge.load3(simd, ALONG, j, 0),
-            edge.load3(simd, ALONG, j, 1),
-        ];
+        let t = [edge.load3(simd, ALONG, j, 0), edge.load3(simd, ALONG, j, 1)];
         let il = [
             edge.load(simd, INVERSE, j, 0),
             edge.load(simd, INVERSE, j, 1),
