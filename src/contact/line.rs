@@ -448,6 +448,25 @@ impl LineContact {
         }
     }
 
+    /// Points that come near frozen wire from node `from` on look their surroundings up anew: that wire has just been
+    /// laid.
+    pub fn forget_near(&mut self, from: usize) {
+        let skin = SKIN * 2.0 * self.tube.radius();
+        let wire = self.radius + self.tube.radius();
+        // the node before got its share of the curve changed as well
+        let laid = &self.tube.points()[from.saturating_sub(2)..];
+        for p in &mut self.points {
+            let reach = wire + p.reach.max(skin);
+            let near = |ends: &[V3]| {
+                let (middle, length) = ((ends[0] + ends[1]) * 0.5, (ends[1] - ends[0]).norm());
+                (middle - p.centre).norm() < reach + length
+            };
+            if p.reach >= 0.0 && laid.windows(2).any(near) {
+                p.reach = -1.0;
+            }
+        }
+    }
+
     /// A node was put in the middle of edge `j`: its point of contact becomes the node's.
     pub fn split(&mut self, j: usize) {
         // edge j's middle (2j + 1) turns into the new node's point, with new middles either side

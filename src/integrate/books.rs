@@ -32,9 +32,12 @@ impl System {
     /// Elastic energy of the live wire and its touches, J.
     pub fn stored(&self) -> f64 {
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
-        let rod: f64 = stored_energy(&self.rod, &self.laws, &clamp, self.twist.is_carried())
-            .iter()
-            .sum();
+        let rod = stored_energy(&self.rod, &self.laws, &clamp, self.twist.is_carried());
+        self.stored_with(rod.iter().sum())
+    }
+
+    /// The same with the energy of the `rod` known.
+    fn stored_with(&self, rod: f64) -> f64 {
         let touch: f64 = match &self.contacts {
             Some(c) => self
                 .free_nodes()
@@ -95,11 +98,13 @@ impl System {
         let b = self.books;
         let supply = b.initial + b.spindle + b.nozzle + b.inflow;
         let lost = b.plastic.iter().sum::<f64>() + b.friction + b.damping + b.numerical;
+        // (the forces are those of this instant)
+        let stored = self.stored_with(self.load.stored);
         let kinetic = match staggered {
             Some(dt) => self.staggered_kinetic(dt),
             None => self.kinetic(),
         };
-        supply - lost - b.frozen_stored - b.frozen_kinetic - self.stored() - kinetic
+        supply - lost - b.frozen_stored - b.frozen_kinetic - stored - kinetic
     }
 
     fn staggered_kinetic(&self, dt: f64) -> f64 {

@@ -68,6 +68,7 @@ impl System {
             time,
             load,
             roll,
+            forces: _,
             stages: _,
         } = self;
         SavedSystem {

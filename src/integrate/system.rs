@@ -10,7 +10,7 @@ use super::twist::Twist;
 use crate::contact::{Body, Contacts, LineContact, LiveContact, Wire};
 use crate::feed::{Feed, FeedSpec};
 use crate::math::{Quat, Spin, V3, spin_velocity};
-use crate::rod::{ForceParts, Laws, Load, Rod, Section, internal_forces, rotate};
+use crate::rod::{ForceParts, Forces, Laws, Load, Rod, Section, internal_forces, rotate};
 
 /// Loads besides contact.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -76,6 +76,8 @@ pub struct System {
     /// forces of the last evaluation
     pub load: Load,
     pub(super) roll: Vec<f64>,
+    /// scratch
+    pub(super) forces: Forces,
     pub(super) stages: super::rk4::Stages,
 }
 
@@ -110,6 +112,7 @@ impl System {
             time: 0.0,
             load: Load::default(),
             roll: vec![0.0; edges],
+            forces: Forces::default(),
             stages: super::rk4::Stages::default(),
         }
     }
@@ -201,6 +204,15 @@ impl System {
 
     /// Internal forces and loads into a fresh `load`; with `commit` frames and plastic state move on.
     pub(super) fn internal(&mut self, commit: bool) {
+        self.internal_with(commit, false);
+    }
+
+    /// The same with many joints at once, as the implicit method has them.
+    pub(super) fn internal_at_once(&mut self, commit: bool) {
+        self.internal_with(commit, true);
+    }
+
+    fn internal_with(&mut self, commit: bool, at_once: bool) {
         self.load.fit(&self.rod);
         self.roll.resize(self.rod.edges(), 0.0);
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
@@ -208,14 +220,12 @@ impl System {
             commit,
             twist: self.twist.is_carried(),
         };
-        internal_forces(
-            &mut self.rod,
-            &self.laws,
-            &clamp,
-            &self.roll,
-            parts,
-            &mut self.load,
-        );
+        let (rod, laws, load) = (&mut self.rod, &self.laws, &mut self.load);
+        if at_once {
+            (self.forces).add(rod, laws, &clamp, &self.roll, parts, load);
+        } else {
+            internal_forces(rod, laws, &clamp, &self.roll, parts, load);
+        }
         self.external_forces();
         if commit {
             self.roll.iter_mut().for_each(|r| *r = 0.0);

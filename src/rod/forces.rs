@@ -50,6 +50,8 @@ pub struct Load {
     pub clamp_moment: [V3; 2],
     /// plastic work done in this evaluation (bend, twist, stretch), J, when committed
     pub plastic: [f64; 3],
+    /// elastic energy of the rod, J
+    pub stored: f64,
 }
 
 impl Load {
@@ -87,6 +89,7 @@ pub fn internal_forces(
 ) {
     let edges = rod.edges();
     load.plastic = [0.0; 3];
+    load.stored = 0.0;
     load.clamp_moment = [V3::zeros(); 2];
     // frame and moment at the start joint of the edge in hand
     let mut before: Option<Quat> = clamp[0];
@@ -118,11 +121,13 @@ pub fn internal_forces(
                 &rod.bend[j],
                 [joint.bend[0] * inv, joint.bend[1] * inv],
             );
+            load.stored += 0.5 * (m[0] * m[0] + m[1] * m[1]) / laws.bend.modulus * lv;
             let mut torque = 0.0;
             if parts.twist {
                 let (t, twist, work) =
                     respond_scalar(&laws.twist, &rod.twist[j], joint.twist * inv);
                 torque = t;
+                load.stored += 0.5 * t * t / laws.twist.modulus * lv;
                 if parts.commit && work > 0.0 {
                     rod.twist[j] = twist;
                     load.plastic[1] += work * lv;
@@ -153,6 +158,7 @@ pub fn internal_forces(
             let (n, state, work) =
                 respond_scalar(&laws.stretch, &rod.stretch[j], length / rod.rest[j] - 1.0);
             load.tension[j] = n;
+            load.stored += 0.5 * n * n / laws.stretch.modulus * rod.rest[j];
             if parts.commit && work > 0.0 {
                 rod.stretch[j] = state;
                 load.plastic[2] += work * rod.rest[j];

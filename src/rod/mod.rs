@@ -14,7 +14,7 @@ mod section;
 mod state;
 mod twisted;
 
-pub use batch::{PlainJoints, RollingJoints};
+pub use batch::{Forces, PlainJoints, RollingJoints};
 pub use discrete::{
     Bent, Block, Stretched, Symmetric, add_outer, add_square, bent, stretched, turning,
 };

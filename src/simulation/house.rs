@@ -222,7 +222,7 @@ impl Simulation {
             c.forget_surroundings();
         }
         if let Some(l) = &mut self.sys.line {
-            l.forget_surroundings();
+            l.forget_near(l.tube.len() - count);
         }
     }
 

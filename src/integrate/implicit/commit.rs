@@ -168,7 +168,7 @@ impl System {
         if self.line.is_none() {
             return self.evaluate(Some(0.0));
         }
-        self.internal(true);
+        self.internal_at_once(true);
         self.begin_past();
         self.place_points();
         self.touch_forces(0.0, false);
@@ -189,7 +189,7 @@ impl System {
     /// Forces at the present state into `load`, with contact of the line kind. `commit` moves plastic
     /// state, frames and anchors on after a step of `h`.
     pub(super) fn settle_forces(&mut self, h: f64, commit: bool) {
-        self.internal(commit);
+        self.internal_at_once(commit);
         self.touch_forces(h, commit);
     }
 

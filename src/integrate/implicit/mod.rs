@@ -535,7 +535,6 @@ fn model_of<'a>(
         loads: &sys.loads,
         last: &sys.past.q[0],
         tension: &sys.load.tension,
-        clamp: clamp_directions(support, spindle),
         nozzle,
         gamma: step.gamma,
         elapsed: step.share * step.h,

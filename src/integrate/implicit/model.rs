@@ -17,8 +17,6 @@ pub(super) struct Model<'a> {
     pub(super) last: &'a [V3],
     /// tension of each edge at the last accepted instant, N
     pub(super) tension: &'a [f64],
-    /// directions of the clamps in the core frame
-    pub(super) clamp: [Option<V3>; 2],
     pub(super) nozzle: Option<NozzleEdge>,
     /// time over which forces act, and since the last accepted instant, s
     pub(super) gamma: f64,

@@ -173,7 +173,10 @@ pub(super) fn solve<const D: usize>(
             return Ok(step);
         }
         let mut cuts = 0;
-        if share == 1.0 && reach.chord && end_by_chord(model, work, value, (update, close)) {
+        if share == 1.0
+            && reach.chord
+            && end_by_chord(model, work, value, (update, close), reach.damped)
+        {
             return Ok(step + 1);
         }
         loop {
@@ -226,6 +229,7 @@ fn end_by_chord<const D: usize>(
     work: &mut Work<D>,
     value: f64,
     (first, close): (f64, f64),
+    damped: bool,
 ) -> bool {
     let coupled = |model: &Model| {
         let between = model.line.as_deref().and_then(|l| l.between.as_ref());
@@ -248,7 +252,9 @@ fn end_by_chord<const D: usize>(
     std::mem::swap(&mut work.update, &mut work.load);
     work.matrix.solve(&mut work.update);
     let (second, ..) = largest_update(model, work);
-    if second >= close && second * second > first * close {
+    // the midpoint rule keeps what is wrong with a step for ever
+    let left = if damped { close } else { 1e-3 * close };
+    if second >= left && second * second > first * left {
         std::mem::swap(&mut work.update, &mut work.plain);
         return false;
     }

@@ -7,7 +7,7 @@
 use super::model::Model;
 use super::newton::{self, Reach};
 use super::scheme::Step;
-use super::{CLOSE, Implicit, Stopped, Work, clamp_directions};
+use super::{CLOSE, Implicit, Stopped, Work};
 use crate::integrate::{System, Twist};
 use crate::math::{Spin, V3};
 
@@ -214,7 +214,6 @@ fn model_at_rest(sys: &mut System) -> Model<'_> {
         line: sys.line.as_mut(),
         loads: &sys.loads,
         tension: &sys.load.tension,
-        clamp: clamp_directions(&sys.support, &sys.spindle),
         nozzle: None,
         gamma: LONG,
         elapsed: f64::INFINITY,

@@ -5,12 +5,14 @@
 //! gradients and Hessians, a block of joints at a time for whoever puts them together ([`Joints`]). The row before
 //! the first edge is the clamp there, the row after the last the clamp at the other end.
 
+mod forces;
 mod plain;
 mod rolling;
 
 use super::knee::Knee;
 use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS};
 use crate::math::V3;
+pub use forces::Forces;
 pub use plain::PlainJoints;
 use pulp::Simd;
 pub use rolling::RollingJoints;

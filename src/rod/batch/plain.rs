@@ -321,3 +321,123 @@ fn on<S: Simd>(
         (side[1] * f - along) * il[1],
     ]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rod::bent;
+    use rand_chacha::ChaCha8Rng;
+    use rand_chacha::rand_core::{Rng, SeedableRng};
+
+    const LV: f64 = 0.5e-3;
+
+    /// All blocks of joints.
+    struct All<'a, const HESSIAN: bool>(&'a PlainJoints, &'a mut [(u32, Knee)]);
+
+    impl<const HESSIAN: bool> WithSimd for All<'_, HESSIAN> {
+        type Output = Vec<Block<JOINT>>;
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+            let Self(joints, mut knees) = self;
+            let mut all = vec![Block::default(); joints.blocks()];
+            for (block, out) in all.iter_mut().enumerate() {
+                joints.joints::<S, HESSIAN>(simd, block, out, &mut knees);
+            }
+            assert!(knees.is_empty());
+            all
+        }
+    }
+
+    /// The slow twin is one joint at a time.
+    #[test]
+    fn each_joint_is_that_of_the_rod_one_by_one() {
+        let law = Law::new(3.06e-3, 1.13e-4, 5.72e-3, f64::INFINITY);
+        let elastic = Law::new(3.06e-3, 3.06e-3, f64::INFINITY, f64::INFINITY);
+        let mut near = [0; 2];
+        for (seed, edges, crooked, law) in [
+            (1, 30, 0.03, law),
+            (2, 7, 0.5, law),
+            (3, 1, 1.0, law),
+            (4, 16, 0.3, elastic),
+        ] {
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let mut number = move || rng.next_u32() as f64 / f64::from(u32::MAX) * 2.0 - 1.0;
+            let mut some = |size: f64| V3::new(number(), number(), number()) * size;
+            let mut q = vec![V3::zeros()];
+            for j in 0..edges {
+                q.push(q[j] + V3::new(0.0, 0.0, LV) + some(crooked * LV));
+            }
+            if edges > 10 {
+                // as good as folded
+                q[5] = q[3] + some(1e-9);
+            }
+            let clamps = [(seed != 2).then_some(V3::z()), None];
+            let set: Vec<V3> = (0..=edges).map(|_| some(100.0)).collect();
+            let bend: Vec<Bend> = (0..=edges)
+                .map(|_| Bend {
+                    curvature: [0.0; 2],
+                    rise: some(1e-4).x.abs(),
+                })
+                .collect();
+            let mut all = PlainJoints::default();
+            let mut knees = Vec::new();
+            all.begin(edges, clamps);
+            all.place(&q);
+            let energy = all.respond(&law, (&set, &bend), |_| LV, &mut knees);
+            let forces = run(All::<false>(&all, &mut knees.clone()));
+            let joints = run(All::<true>(&all, &mut knees));
+            let (mut sum, mut count) = (0.0, 0);
+            for j in 0..edges {
+                let edge = |k: usize| {
+                    let d = q[k + 1] - q[k];
+                    (d.normalize(), 1.0 / d.norm())
+                };
+                let before = match (j, clamps[0]) {
+                    (0, None) => continue,
+                    (0, Some(t)) => (t, 0.0),
+                    _ => edge(j - 1),
+                };
+                let after = edge(j);
+                let t = [&before.0, &after.0];
+                let one = bent(&law, &set[j], bend[j].rise, LV, t, [before.1, after.1]);
+                sum += one.energy;
+                let get = |k: usize| joints[j / ROWS].get(k, j % ROWS);
+                let compare = |at: usize, want: &[f64]| {
+                    let size = want.iter().fold(0.0, |s: f64, x| s.max(x.abs()));
+                    for (k, want) in want.iter().enumerate() {
+                        let off = (get(at + k) - want).abs();
+                        assert!(
+                            off <= 1e-9 * size + 1e-14,
+                            "joint {j} of {edges}: {}, {want}",
+                            get(at + k)
+                        );
+                    }
+                };
+                for e in 0..2 {
+                    compare(OWN[e], &one.own[e]);
+                    compare(GRADIENT[e], [one.before, one.after][e].as_slice());
+                    for k in GRADIENT[e]..GRADIENT[e] + 3 {
+                        let alone = forces[j / ROWS].get(k, j % ROWS);
+                        assert!(alone.to_bits() == get(k).to_bits());
+                    }
+                }
+                compare(CROSS, one.cross.as_flattened());
+                near[usize::from(one.knee.is_some())] += 1;
+                if let Some(knee) = one.knee {
+                    let (number, own) = &knees[count];
+                    assert_eq!(*number, j as u32);
+                    count += 1;
+                    for e in 0..2 {
+                        let off = (own.rows[e] - knee.rows[e]).norm();
+                        assert!(off <= 1e-9 * knee.rows[e].norm() + 1e-12);
+                    }
+                    assert!((own.moment - knee.moment).abs() <= 1e-9 * knee.moment.abs());
+                }
+            }
+            assert!((energy - sum).abs() <= 1e-9 * sum.abs());
+            assert_eq!(count, knees.len());
+        }
+        assert!(near[0] > 5 && near[1] > 5, "{near:?}");
+    }
+}

@@ -6,10 +6,11 @@ use super::{
 };
 use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
 use crate::math::{Quat, V3};
-use crate::rod::forces::Laws;
+use crate::rod::forces::{ForceParts, Laws, Load};
 use crate::rod::joint::{Joint, align, rotate};
 use crate::rod::knee::Knee;
-use crate::rod::plasticity::{Bend, Scalar};
+use crate::rod::plasticity::{Bend, Scalar, respond_bend, respond_scalar};
+use crate::rod::state::Rod;
 use crate::rod::twisted::{Answer, Turned, answer};
 use pulp::Simd;
 
@@ -206,6 +207,72 @@ impl RollingJoints {
             }
         }
         energy
+    }
+
+    /// Lets the joints of `rod` answer for [`super::Forces`]; with `parts.commit` their plastic state and the frames move
+    /// on. Moments of the clamps, stored energy and plastic work go into `load`.
+    pub(super) fn settle(
+        &mut self,
+        rod: &mut Rod,
+        laws: &Laws,
+        clamp: &[Option<Quat>; 2],
+        parts: ForceParts,
+        load: &mut Load,
+    ) {
+        load.plastic = [0.0; 3];
+        load.clamp_moment = [V3::zeros(); 2];
+        load.stored = 0.0;
+        for j in 0..=self.edges {
+            let (block, row) = (j / ROWS, j % ROWS);
+            let end = (j == 0, j == self.edges);
+            let missing = (end.0 && clamp[0].is_none()) || (end.1 && clamp[1].is_none());
+            let (mut m, mut torque) = ([0.0; 2], 0.0);
+            if !missing {
+                let angles = &self.angle.blocks()[block];
+                let angle = [angles.get(BEND, row), angles.get(BEND + 1, row)];
+                let lv = rod.voronoi(j);
+                let inv = 1.0 / lv;
+                let curvature = [angle[0] * inv, angle[1] * inv];
+                let (moment, bend, work) = respond_bend(&laws.bend, &rod.bend[j], curvature);
+                m = moment;
+                load.stored += 0.5 * (m[0] * m[0] + m[1] * m[1]) / laws.bend.modulus * lv;
+                if parts.commit && work > 0.0 {
+                    rod.bend[j] = bend;
+                    load.plastic[0] += work * lv;
+                }
+                if parts.twist {
+                    let twist = angles.get(TWIST, row) * inv;
+                    let (t, twist, work) = respond_scalar(&laws.twist, &rod.twist[j], twist);
+                    torque = t;
+                    load.stored += 0.5 * t * t / laws.twist.modulus * lv;
+                    if parts.commit && work > 0.0 {
+                        rod.twist[j] = twist;
+                        load.plastic[1] += work * lv;
+                    }
+                }
+            }
+            let answers = &mut self.answer.blocks_mut()[block];
+            for (k, x) in [m[0], m[1], 1.0, torque].into_iter().enumerate() {
+                answers.set(k, row, x);
+            }
+            if !missing && (end.0 || end.1) {
+                let before = if end.0 {
+                    clamp[0]
+                } else {
+                    Some(self.frame(j - 1))
+                };
+                if let Some(before) = before {
+                    let joint = Joint::between(&before, &self.frame(j));
+                    let moment = rotate(&before, &joint.moment(m, torque));
+                    load.clamp_moment[usize::from(end.1)] = if end.0 { -moment } else { moment };
+                }
+            }
+        }
+        if parts.commit {
+            for j in 0..self.edges {
+                rod.frame[j] = self.frame(j);
+            }
+        }
     }
 }
 
