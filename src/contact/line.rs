@@ -594,10 +594,15 @@ impl LineContact {
             point.touch[0] = NONE;
         }
         let wire = self.radius + self.tube.radius();
-        // far away the search ball would be large: the core is inside the coil, so stay modest
-        let reach = (core_room + skin).clamp(skin, 4.0 * skin);
+        // above all wire that has been laid there is nothing to look for; else the search ball must not get large
+        let above = core_room - self.height;
+        let reach = if above > skin {
+            above
+        } else {
+            (core_room + skin).clamp(skin, 4.0 * skin)
+        };
         self.found.clear();
-        if self.tube.len() > 1 {
+        if self.tube.len() > 1 && above <= skin {
             self.tube.gather(p, wire + reach, own, &mut self.found);
         }
         let mut next = [NONE; PASSAGES];
