@@ -164,6 +164,17 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
+    /// `other` in those lanes where `test` is not above 0.
+    #[inline(always)]
+    pub fn unless_above_zero(self, test: Self, other: Self) -> Self {
+        let zero = self.simd.splat_f64s(0.0);
+        let above = self.simd.less_than_f64s(zero, test.v);
+        Self {
+            simd: self.simd,
+            v: self.simd.select_f64s(above, self.v, other.v),
+        }
+    }
+
     /// The same number in every lane.
     #[inline(always)]
     pub fn all(self, x: f64) -> Self {

@@ -35,6 +35,20 @@ pub struct Knee {
 }
 
 impl Knee {
+    /// That of a joint which does not yield, without derivatives of its angle.
+    pub fn elastic(trial: f64, rise: f64, length: f64, stiffness: f64) -> Self {
+        Self {
+            rows: [V3::zeros(); 2],
+            rolls: [0.0; 2],
+            trial,
+            length,
+            rise,
+            moment: trial,
+            stiffness,
+            branch: 0,
+        }
+    }
+
     /// Whether a joint is near enough to yielding to be looked at.
     pub fn matters(law: &Law, trial: f64, rise: f64) -> bool {
         trial > FAR * (law.limit + rise)

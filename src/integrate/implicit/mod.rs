@@ -429,6 +429,8 @@ impl<const D: usize> Work<D> {
         if Self::ROLLS {
             self.rolls.prepare(sys, step, spindle, support, inert);
             self.rolls.lay_out(&mut self.sheet.rolling);
+            let (state, ends) = ((&rod.bend[..], &rod.twist[..]), self.rolls.joints());
+            (self.sheet.rolling).lay(&sys.laws, state, ends, |j| rod.voronoi(j));
         } else {
             self.turn_plastic_curvature(sys, spindle, support);
             let clamps = clamp_directions(support, spindle);

@@ -197,17 +197,14 @@ impl Model<'_> {
             ..
         } = work;
         knees.clear();
-        let length = |j| self.rod.voronoi(j);
         let mut energy;
         if Work::<D>::ROLLS {
             sheet.rolling.place(q, &rolls.angle);
-            let state = (&self.rod.bend[..], &self.rod.twist[..]);
-            let ends = rolls.joints();
-            energy = (sheet.rolling).respond(self.laws, state, ends, length, knees);
+            energy = (sheet.rolling).respond(self.laws, HESSIAN.then_some(knees));
         } else {
             sheet.plain.place(q);
             let state = (&set[..], &self.rod.bend[..]);
-            energy = (sheet.plain).respond(&self.laws.bend, state, length, knees);
+            energy = (sheet.plain).respond(&self.laws.bend, state, |j| self.rod.voronoi(j), knees);
         }
         let mut axial = Value::default();
         for j in 0..self.rod.edges() {

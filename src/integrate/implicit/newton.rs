@@ -398,24 +398,30 @@ fn foresee_knees<const D: usize>(law: &Law, work: &mut Work<D>) -> bool {
 
     for (joint, knee) in knees {
         let j = *joint as usize;
-        let of = |i: usize| V3::new(update[D * i], update[D * i + 1], update[D * i + 2]);
-        let mut angle = 0.0;
-        if j > 0 {
-            angle += knee.rows[0].dot(&(of(j) - of(j - 1)));
-        }
-        if j + 1 < nodes {
-            angle += knee.rows[1].dot(&(of(j + 1) - of(j)));
-        }
         // derivative of the angle by the rolls, which stand with the first nodes of their edges
         let mut rolls = [0.0; 3];
         if Work::<D>::ROLLS {
             if j > 0 {
                 rolls[0] = knee.rolls[0];
-                angle += rolls[0] * update[D * j - 1];
             }
             if j + 1 < nodes {
                 rolls[1] = knee.rolls[1];
-                angle += rolls[1] * update[D * j + 3];
+            }
+        }
+        let move_of = |u: &[f64]| V3::new(u[0], u[1], u[2]);
+        let mut angle = 0.0;
+        if j > 0 {
+            let u = &update[D * (j - 1)..D * (j + 1)];
+            angle += knee.rows[0].dot(&(move_of(&u[D..]) - move_of(u)));
+            if Work::<D>::ROLLS {
+                angle += rolls[0] * u[D - 1];
+            }
+        }
+        if j + 1 < nodes {
+            let u = &update[D * j..D * (j + 2)];
+            angle += knee.rows[1].dot(&(move_of(&u[D..]) - move_of(u)));
+            if Work::<D>::ROLLS {
+                angle += rolls[1] * u[D - 1];
             }
         }
         let Some((stiffness, moment)) = knee.foresee(law, angle) else {

@@ -11,7 +11,7 @@ use crate::rod::joint::{Joint, align, rotate};
 use crate::rod::knee::Knee;
 use crate::rod::plasticity::{Bend, Scalar, respond_bend, respond_scalar};
 use crate::rod::state::Rod;
-use crate::rod::twisted::{Answer, Turned, answer};
+use crate::rod::twisted::{Turned, answer};
 use pulp::Simd;
 
 /// Columns of an edge: direction, inverse length, length, frame (i, j, k, w), detour of its shortest way.
@@ -34,8 +34,28 @@ const COSINE: usize = 7;
 const G: usize = 8;
 const G1: usize = 9;
 
-/// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free roll.
-const ANSWER: usize = 8;
+/// Columns of a joint's plastic state: set curvature, rise of the yield moment and that itself, the same of twist, length
+/// that it stands for and its inverse.
+const STATE: usize = 9;
+const SET: usize = 0;
+const RISE: usize = 2;
+const LIMIT: usize = 3;
+const TWIST_SET: usize = 4;
+const TWIST_RISE: usize = 5;
+const TWIST_LIMIT: usize = 6;
+const LV: usize = 7;
+const PER_LV: usize = 8;
+
+/// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free roll, energy, see [`Answer`].
+///
+/// [`Answer`]: crate::rod::twisted
+const ANSWER: usize = 9;
+const DIRECTION: usize = 0;
+const PUSH: usize = 2;
+const COUPLE: usize = 3;
+const STIFF: usize = 4;
+const FREE: usize = 7;
+const ENERGY: usize = 8;
 
 /// Below this the sine and cosine of a roll are series, see [`align`].
 const SMALL_ROLL: f64 = 2e-3;
@@ -49,6 +69,7 @@ pub struct RollingJoints {
     from: Columns<7>,
     edge: Columns<12>,
     angle: Columns<10>,
+    state: Columns<STATE>,
     answer: Columns<ANSWER>,
 }
 
@@ -62,6 +83,7 @@ impl RollingJoints {
         self.from.fit(rows);
         self.edge.fit(rows);
         self.angle.fit(rows);
+        self.state.fit(rows);
         self.answer.fit(rows);
         for (j, (f, t)) in frames.iter().zip(along).enumerate() {
             for a in 0..4 {
@@ -161,49 +183,87 @@ impl RollingJoints {
         Turned::known(self.frame(j), self.along(j), self.inverse(j), detour)
     }
 
-    /// Lets the joints from `first` to `last` answer; returns their energy. `length` is the length
-    /// that a joint stands for. `knees` gets those joints that may change their branch, for [`Self::joints`] to complete.
-    pub fn respond(
+    /// Plastic state of the joints from `first` to `last`, and the `length` that each stands for; the others are none.
+    pub fn lay(
         &mut self,
         laws: &Laws,
-        state: (&[Bend], &[Scalar]),
+        (bend, twist): (&[Bend], &[Scalar]),
         [first, last]: [usize; 2],
         length: impl Fn(usize) -> f64,
-        knees: &mut Vec<(u32, Knee)>,
-    ) -> f64 {
-        let mut energy = 0.0;
+    ) {
         for j in 0..=self.edges {
-            let (block, row) = (j / ROWS, j % ROWS);
-            let answers = &mut self.answer.blocks_mut()[block];
-            if j < first || j > last {
-                for k in 0..ANSWER {
-                    answers.set(k, row, 0.0);
+            let (state, row) = (&mut self.state.blocks_mut()[j / ROWS], j % ROWS);
+            let mut put = |values: [f64; STATE]| {
+                for (k, x) in values.into_iter().enumerate() {
+                    state.set(k, row, x);
                 }
+            };
+            if j < first || j > last {
+                put([0.0; STATE]);
                 continue;
             }
+            let (bend, twist, lv) = (&bend[j], &twist[j], length(j));
+            put([
+                bend.curvature[0],
+                bend.curvature[1],
+                bend.rise,
+                laws.bend.limit + bend.rise,
+                twist.strain,
+                twist.rise,
+                laws.twist.limit + twist.rise,
+                lv,
+                1.0 / lv,
+            ]);
+        }
+    }
+
+    /// Lets the joints answer; returns their energy. `knees`, if there, gets those that may change their branch, for
+    /// [`Joints::joints`] to complete.
+    pub fn respond(&mut self, laws: &Laws, mut knees: Option<&mut Vec<(u32, Knee)>>) -> f64 {
+        run(Elastic(self, laws));
+        let mut energy = 0.0;
+        for block in 0..self.blocks() {
+            let state = &self.state.blocks()[block];
             let angles = &self.angle.blocks()[block];
-            let bend = [angles.get(BEND, row), angles.get(BEND + 1, row)];
-            let twist = angles.get(TWIST, row);
-            let Answer {
-                energy: own,
-                along,
-                push,
-                torque,
-                stiffness,
-                free,
-                knee,
-            } = answer(laws, &state.0[j], &state.1[j], length(j), bend, twist);
-            energy += own;
-            answers.set(0, row, along[0]);
-            answers.set(1, row, along[1]);
-            answers.set(2, row, push);
-            answers.set(3, row, torque);
-            for k in 0..3 {
-                answers.set(4 + k, row, stiffness[k]);
-            }
-            answers.set(7, row, free);
-            if let Some(knee) = knee {
-                knees.push((j as u32, knee));
+            let answers = &mut self.answer.blocks_mut()[block];
+            for row in 0..ROWS.min(self.edges + 1 - block * ROWS) {
+                let j = block * ROWS + row;
+                let (trial, limit) = (answers.get(PUSH, row), state.get(LIMIT, row));
+                let yields =
+                    trial > limit || answers.get(COUPLE, row).abs() > state.get(TWIST_LIMIT, row);
+                if !yields {
+                    energy += answers.get(ENERGY, row);
+                    let rise = state.get(RISE, row);
+                    if let Some(knees) = &mut knees
+                        && Knee::matters(&laws.bend, trial, rise)
+                    {
+                        let length = state.get(LV, row);
+                        let stiffness = answers.get(STIFF, row);
+                        knees.push((j as u32, Knee::elastic(trial, rise, length, stiffness)));
+                    }
+                    continue;
+                }
+                let bend = Bend {
+                    curvature: [state.get(SET, row), state.get(SET + 1, row)],
+                    rise: state.get(RISE, row),
+                };
+                let twist = Scalar {
+                    strain: state.get(TWIST_SET, row),
+                    rise: state.get(TWIST_RISE, row),
+                };
+                let angle = [angles.get(BEND, row), angles.get(BEND + 1, row)];
+                let lv = state.get(LV, row);
+                let one = answer(laws, &bend, &twist, lv, angle, angles.get(TWIST, row));
+                energy += one.energy;
+                let [stiff, across, about] = one.stiffness;
+                let [x, y] = one.along;
+                let all = [x, y, one.push, one.torque, stiff, across, about, one.free];
+                for (k, x) in all.into_iter().enumerate() {
+                    answers.set(k, row, x);
+                }
+                if let (Some(knees), Some(knee)) = (&mut knees, one.knee) {
+                    knees.push((j as u32, knee));
+                }
             }
         }
         energy
@@ -417,6 +477,54 @@ impl WithSimd for Angles<'_> {
     }
 }
 
+/// Answers of joints that do not yield, see [`answer`].
+struct Elastic<'a>(&'a mut RollingJoints, &'a Laws);
+
+impl WithSimd for Elastic<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self(all, laws) = self;
+        let (bending, twisting) = (laws.bend.modulus, laws.twist.modulus);
+        let (per_bending, per_twisting) = (1.0 / bending, 1.0 / twisting);
+        let joints = all.angle.blocks().iter().zip(all.state.blocks());
+        for ((angle, state), out) in joints.zip(all.answer.blocks_mut()) {
+            for j in (0..ROWS).step_by(Lanes::<S>::COUNT) {
+                let lv = state.load(simd, LV, j, 1);
+                let inv = state.load(simd, PER_LV, j, 1);
+                let (a, b) = (
+                    angle.load(simd, BEND, j, 1),
+                    angle.load(simd, BEND + 1, j, 1),
+                );
+                let x = (a * inv - state.load(simd, SET, j, 1)) * bending;
+                let y = (b * inv - state.load(simd, SET + 1, j, 1)) * bending;
+                let twist = angle.load(simd, TWIST, j, 1) * inv;
+                let couple = (twist - state.load(simd, TWIST_SET, j, 1)) * twisting;
+                let n2 = x * x + y * y;
+                let n = n2.sqrt();
+                let per_n = n.recip();
+                let (zero, one) = (n2.all(0.0), n2.all(1.0));
+                let x = (x * per_n).unless_above_zero(n2, one);
+                let y = (y * per_n).unless_above_zero(n2, zero);
+                let curved = (a * x + b * y) * inv;
+                let kept = (curved * (curved - n * per_bending)).at_least(0.0).sqrt();
+                let free = (curved - kept.with_sign_of(curved)) * (lv * 0.5);
+                let energy = (n2 * per_bending + couple * couple * per_twisting) * (lv * 0.5);
+                out.store(DIRECTION, j, x);
+                out.store(DIRECTION + 1, j, y);
+                out.store(PUSH, j, n);
+                out.store(COUPLE, j, couple);
+                out.store(STIFF, j, inv * bending);
+                out.store(STIFF + 1, j, inv * bending);
+                out.store(STIFF + 2, j, inv * twisting);
+                out.store(FREE, j, free);
+                out.store(ENERGY, j, energy);
+            }
+        }
+    }
+}
+
 /// An edge as the third pass sees it.
 struct Side<S: Simd> {
     along: Lanes3<S>,
@@ -459,7 +567,7 @@ fn joints<S: Simd, const HESSIAN: bool>(
     out: &mut Block<JOINT>,
 ) {
     let [bend_w, vx, vy, vz, cosine, g, g1] = angle.load_all(simd, W, j, 1);
-    let [d0, d1, push, couple, c0, c1, c2, free] = law.load_all(simd, 0, j, 1);
+    let [d0, d1, push, couple, c0, c1, c2, free] = law.load_all(simd, DIRECTION, j, 1);
     // see `Joint::rows`
     let (w, v) = (bend_w, Lanes3::new(vx, vy, vz));
     let (p, q) = (w * v.x - v.z * v.y, w * v.y + v.z * v.x);
@@ -671,7 +779,8 @@ mod tests {
         batch.begin(&w.frames, &w.along, w.clamps);
         batch.place(&w.q, &w.roll);
         let state = (&w.bend[..], &w.twist[..]);
-        let energy = batch.respond(&laws(), state, [0, edges - 1], |_| LV, &mut knees);
+        batch.lay(&laws(), state, [0, edges - 1], |_| LV);
+        let energy = batch.respond(&laws(), Some(&mut knees));
         (run(All(&batch, &mut knees)), energy, knees)
     }
 
