@@ -64,6 +64,8 @@ struct NearPair {
     hessian: Block,
     /// distance to the push, while it has none, m
     room: f64,
+    /// gradient and Hessian are those of a place that an update led to
+    foreseen: bool,
     /// direction of the slide in it; 0: the bristle holds
     slide: V3,
     /// its coupling, if it has one
@@ -388,6 +390,7 @@ impl Between {
                 gradient: V3::zeros(),
                 hessian: Block::default(),
                 room: (-pair.depth).max(0.0),
+                foreseen: false,
                 slide: V3::zeros(),
                 cross: None,
             };
@@ -434,7 +437,8 @@ impl Between {
             let way = relative(there) - relative(q);
             let far = way.norm_squared();
             // (the foot moves along with its wire, whose turning is small beside that)
-            if 4.0 * far <= near.room * near.room || far <= FORESIGHT * FORESIGHT {
+            let still = far <= FORESIGHT * FORESIGHT && !near.foreseen;
+            if 4.0 * far <= near.room * near.room || still {
                 continue;
             }
             let now = self.pairs[near.pair as usize];
@@ -472,6 +476,7 @@ impl Between {
             });
             self.cross[at as usize].block = hessian;
             (near.gradient, near.hessian, near.room) = (gradient, hessian, 0.0);
+            near.foreseen = true;
         }
         any
     }

@@ -320,8 +320,8 @@ struct Near {
     hessian: Block,
     /// way from there without any push, while it has none, m
     room: f64,
-    /// way that was looked ahead along last, m
-    seen: V3,
+    /// way that was looked ahead along last, m; none: gradient and Hessian are those of `place`
+    seen: Option<V3>,
 }
 
 /// Which friction limit a push takes.
@@ -658,7 +658,7 @@ impl LineContact {
                     gradient: V3::zeros(),
                     hessian: Block::default(),
                     room: point.clear - way,
-                    seen: V3::zeros(),
+                    seen: None,
                 });
                 return None;
             }
@@ -732,7 +732,7 @@ impl LineContact {
             gradient: sum.gradient,
             hessian: sum.hessian,
             room: point.clear,
-            seen: V3::zeros(),
+            seen: None,
         });
         any.then_some(sum)
     }
@@ -802,15 +802,15 @@ impl LineContact {
         for n in &mut near {
             let way = move_of(n.point as usize);
             let far = way.norm_squared();
-            // no push, or none that the way can change by more than what is let pass
-            if far <= n.room * n.room || far <= FORESIGHT * FORESIGHT {
+            // no push, none that the way can change by more than what is let pass, or as good as where it was looked at
+            // before and is right
+            let still = n.seen.map_or(far <= FORESIGHT * FORESIGHT, |seen| {
+                (way - seen).norm_squared() <= SAME * SAME
+            });
+            if far <= n.room * n.room || still {
                 continue;
             }
-            // as good as where it was looked at before, and right there
-            if (way - n.seen).norm_squared() <= SAME * SAME {
-                continue;
-            }
-            n.seen = way;
+            n.seen = Some(way);
             let there = self.push_there(n.point as usize, n.place + way, n.length, step);
             let off = there.gradient - n.gradient - times(&n.hessian, &way);
             if off.amax() <= FORESIGHT * self.law.stiffness * n.length {

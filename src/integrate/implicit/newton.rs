@@ -127,14 +127,12 @@ pub(super) fn solve<const D: usize>(
     let mut worst = (0, f64::INFINITY);
     for step in 1..=reach.steps {
         work.solves += 1;
-        if let Err(node) = solve_linear(model, work) {
-            return Err(Stuck {
-                node,
-                update: f64::NAN,
-                steps: step,
-                far: None,
-            });
-        }
+        let fits = solve_linear(model, work).map_err(|node| Stuck {
+            node,
+            update: f64::NAN,
+            steps: step,
+            far: None,
+        })?;
         if slope(work) >= 0.0 {
             work.update.clone_from(&work.plain);
         }
@@ -168,12 +166,13 @@ pub(super) fn solve<const D: usize>(
         } else {
             update
         };
-        if share == 1.0 && (update < close || next < 0.5 * close) {
+        if share == 1.0 && fits && (update < close || next < 0.5 * close) {
             take(work, 1.0);
             return Ok(step);
         }
         let mut cuts = 0;
         if share == 1.0
+            && fits
             && reach.chord
             && end_by_chord(model, work, value, (update, close), reach.damped)
         {
@@ -294,9 +293,9 @@ fn hold_limits(model: &mut Model, hold: bool) {
     }
 }
 
-/// The update from gradient and Hessian, with tangents of contact that fit where it leads.
+/// The update from gradient and Hessian, with tangents of contact that fit where it leads; whether all of them do.
 #[inline(never)]
-fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result<(), usize> {
+fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result<bool, usize> {
     let nodes = work.q.len();
     load_gradient(work);
     for look in 0.. {
@@ -316,7 +315,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
             work.plain.clone_from(&work.update);
         }
         if look == LOOKS_AHEAD {
-            break;
+            return Ok(false);
         }
         let mut any = foresee_knees(&model.laws.bend, work);
         let Work {
@@ -381,7 +380,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
         }
         work.solves += 1;
     }
-    Ok(())
+    Ok(true)
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
