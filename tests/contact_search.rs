@@ -39,7 +39,7 @@ fn contact(coil: &Coil, mu: f64) -> LineContact {
     let mut line = LineContact::new(brute::a_core(coil.kind), law(mu), 0.5 * coil.diameter, 1);
     let (q, arc) = coil.wound();
     for (q, arc) in q.iter().zip(arc) {
-        line.tube.push(*q, arc);
+        line.lay(*q, arc);
     }
     line
 }
@@ -276,8 +276,7 @@ fn merged_feet_push_once() {
         (3.5, 9.0),
     ];
     for (i, (x, y)) in legs.into_iter().enumerate() {
-        line.tube
-            .push(V3::new(40.0 + x, y, 0.0) * 1e-3, 3e-3 * i as f64);
+        line.lay(V3::new(40.0 + x, y, 0.0) * 1e-3, 3e-3 * i as f64);
     }
     let k = STIFFNESS * LENGTH;
     // the centre of curvature is 1/3 mm up

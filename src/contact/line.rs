@@ -260,7 +260,7 @@ pub struct Push {
 pub struct LineContact {
     /// the core
     pub shape: Shape,
-    /// frozen turns
+    /// frozen turns; they grow by [`Self::lay`]
     pub tube: SplineTube,
     /// the law
     pub law: ContactLaw,
