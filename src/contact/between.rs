@@ -438,7 +438,7 @@ impl Between {
             let far = way.norm_squared();
             // (the foot moves along with its wire, whose turning is small beside that)
             let still = far <= FORESIGHT * FORESIGHT && !near.foreseen;
-            if 4.0 * far <= near.room * near.room || still {
+            if 4.0 * far < near.room * near.room || still {
                 continue;
             }
             let now = self.pairs[near.pair as usize];

@@ -807,7 +807,7 @@ impl LineContact {
             let still = n.seen.map_or(far <= FORESIGHT * FORESIGHT, |seen| {
                 (way - seen).norm_squared() <= SAME * SAME
             });
-            if far <= n.room * n.room || still {
+            if far < n.room * n.room || still {
                 continue;
             }
             n.seen = Some(way);

@@ -177,7 +177,7 @@ impl RollingJoints {
         self.edge.get(INVERSE, j)
     }
 
-    /// Edge `j` as [`super::twisted()`] takes it.
+    /// Edge `j` as [`twisted`](crate::rod::twisted()) takes it.
     pub fn turned(&self, j: usize) -> Turned {
         let detour = self.edge.vector(DETOUR, j);
         Turned::known(self.frame(j), self.along(j), self.inverse(j), detour)
