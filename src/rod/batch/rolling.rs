@@ -46,9 +46,8 @@ const TWIST_LIMIT: usize = 6;
 const LV: usize = 7;
 const PER_LV: usize = 8;
 
-/// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free roll, energy, see [`Answer`].
-///
-/// [`Answer`]: crate::rod::twisted
+/// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free roll, energy, see
+/// [`Answer`](crate::rod::twisted::Answer).
 const ANSWER: usize = 9;
 const DIRECTION: usize = 0;
 const PUSH: usize = 2;
