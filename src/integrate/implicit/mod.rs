@@ -490,26 +490,27 @@ impl<const D: usize> Work<D> {
 
     /// Root mean square of the update over the wire, m.
     fn mean_update(&self) -> f64 {
-        let (mut sum, mut mass) = (0.0, 0.0);
-        for (i, m) in self.mass.iter().enumerate() {
-            sum += m * self.update_of(i).norm_squared();
-            mass += m;
-        }
+        let (sum, mass) = self.weighed(|i| self.update_of(i));
         (sum / mass).sqrt()
     }
 
     /// Root mean square over the wire of what Newton's method moved the guess by, m.
     fn difference(&self) -> f64 {
-        let w = self;
-        let (mut sum, mut mass) = (0.0, 0.0);
-        for ((q, g), m) in w.q.iter().zip(&w.guess).zip(&w.mass) {
-            sum += m * (q - g).norm_squared();
-            mass += m;
-        }
+        let (mut sum, mass) = self.weighed(|i| self.q[i] - self.guess[i]);
         if Self::ROLLS {
-            sum += w.rolls.difference();
+            sum += self.rolls.difference();
         }
         (sum / mass).sqrt()
+    }
+
+    /// Sum of the squares of the nodes' ways, each times its mass, and of the masses.
+    fn weighed(&self, way: impl Fn(usize) -> V3) -> (f64, f64) {
+        let (mut sum, mut mass) = (0.0, 0.0);
+        for (i, m) in self.mass.iter().enumerate() {
+            sum += m * way(i).norm_squared();
+            mass += m;
+        }
+        (sum, mass)
     }
 }
 

@@ -142,23 +142,19 @@ pub(super) fn solve<const D: usize>(
             work.update.clone_from(&work.plain);
         }
         let (update, node, rolls) = largest_update(model, work);
+        let stuck = |far| Stuck {
+            node,
+            update,
+            steps: step,
+            far,
+        };
         if !update.is_finite() {
-            return Err(Stuck {
-                node,
-                update,
-                steps: step,
-                far: None,
-            });
+            return Err(stuck(None));
         }
         if step == 1 {
             let way = work.mean_update();
             if way > reach.far {
-                return Err(Stuck {
-                    node,
-                    update,
-                    steps: step,
-                    far: Some(way),
-                });
+                return Err(stuck(Some(way)));
             }
         }
         let mut share = reach.share(work, update);
@@ -197,18 +193,10 @@ pub(super) fn solve<const D: usize>(
             }
             cuts += 1;
             work.cuts += 1;
-            let most = if rolls {
-                Reach::STEP.cuts.max(reach.cuts)
-            } else {
-                reach.cuts
-            };
+            // a shorter step does not help rolls
+            let most = if rolls { Reach::STEP.cuts } else { reach.cuts };
             if cuts > most {
-                return Err(Stuck {
-                    node,
-                    update,
-                    steps: step,
-                    far: None,
-                });
+                return Err(stuck(None));
             }
             share *= 0.5;
         }
