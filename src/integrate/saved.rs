@@ -33,6 +33,7 @@ pub(crate) struct SavedSystem {
     deepest: f64,
     joined_away: f64,
     torque_on_core: f64,
+    unbalanced: f64,
     time: f64,
     load: Load,
     roll: Vec<f64>,
@@ -64,6 +65,7 @@ impl System {
             deepest,
             joined_away,
             torque_on_core,
+            unbalanced,
             velocity_lag: _,
             time,
             load,
@@ -89,6 +91,7 @@ impl System {
             deepest: *deepest,
             joined_away: *joined_away,
             torque_on_core: *torque_on_core,
+            unbalanced: *unbalanced,
             time: *time,
             load: load.clone(),
             roll: roll.clone(),
@@ -132,6 +135,7 @@ impl System {
         self.deepest = saved.deepest;
         self.joined_away = saved.joined_away;
         self.torque_on_core = saved.torque_on_core;
+        self.unbalanced = saved.unbalanced;
         self.time = saved.time;
         self.load = saved.load;
         self.roll = saved.roll;

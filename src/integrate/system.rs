@@ -69,6 +69,8 @@ pub struct System {
     pub deepest: f64,
     /// moment of the wire on the core about +y at the last evaluation, N m
     pub torque_on_core: f64,
+    /// the part of it that the last implicit step left out of balance, N m
+    pub(in crate::integrate) unbalanced: f64,
     /// how far velocities lie behind positions, s (half a step where they are staggered)
     pub(super) velocity_lag: f64,
     /// elapsed time, s
@@ -108,6 +110,7 @@ impl System {
             books: Books::default(),
             deepest: 0.0,
             torque_on_core: 0.0,
+            unbalanced: 0.0,
             velocity_lag: 0.0,
             time: 0.0,
             load: Load::default(),

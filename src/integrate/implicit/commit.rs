@@ -30,6 +30,7 @@ impl Implicit {
         let before = (
             sys.spindle,
             sys.torque_on_core,
+            sys.unbalanced,
             sys.load.tension.last().copied(),
         );
         if Work::<D>::ROLLS {
@@ -74,7 +75,11 @@ impl Implicit {
             // late Newton steps hold the friction limits of the iterate before; what is accepted goes by its own
             line.hold_limits = false;
         }
+        sys.unbalanced = 0.0;
         sys.settle_forces(h, true);
+        if self.scheme == Scheme::Bdf2 {
+            sys.hold_unbalanced(&w.mass, &w.star[1], step.gamma);
+        }
         // books: work of forces at both ends of the step
         let turned = sys.spindle.angle - before.0.angle;
         sys.books.spindle -= 0.5 * (sys.torque_on_core + before.1) * turned;
@@ -84,7 +89,7 @@ impl Implicit {
             sys.books.numerical += 0.5 * sys.bent_at_nozzle() * grown;
             let plastic = sys.rod.stretch[last].strain;
             let now = sys.load.tension[last];
-            let tension = 0.5 * (now + before.2.unwrap_or(now));
+            let tension = 0.5 * (now + before.3.unwrap_or(now));
             let law = sys.laws.stretch;
             sys.books.nozzle -=
                 (tension * (1.0 + plastic) + 0.5 * tension * tension / law.modulus) * grown;
@@ -105,7 +110,8 @@ impl Implicit {
         } else {
             0.0
         };
-        sys.books.numerical += work - (sys.kinetic() - kinetic - gained);
+        let held = 0.5 * (sys.unbalanced + before.2) * turned;
+        sys.books.numerical += work - held - (sys.kinetic() - kinetic - gained);
         let past = &mut sys.past;
         std::mem::swap(&mut past.x, &mut w.start);
         std::mem::swap(&mut past.v, &mut w.guess);
@@ -193,6 +199,23 @@ impl System {
         self.touch_forces(h, commit);
     }
 
+    /// Lets the core hold what Newton's method left of the forces: it is nothing that moves wire in the core's frame.
+    ///
+    /// Taken so, the torque is that of the nozzle's force less what turns the wire's mass. Were it summed up from stiff touches alone,
+    /// what they are off by would go with the core's whole way, and that is far longer than any way on the core.
+    fn hold_unbalanced(&mut self, mass: &[f64], v: &[V3], gamma: f64) {
+        let mut moment = 0.0;
+        for i in self.free_nodes() {
+            let (x, left) = (
+                self.rod.x[i],
+                self.load.force[i] - (self.rod.v[i] - v[i]) * (mass[i] / gamma),
+            );
+            moment += x.z * left.x - x.x * left.z;
+        }
+        self.unbalanced = moment;
+        self.torque_on_core += moment;
+    }
+
     /// Adds the forces of contact to those in `load`.
     fn touch_forces(&mut self, h: f64, commit: bool) {
         let spin = Spin::new(self.spindle.angle);
@@ -245,7 +268,7 @@ impl System {
             self.books.friction = line.loss.friction + between;
             self.books.damping = line.loss.damping;
         }
-        self.torque_on_core = moment + self.clamp_torque();
+        self.torque_on_core = moment + self.clamp_torque() + self.unbalanced;
     }
 }
 

@@ -21,7 +21,7 @@ pub use tangent::Seen;
 
 use super::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, Spin, V3};
-use crate::rod::{Joint, Knee, align, rotate};
+use crate::rod::{Joint, Knee, Rod, align, rotate};
 use model::Model;
 use roll::{Rolls, WITH_ROLL};
 use scheme::{Step, extrapolation};
@@ -230,7 +230,7 @@ impl Implicit {
         }
         let mut failures = 0;
         loop {
-            let step = Step::new(self.scheme, &sys.past, h);
+            let step = step_of(sys, self.scheme, h);
             let spindle = sys.spindle.after(step.share * h);
             let support = moved(&sys.support, step.share * h);
             let nozzle = work.prepare(sys, &step, &spindle, &support, true);
@@ -343,7 +343,7 @@ fn evaluating_with<const D: usize>(
     with: impl FnOnce(&mut dyn FnMut() -> f64),
 ) {
     sys.begin_past();
-    let step = Step::new(scheme, &sys.past, h);
+    let step = step_of(sys, scheme, h);
     let (spindle, support) = (
         sys.spindle.after(step.share * h),
         moved(&sys.support, step.share * h),
@@ -388,6 +388,7 @@ impl<const D: usize> Work<D> {
         let nodes = rod.nodes();
         let spin = Spin::new(spindle.angle);
         let e = extrapolation(step.share * step.h, past);
+        let density = sys.section.mass_per_length();
         w.guess.clear();
         w.target.clear();
         w.mass.clear();
@@ -409,7 +410,7 @@ impl<const D: usize> Work<D> {
                 1 => past.q[0][i] * e[0] + past.q[1][i] * e[1],
                 _ => past.q[0][i] * e[0] + past.q[1][i] * e[1] + past.q[2][i] * e[2],
             });
-            w.mass.push(rod.mass(&sys.section, i));
+            w.mass.push(density * voronoi(rod, step.grown, i));
         }
         for (end, i) in [(0, 0), (1, nodes - 1)] {
             let s = &support[end];
@@ -430,7 +431,7 @@ impl<const D: usize> Work<D> {
             self.rolls.prepare(sys, step, spindle, support, inert);
             self.rolls.lay_out(&mut self.sheet.rolling);
             let (state, ends) = ((&rod.bend[..], &rod.twist[..]), self.rolls.joints());
-            (self.sheet.rolling).lay(&sys.laws, state, ends, |j| rod.voronoi(j));
+            (self.sheet.rolling).lay(&sys.laws, state, ends, |j| voronoi(rod, step.grown, j));
         } else {
             self.turn_plastic_curvature(sys, spindle, support);
             let clamps = clamp_directions(support, spindle);
@@ -514,6 +515,21 @@ impl<const D: usize> Work<D> {
     }
 }
 
+/// The step of `h` from the present instant.
+fn step_of(sys: &System, scheme: Scheme, h: f64) -> Step {
+    let step = Step::new(scheme, &sys.past, h);
+    match (&sys.feed, sys.rod.rest.last()) {
+        (Some((_, feed)), Some(rest)) => step.with_feed(&sys.past, feed.fed, *rest),
+        _ => step,
+    }
+}
+
+/// Length of wire that node `i` stands for when the edge at the nozzle has `grown`, m.
+fn voronoi(rod: &Rod, grown: f64, i: usize) -> f64 {
+    let at_nozzle = i + 2 >= rod.nodes();
+    rod.voronoi(i) + if at_nozzle { 0.5 * grown } else { 0.0 }
+}
+
 /// A vector with components `k` in the frame half-way between the frames of two edges.
 fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
     let joint = Joint::between(p, n);
@@ -539,6 +555,7 @@ fn model_of<'a>(
         last: &sys.past.q[0],
         tension: &sys.load.tension,
         nozzle,
+        grown: step.grown,
         gamma: step.gamma,
         elapsed: step.share * step.h,
         diameter: sys.section.diameter,

@@ -1,7 +1,7 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
 use super::tensioner::NozzleEdge;
-use super::{Axial, Work, sheet};
+use super::{Axial, Work, sheet, voronoi};
 use crate::contact::{LineContact, own_wire};
 use crate::integrate::{Banded, Loads};
 use crate::math::V3;
@@ -18,6 +18,8 @@ pub(super) struct Model<'a> {
     /// tension of each edge at the last accepted instant, N
     pub(super) tension: &'a [f64],
     pub(super) nozzle: Option<NozzleEdge>,
+    /// by how much the edge at the nozzle is likely to grow, m
+    pub(super) grown: f64,
     /// time over which forces act, and since the last accepted instant, s
     pub(super) gamma: f64,
     pub(super) elapsed: f64,
@@ -204,7 +206,8 @@ impl Model<'_> {
         } else {
             sheet.plain.place(q);
             let state = (&set[..], &self.rod.bend[..]);
-            energy = (sheet.plain).respond(&self.laws.bend, state, |j| self.rod.voronoi(j), knees);
+            let own = |j| voronoi(self.rod, self.grown, j);
+            energy = (sheet.plain).respond(&self.laws.bend, state, own, knees);
         }
         let mut axial = Value::default();
         for j in 0..self.rod.edges() {
@@ -244,7 +247,7 @@ impl Model<'_> {
             if j > 0 {
                 let p = spline_point(&work.q, j);
                 let own = own_wire(arc, self.diameter);
-                let length = 0.5 * self.rod.voronoi(j);
+                let length = 0.5 * voronoi(self.rod, self.grown, j);
                 if let Some(push) = line.push(2 * j, p, length, own, self.elapsed) {
                     value.merit += push.energy_lagged;
                     value.now += push.energy;

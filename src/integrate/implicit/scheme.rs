@@ -143,6 +143,8 @@ pub(super) struct Step {
     pub(super) weight: [f64; 2],
     /// estimated error over the difference of solution and guess
     pub(super) error: f64,
+    /// by how much the edge at the nozzle is likely to have grown at the solve's instant, m
+    pub(super) grown: f64,
 }
 
 impl Step {
@@ -155,6 +157,7 @@ impl Step {
                 weight: [1.0, 0.0],
                 // the rule is off by h^3/12 x''', the guess for the middle by 0.31 h^3 x'''
                 error: 0.25,
+                grown: 0.0,
             },
             Scheme::Bdf2 if past.known == 0 => Self {
                 h,
@@ -163,6 +166,7 @@ impl Step {
                 weight: [1.0, 0.0],
                 // guess x + h v is off by h^2/2 a, backward Euler by as much the other way
                 error: 0.5,
+                grown: 0.0,
             },
             Scheme::Bdf2 => {
                 let h1 = past.h[0];
@@ -183,8 +187,24 @@ impl Step {
                     share: 1.0,
                     weight,
                     error,
+                    grown: 0.0,
                 }
             }
+        }
+    }
+
+    /// The same with the edge at the nozzle, `rest` long now, growing as `fed`, the wire passed so far, has grown.
+    ///
+    /// With the length it has at the start, mass and curvature next to the nozzle are an order less exact than the rest.
+    pub(super) fn with_feed(self, past: &Past, fed: f64, rest: f64) -> Self {
+        if past.known == 0 {
+            return self;
+        }
+        let e = extrapolation(self.share * self.h, past);
+        let grown = (e[0] - 1.0) * fed + e[1] * past.fed[0] + e[2] * past.fed[1];
+        Self {
+            grown: grown.clamp(-0.5 * rest, 0.5 * rest),
+            ..self
         }
     }
 

@@ -183,6 +183,7 @@ fn still(sys: &mut System) -> Step {
         share: 1.0,
         weight: [1.0, 0.0],
         error: 0.0,
+        grown: 0.0,
     }
 }
 
@@ -215,6 +216,7 @@ fn model_at_rest(sys: &mut System) -> Model<'_> {
         loads: &sys.loads,
         tension: &sys.load.tension,
         nozzle: None,
+        grown: 0.0,
         gamma: LONG,
         elapsed: f64::INFINITY,
         diameter: sys.section.diameter,

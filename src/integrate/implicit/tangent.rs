@@ -8,7 +8,7 @@
 
 use super::scheme::Step;
 use super::tensioner::{NozzleEdge, advance};
-use super::{CLOSE, Implicit, Stopped, Work, conjugate, model_of, moved, newton};
+use super::{CLOSE, Implicit, Stopped, Work, conjugate, model_of, moved, newton, step_of};
 use crate::integrate::{Spindle, Support, System, Twist};
 use crate::math::V3;
 
@@ -108,7 +108,7 @@ impl Implicit {
         h: f64,
         lift: usize,
     ) -> Result<(Seen, [Seen; INPUTS]), Stopped> {
-        let step = Step::new(self.scheme, &sys.past, h);
+        let step = step_of(sys, self.scheme, h);
         let base = (sys.spindle, sys.support, sys.set_tension);
         let now = set(work, sys, &step, &base, 0, 0.0);
         if let Some(line) = &mut sys.line {
