@@ -17,6 +17,9 @@ const STRAIGHT: f64 = 0.99995;
 /// turn back.
 const WHOLE: f64 = 0.85;
 
+/// Turning angle of a node from which on its direction is not to be trusted, rad.
+const HALF_TURN: f64 = 0.9 * std::f64::consts::PI;
+
 impl Simulation {
     pub(super) fn keep_house(&mut self, dt: f64) -> Result<(), SimError> {
         let look = self.implicit.is_some() || self.steps.is_multiple_of(HOUSE_STEPS);
@@ -394,7 +397,37 @@ impl Simulation {
             );
             self.broken = true;
             self.report(EventKind::Break, text);
+        } else if let Some((i, radius)) = self.kink() {
+            let text = format!(
+                "the wire broke: it is kinked at live node {i}, bent to a radius of {:.3} mm and itself {:.3} mm thick",
+                1e3 * radius,
+                1e3 * self.scene.wire.diameter
+            );
+            self.broken = true;
+            self.report(EventKind::Break, text);
         }
         Ok(())
+    }
+
+    /// The first live node at which the wire is kinked, and the radius of its centreline there, m.
+    ///
+    /// No wire bends tighter than folded flat on itself, to its own radius. Nodes may gather the bend of
+    /// their neighbours, so half of that is allowed. At half a turn the bend of a node has no direction any more and
+    /// changes sides, with the work of a whole turn.
+    fn kink(&self) -> Option<(usize, f64)> {
+        let (rod, radius) = (&self.sys.rod, 0.5 * self.scene.wire.diameter);
+        (1..rod.edges()).find_map(|i| {
+            let (a, b) = (rod.x[i] - rod.x[i - 1], rod.x[i + 1] - rod.x[i]);
+            let own = rod.voronoi(i);
+            let most = (2.0 * own / radius).min(HALF_TURN);
+            let square = most * most;
+            // above the cosine of that angle, whatever it is
+            let cosine = 1.0 - square * (0.5 - square / 24.0);
+            if a.dot(&b) > cosine * a.norm() * b.norm() {
+                return None;
+            }
+            let angle = a.angle(&b);
+            (angle > most).then(|| (i, own / angle))
+        })
     }
 }

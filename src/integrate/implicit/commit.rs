@@ -263,7 +263,7 @@ impl System {
                 arc += rest;
             }
             self.deepest = self.deepest.max(line.deepest);
-            between_forces(line, rod, force, &self.past, spin, (diameter, step), commit);
+            moment += between_forces(line, rod, force, &self.past, spin, (diameter, step), commit);
             let between = line.between.as_ref().map_or(0.0, |b| b.loss.friction);
             self.books.friction = line.loss.friction + between;
             self.books.damping = line.loss.damping;
@@ -272,7 +272,10 @@ impl System {
     }
 }
 
-/// Forces of live wire on live wire; inner forces, they put no moment on the core.
+/// Forces of live wire on live wire; returns what they leave as a moment on the core.
+///
+/// Both sides of a friction force act on centrelines a diameter apart, for the couples that it puts on either wire are left
+/// out, as they are where the core rubs. It is seen and held in the core's frame, so the core takes the couple.
 fn between_forces(
     line: &mut LineContact,
     rod: &Rod,
@@ -281,7 +284,7 @@ fn between_forces(
     spin: Spin,
     (diameter, step): (f64, f64),
     commit: bool,
-) {
+) -> f64 {
     let LineContact {
         between: Some(between),
         law,
@@ -290,8 +293,9 @@ fn between_forces(
         ..
     } = line
     else {
-        return;
+        return 0.0;
     };
+    let mut moment = 0.0;
     let mut q = std::mem::take(&mut between.scratch);
     q.clear();
     q.extend(rod.x.iter().map(|x| spin.to_core(*x)));
@@ -312,7 +316,9 @@ fn between_forces(
             let f = spin.to_lab(push.gradient);
             for side in [&cross.young, &cross.old] {
                 for (node, weight) in side.0.iter().zip(side.1) {
-                    force[*node] -= f * weight;
+                    let (f, p) = (f * weight, rod.x[*node]);
+                    force[*node] -= f;
+                    moment += p.z * f.x - p.x * f.z;
                 }
             }
         },
@@ -322,4 +328,5 @@ fn between_forces(
         *deepest = deepest.max(between.deepest());
     }
     between.scratch = q;
+    moment
 }
