@@ -937,7 +937,10 @@ mod tests {
         for x in [0.0, 0.25, 0.5, 0.75, 1.0, 2.0] {
             for start in 0..4 {
                 let foot = tube.foot(V3::new(x, 0.1, 0.0) * 1e-3, start);
-                assert!((tangent_at(&tube, &foot).norm() - 1.0).abs() < 1e-12, "{foot:?}");
+                assert!(
+                    (tangent_at(&tube, &foot).norm() - 1.0).abs() < 1e-12,
+                    "{foot:?}"
+                );
                 assert!((foot.normal.norm() - 1.0).abs() < 1e-12);
             }
         }

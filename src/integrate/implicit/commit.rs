@@ -169,6 +169,17 @@ impl System {
         }
     }
 
+    /// Time in which the nozzle goes past the wire before it by `angle` as seen along the edge there, s.
+    pub(super) fn time_to_turn_nozzle_edge(&self, angle: f64) -> f64 {
+        if self.feed.is_none() {
+            return f64::INFINITY;
+        }
+        let last = self.rod.edges() - 1;
+        let edge = self.rod.x[last + 1] - self.rod.x[last];
+        let way = self.support[1].velocity - self.rod.v[last];
+        angle * edge.norm_squared() / edge.cross(&way).norm()
+    }
+
     /// Forces of the present state after it was set up or changed; nothing moves on but the frames.
     pub fn refresh(&mut self) {
         if self.line.is_none() {

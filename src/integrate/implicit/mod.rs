@@ -35,6 +35,9 @@ const GROWTH: f64 = 1.7;
 const AIM: f64 = 0.4;
 /// Steps below this multiple of the shortest are taken in trouble only.
 const SHORT: f64 = 1e3;
+/// Angle by which the nozzle's own motion may turn the edge there in a step, rad: the work that it does is that of the
+/// forces at both ends of the step, and those of an edge that swings round have little to do with each other.
+const NOZZLE_TURN: f64 = 0.2;
 /// Newton's update at which a solve is done, over the tolerance.
 const CLOSE: f64 = 0.1;
 
@@ -222,6 +225,9 @@ impl Implicit {
     ) -> Result<f64, Stopped> {
         sys.begin_past();
         let mut h = self.fixed.unwrap_or(self.next).min(self.longest);
+        if self.fixed.is_none() {
+            h = h.min(sys.time_to_turn_nozzle_edge(NOZZLE_TURN).max(self.shortest));
+        }
         if h >= most {
             h = most;
         } else if 2.0 * h > most && self.fixed.is_none() {
