@@ -7,7 +7,7 @@
 //! linear system is solved by conjugate gradients with the banded part as preconditioner.
 
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
-use super::line::{ALONG_SLIDE, FORESIGHT, huber, less, onset_law, times};
+use super::line::{ALONG_SLIDE, foresight, huber, less, onset_law, times};
 use super::{ContactLoss, OWN_WIRE};
 use crate::freeze::Curve;
 use crate::math::V3;
@@ -432,12 +432,13 @@ impl Between {
         mut correct: impl FnMut(&Triple, &Triple, &Block, &V3),
     ) -> bool {
         let mut any = false;
+        let enough = foresight(diameter);
         for near in &mut self.near {
             let relative = |q: &[V3]| place(q, &near.young) + place(q, &near.old);
             let way = relative(there) - relative(q);
             let far = way.norm_squared();
             // (the foot moves along with its wire, whose turning is small beside that)
-            let still = far <= FORESIGHT * FORESIGHT && !near.foreseen;
+            let still = far <= enough * enough && !near.foreseen;
             if 4.0 * far < near.room * near.room || still {
                 continue;
             }
@@ -459,7 +460,7 @@ impl Between {
                 near.slide = push.slide;
             }
             let off = gradient - near.gradient - times(&near.hessian, &way);
-            if off.amax() <= FORESIGHT * near.stiffness {
+            if off.amax() <= enough * near.stiffness {
                 continue;
             }
             any = true;
