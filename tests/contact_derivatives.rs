@@ -75,7 +75,9 @@ fn ground(on: On, at: f64) -> [V3; 3] {
                 (10.0 * a) as u32,
             );
             let p = foot.point + foot.normal * (2.0 * RADIUS);
-            [p, foot.normal, foot.tangent]
+            let along = round.cross(&V3::y());
+            let along = along - foot.normal * along.dot(&foot.normal);
+            [p, foot.normal, along.normalize()]
         }
     }
 }

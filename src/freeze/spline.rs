@@ -747,8 +747,8 @@ mod tests {
                     }
                 }
                 prop_assert!((foot.point + foot.normal * foot.distance - p).norm() < 1e-16);
-                prop_assert!((tangent_at(&tube, &foot).norm() - 1.0).abs() < 1e-12);
-                prop_assert!(foot.at_end || foot.normal.dot(&tangent_at(&tube, &foot)).abs() * foot.distance < 1e-14);
+                prop_assert!((tangent_at(&tube, foot).norm() - 1.0).abs() < 1e-12);
+                prop_assert!(foot.at_end || foot.normal.dot(&tangent_at(&tube, foot)).abs() * foot.distance < 1e-14);
             }
             for slow in tube.feet_brute(p, reach * (1.0 - 1e-9), f64::INFINITY) {
                 // which segment has a minimum at a joint is a matter of rounding

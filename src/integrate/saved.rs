@@ -33,6 +33,7 @@ pub(crate) struct SavedSystem {
     deepest: f64,
     joined_away: f64,
     torque_on_core: f64,
+    turning: Option<f64>,
     unbalanced: f64,
     time: f64,
     load: Load,
@@ -65,6 +66,7 @@ impl System {
             deepest,
             joined_away,
             torque_on_core,
+            turning,
             unbalanced,
             velocity_lag: _,
             time,
@@ -91,6 +93,7 @@ impl System {
             deepest: *deepest,
             joined_away: *joined_away,
             torque_on_core: *torque_on_core,
+            turning: *turning,
             unbalanced: *unbalanced,
             time: *time,
             load: load.clone(),
@@ -135,6 +138,7 @@ impl System {
         self.deepest = saved.deepest;
         self.joined_away = saved.joined_away;
         self.torque_on_core = saved.torque_on_core;
+        self.turning = saved.turning;
         self.unbalanced = saved.unbalanced;
         self.time = saved.time;
         self.load = saved.load;

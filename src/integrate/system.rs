@@ -69,7 +69,9 @@ pub struct System {
     pub deepest: f64,
     /// moment of the wire on the core about +y at the last evaluation, N m
     pub torque_on_core: f64,
-    /// the part of it that the last implicit step left out of balance, N m
+    /// moment that turns the wire's mass, as the last implicit step has it, N m
+    pub(in crate::integrate) turning: Option<f64>,
+    /// the part of the torque that is there because forces and motion are a little out of balance, N m
     pub(in crate::integrate) unbalanced: f64,
     /// how far velocities lie behind positions, s (half a step where they are staggered)
     pub(super) velocity_lag: f64,
@@ -110,6 +112,7 @@ impl System {
             books: Books::default(),
             deepest: 0.0,
             torque_on_core: 0.0,
+            turning: None,
             unbalanced: 0.0,
             velocity_lag: 0.0,
             time: 0.0,

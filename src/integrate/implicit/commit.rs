@@ -75,11 +75,11 @@ impl Implicit {
             // late Newton steps hold the friction limits of the iterate before; what is accepted goes by its own
             line.hold_limits = false;
         }
-        sys.unbalanced = 0.0;
-        sys.settle_forces(h, true);
         if self.scheme == Scheme::Bdf2 {
-            sys.hold_unbalanced(&w.mass, &w.star[1], step.gamma);
+            sys.turning =
+                Some(sys.moment_of(|i| (sys.rod.v[i] - w.star[1][i]) * (w.mass[i] / step.gamma)));
         }
+        sys.settle_forces(h, true);
         // books: work of forces at both ends of the step
         let turned = sys.spindle.angle - before.0.angle;
         sys.books.spindle -= 0.5 * (sys.torque_on_core + before.1) * turned;
@@ -210,21 +210,27 @@ impl System {
         self.touch_forces(h, commit);
     }
 
+    /// Moment of forces on the free nodes about the core's axis, N m; what the joint at the nozzle acts on is no
+    /// business of the core's.
+    fn moment_of(&self, force: impl Fn(usize) -> V3) -> f64 {
+        let free = self.free_nodes();
+        let end = free.end.min(self.rod.nodes().saturating_sub(3));
+        (free.start..end)
+            .map(|i| {
+                let (x, f) = (self.rod.x[i], force(i));
+                x.z * f.x - x.x * f.z
+            })
+            .sum()
+    }
+
     /// Lets the core hold what Newton's method left of the forces: it is nothing that moves wire in the core's frame.
     ///
     /// Taken so, the torque is that of the nozzle's force less what turns the wire's mass. Were it summed up from stiff touches alone,
     /// what they are off by would go with the core's whole way, and that is far longer than any way on the core.
-    fn hold_unbalanced(&mut self, mass: &[f64], v: &[V3], gamma: f64) {
-        let mut moment = 0.0;
-        for i in self.free_nodes() {
-            let (x, left) = (
-                self.rod.x[i],
-                self.load.force[i] - (self.rod.v[i] - v[i]) * (mass[i] / gamma),
-            );
-            moment += x.z * left.x - x.x * left.z;
-        }
-        self.unbalanced = moment;
-        self.torque_on_core += moment;
+    fn hold_unbalanced(&mut self) {
+        let Some(turning) = self.turning else { return };
+        self.unbalanced = self.moment_of(|i| self.load.force[i]) - turning;
+        self.torque_on_core += self.unbalanced;
     }
 
     /// Adds the forces of contact to those in `load`.
@@ -279,7 +285,8 @@ impl System {
             self.books.friction = line.loss.friction + between;
             self.books.damping = line.loss.damping;
         }
-        self.torque_on_core = moment + self.clamp_torque() + self.unbalanced;
+        self.torque_on_core = moment + self.clamp_torque();
+        self.hold_unbalanced();
     }
 }
 

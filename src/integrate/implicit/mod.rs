@@ -525,7 +525,10 @@ impl<const D: usize> Work<D> {
 fn step_of(sys: &System, scheme: Scheme, h: f64) -> Step {
     let step = Step::new(scheme, &sys.past, h);
     match (&sys.feed, sys.rod.rest.last()) {
-        (Some((_, feed)), Some(rest)) => step.with_feed(&sys.past, feed.fed, *rest),
+        // (set wire that goes back through the nozzle keeps its angle there, not its curvature)
+        (Some((_, feed)), Some(rest)) if !sys.is_set_at_nozzle() => {
+            step.with_feed(&sys.past, feed.fed, *rest)
+        }
         _ => step,
     }
 }
