@@ -25,7 +25,7 @@ fi
 
 \`scripts/stability.sh $count $seed\` wrote this page: $count random valid scenes (seed $seed) of 0.25 to 2 turns, each with random
 input signals, wound by the production method and judged at every communication point. A run that is refused by no
-rule of the scene has to end as *completed*, *wire broke* (tension above its strength, as a machine can do it) or *gave
+rule of the scene has to end as *completed*, *wire broke* (tension above its strength or folded to a kink, as a machine can do it) or *gave
 up* (the solver says when, where and why). *invariant* counts scenes that broke one of these: no panic, finite
 state, energy balance, wire outside the core, friction inside its cone, wire length equals fed length, no plastic work
 that comes back, no pushing at the nozzle, frozen wire unmoved, a bound on steps per turn.
