@@ -170,7 +170,7 @@ fn wind_and_unwind(mut m: Machine) {
         assert!(e.numerical_over_dissipated.abs() < 0.02, "{e:?}");
     }
     let o = m.out();
-    assert!(o.turns_wound < 1e-12 && o.turns_settled == 0.0, "{o:?}");
+    assert_eq!((o.turns_wound, o.turns_settled), (0.0, 0.0));
     assert!(m.sim.coil().is_empty() && m.sim.centreline().frozen == 0);
     // all wire that had passed the nozzle has gone back but for kinks and stretch
     assert!(o.fed_length.abs() < 0.01, "{}", o.fed_length);

@@ -634,11 +634,11 @@ impl Simulation {
         let spin = Spin::new(self.sys.spindle.angle);
         let lift = self.lift_off();
         let rod = &self.sys.rod;
-        // polar angle along the wire from the last settled node
-        let mut last = match self.coil.end_angle() {
-            Some((angle, polar)) => (angle, polar),
-            None => (0.0, self.coil.spec().start_angle),
-        };
+        // polar angle along the wire from the last settled node, or from the clamp, where the coil starts
+        let mut last = self
+            .coil
+            .end_angle()
+            .unwrap_or_else(|| (0.0, polar_angle(spin.to_core(rod.x[0]))));
         let direction = self.coil.spec().direction;
         for i in 0..=lift {
             let polar = polar_angle(spin.to_core(rod.x[i]));
