@@ -232,6 +232,53 @@ fn twist_stays_after_yield() {
     assert!((spent[0] / spent[1] - 1.0).abs() < 0.01, "{spent:?}");
 }
 
+/// One joint is softer than the rest and yields alone. Rolls have no inertia, so no step is too short for them to cross
+/// the knee of its law, there or back: each must settle within a step, with one couple along the wire.
+#[test]
+fn rolls_cross_the_knee_of_torsion_within_a_step() {
+    let torsion = 6e-3;
+    let mut sys = stretched(
+        Section {
+            gj_p: 9e-5,
+            ..section(torsion)
+        },
+        0.06,
+        60,
+        15.0,
+    );
+    for (i, joint) in sys.rod.twist.iter_mut().enumerate() {
+        joint.rise = if i == 30 { 0.0 } else { 1.0 };
+    }
+    sys.twist = Twist::QuasiStatic;
+    sys.refresh();
+    let mut method = Implicit::new(Scheme::Bdf2, 2e-5, 1e-9, 1e-9);
+    method.fixed = Some(1e-9);
+    // turn at which the weak joint yields
+    let knee = torsion / sys.section.gj * 0.06;
+    let length: f64 = sys.rod.rest.iter().sum();
+    for share in [0.9, 1.3, 1.1, 1.6, 0.4, 1.8, 2.5] {
+        sys.support[1].frame = Some(rolled(share * knee));
+        method.step(&mut sys, 1e-9).expect("settles");
+        let off = sys.load.torque.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
+        assert!(off < 1e-6 * torsion, "{share}: {off}");
+        // the couple turns the whole wire elastically, and the weak joint for good
+        let weak = sys.rod.twist[30];
+        let set = weak.strain * sys.rod.voronoi(30);
+        let couple = (share * knee - set) / length * sys.section.gj;
+        let limit = torsion + weak.rise;
+        assert!(
+            couple < limit * (1.0 + 1e-6),
+            "{share}: {couple} of {limit}"
+        );
+        if [1.3, 1.6, 1.8, 2.5].contains(&share) {
+            assert!(
+                couple > limit * (1.0 - 1e-6),
+                "{share}: {couple} of {limit}"
+            );
+        }
+    }
+}
+
 /// Wire fixed to a turning core turns with it: in the lab its edges spin about themselves, in the core
 /// nothing happens.
 #[test]

@@ -1,9 +1,13 @@
-//! The knee of the bending law, looked at ahead.
+//! The knees of the laws of bending and twist, looked at ahead.
 //!
 //! A joint that yields gives way tens of times more easily than one that unloads. Newton's method at one
 //! side of the knee promises the other side a moment that is far off, in every joint of a corner at
 //! once. So the tangent is taken where the update leads: a joint's angle is linear in the update to
 //! good accuracy, and along its own moment the law is scalar.
+//!
+//! A joint that yields in twist lets all wire on one side roll against that on the other, and rolls without inertia
+//! have nothing else to hold them: without a look ahead Newton's method throws them to and fro across the knee, however
+//! short the step.
 
 use super::plasticity::{Law, Scalar, respond_scalar};
 use crate::math::V3;
@@ -13,10 +17,27 @@ const FAR: f64 = 0.25;
 /// Error of a moment that an update may promise, over the yield moment.
 const PROMISE: f64 = 0.01;
 
+/// Joints that may change their branch, by number.
+#[derive(Clone, Debug, Default)]
+pub struct Knees {
+    /// in bending
+    pub bending: Vec<(u32, Knee)>,
+    /// in twist
+    pub twist: Vec<(u32, Knee)>,
+}
+
+impl Knees {
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.bending.clear();
+        self.twist.clear();
+    }
+}
+
 /// A joint whose law may change its branch.
 #[derive(Clone, Copy, Debug)]
 pub struct Knee {
-    /// derivative of the angle along the moment by the edges before and after, 1/m
+    /// derivative of the angle along the moment, of bending or twist, by the edges before and after, 1/m
     pub rows: [V3; 2],
     /// the same by their rolls; 0 where no twist is carried
     pub rolls: [f64; 2],
@@ -46,6 +67,24 @@ impl Knee {
             moment: trial,
             stiffness,
             branch: 0,
+        }
+    }
+
+    /// The same on the branch that its trial moment is on.
+    pub fn at_present(self, law: &Law) -> Self {
+        let state = Scalar {
+            strain: 0.0,
+            rise: self.rise,
+        };
+        let (moment, next, _) = respond_scalar(law, &state, self.trial / law.modulus);
+        if next.strain == 0.0 {
+            return self;
+        }
+        Self {
+            moment,
+            stiffness: law.tangent(next.rise) / self.length,
+            branch: 1,
+            ..self
         }
     }
 

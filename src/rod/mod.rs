@@ -20,7 +20,7 @@ pub use discrete::{
 };
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::{Joint, align, frame_along, relative, rotate, rotate_back};
-pub use knee::Knee;
+pub use knee::{Knee, Knees};
 pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
 pub use section::Section;
 pub use state::Rod;

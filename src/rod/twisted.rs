@@ -61,6 +61,12 @@ impl Turned {
         }
     }
 
+    /// Its frame.
+    #[cfg(test)]
+    pub(super) fn frame(&self) -> Quat {
+        self.frame
+    }
+
     /// Columns: the axes of the frame.
     #[inline]
     fn frame_matrix(&self) -> M3 {
@@ -169,6 +175,14 @@ pub(super) fn answer(
             branch: i8::from(along != laws.bend.modulus),
         }),
     }
+}
+
+/// Derivative of the twist between two edges by their vectors and rolls.
+pub(super) fn twist_by([before, after]: [&Turned; 2]) -> [(V3, f64); 2] {
+    let joint = Joint::between(&before.frame, &after.frame);
+    let about = before.frame_matrix() * joint.rows()[2];
+    let ((w0, r0), (w1, r1)) = (before.derivative(&about), after.derivative(&about));
+    [(-w0, -r0), (w1, r1)]
 }
 
 /// Bending and twist of a joint that stands for the length `lv`.

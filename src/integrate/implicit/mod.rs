@@ -21,7 +21,7 @@ pub use tangent::Seen;
 
 use super::{Banded, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, Spin, V3};
-use crate::rod::{Joint, Knee, Rod, align, rotate};
+use crate::rod::{Joint, Knees, Rod, align, rotate};
 use model::Model;
 use roll::{Rolls, WITH_ROLL};
 use scheme::{Step, extrapolation};
@@ -103,7 +103,7 @@ struct Work<const D: usize> {
     /// stretch of each edge as the update promises it
     expected: Vec<Axial>,
     /// joints that may change between yielding and not
-    knees: Vec<(u32, Knee)>,
+    knees: Knees,
     gradient: Vec<V3>,
     update: Vec<f64>,
     load: Vec<f64>,

@@ -207,7 +207,7 @@ impl Model<'_> {
             sheet.plain.place(q);
             let state = (&set[..], &self.rod.bend[..]);
             let own = |j| voronoi(self.rod, self.grown, j);
-            energy = (sheet.plain).respond(&self.laws.bend, state, own, knees);
+            energy = (sheet.plain).respond(&self.laws.bend, state, own, &mut knees.bending);
         }
         let mut axial = Value::default();
         for j in 0..self.rod.edges() {

@@ -5,7 +5,7 @@ use super::{Work, conjugate, roll};
 use crate::contact::{Triple, point_weights};
 use crate::integrate::Banded;
 use crate::math::V3;
-use crate::rod::{Block, Law, add_outer};
+use crate::rod::{Block, Laws, add_outer};
 
 /// Newton steps that renew the friction limits; from then on they stay, so that the rest converges
 /// quadratically. What is left of the lag is its last change.
@@ -309,7 +309,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
         if look == LOOKS_AHEAD {
             return Ok(false);
         }
-        let mut any = foresee_knees(&model.laws.bend, work);
+        let mut any = foresee_knees(model.laws, work);
         let Work {
             q,
             update,
@@ -376,7 +376,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
-fn foresee_knees<const D: usize>(law: &Law, work: &mut Work<D>) -> bool {
+fn foresee_knees<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
     let Work {
         knees,
         update,
@@ -387,7 +387,9 @@ fn foresee_knees<const D: usize>(law: &Law, work: &mut Work<D>) -> bool {
     let nodes = update.len() / D;
     let mut any = false;
 
-    for (joint, knee) in knees {
+    let bending = knees.bending.iter_mut().map(|knee| (&laws.bend, knee));
+    let twist = knees.twist.iter_mut().map(|knee| (&laws.twist, knee));
+    for (law, (joint, knee)) in bending.chain(twist) {
         let j = *joint as usize;
         // derivative of the angle by the rolls, which stand with the first nodes of their edges
         let mut rolls = [0.0; 3];

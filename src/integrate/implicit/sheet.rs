@@ -115,9 +115,9 @@ pub(super) fn gather<const D: usize, const HESSIAN: bool>(
         gravity,
     };
     if Work::<D>::ROLLS {
-        run(Gather::<D, _, HESSIAN>(rolling, knees, out));
+        run(Gather::<D, _, HESSIAN>(rolling, &mut knees.bending, out));
     } else {
-        run(Gather::<D, _, HESSIAN>(plain, knees, out));
+        run(Gather::<D, _, HESSIAN>(plain, &mut knees.bending, out));
     }
     energy.iter().sum()
 }

@@ -8,10 +8,10 @@ use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
 use crate::math::{Quat, V3};
 use crate::rod::forces::{ForceParts, Laws, Load};
 use crate::rod::joint::{Joint, align, rotate};
-use crate::rod::knee::Knee;
+use crate::rod::knee::{Knee, Knees};
 use crate::rod::plasticity::{Bend, Scalar, respond_bend, respond_scalar};
 use crate::rod::state::Rod;
-use crate::rod::twisted::{Turned, answer};
+use crate::rod::twisted::{Turned, answer, twist_by};
 use pulp::Simd;
 
 /// Columns of an edge: direction, inverse length, length, frame (i, j, k, w), detour of its shortest way.
@@ -141,7 +141,7 @@ impl RollingJoints {
     #[cold]
     fn put_large_angles(&mut self, j: usize) {
         let before = match j {
-            0 => quaternion(|a| self.edge.blocks()[0].before(FRAME + a)),
+            0 => self.frame_before(),
             _ => self.frame(j - 1),
         };
         let joint = Joint::between(&before, &self.frame(j));
@@ -156,6 +156,11 @@ impl RollingJoints {
     /// Frame of edge `j`; the far clamp's after the last.
     fn frame(&self, j: usize) -> Quat {
         quaternion(|a| self.edge.get(FRAME + a, j))
+    }
+
+    /// Frame of the clamp before the first edge.
+    fn frame_before(&self) -> Quat {
+        quaternion(|a| self.edge.blocks()[0].before(FRAME + a))
     }
 
     /// Direction of edge `j`.
@@ -216,10 +221,13 @@ impl RollingJoints {
         }
     }
 
-    /// Lets the joints answer; returns their energy. `knees`, if there, gets those that may change their branch, for
-    /// [`Joints::joints`] to complete.
-    pub fn respond(&mut self, laws: &Laws, mut knees: Option<&mut Vec<(u32, Knee)>>) -> f64 {
+    /// Lets the joints answer; returns their energy. `knees`, if there, gets those that may change their branch; those of
+    /// bending are for [`Joints::joints`] to complete.
+    pub fn respond(&mut self, laws: &Laws, mut knees: Option<&mut Knees>) -> f64 {
         run(Elastic(self, laws));
+        if let Some(knees) = &mut knees {
+            self.find_twist_knees(laws, &mut knees.twist);
+        }
         let mut energy = 0.0;
         for block in 0..self.blocks() {
             let state = &self.state.blocks()[block];
@@ -238,7 +246,9 @@ impl RollingJoints {
                     {
                         let length = state.get(LV, row);
                         let stiffness = answers.get(STIFF, row);
-                        knees.push((j as u32, Knee::elastic(trial, rise, length, stiffness)));
+                        knees
+                            .bending
+                            .push((j as u32, Knee::elastic(trial, rise, length, stiffness)));
                     }
                     continue;
                 }
@@ -261,11 +271,41 @@ impl RollingJoints {
                     answers.set(k, row, x);
                 }
                 if let (Some(knees), Some(knee)) = (&mut knees, one.knee) {
-                    knees.push((j as u32, knee));
+                    knees.bending.push((j as u32, knee));
                 }
             }
         }
         energy
+    }
+
+    /// Joints that twist near to yielding or beyond it; couples are still those of joints that do not yield.
+    fn find_twist_knees(&self, laws: &Laws, knees: &mut Vec<(u32, Knee)>) {
+        let law = &laws.twist;
+        for (block, (answers, state)) in
+            (self.answer.blocks().iter().zip(self.state.blocks())).enumerate()
+        {
+            for row in 0..ROWS.min(self.edges + 1 - block * ROWS) {
+                let (couple, rise) = (answers.get(COUPLE, row), state.get(TWIST_RISE, row));
+                if !Knee::matters(law, couple.abs(), rise) {
+                    continue;
+                }
+                let j = block * ROWS + row;
+                let before = match j {
+                    0 => Turned::clamp(self.frame_before()),
+                    _ => self.turned(j - 1),
+                };
+                let sign = 1f64.copysign(couple);
+                let by = twist_by([&before, &self.turned(j)]);
+                let lv = state.get(LV, row);
+                let elastic = Knee::elastic(couple.abs(), rise, lv, law.modulus / lv);
+                let knee = Knee {
+                    rows: by.map(|(edge, _)| edge * sign),
+                    rolls: by.map(|(_, roll)| roll * sign),
+                    ..elastic.at_present(law)
+                };
+                knees.push((j as u32, knee));
+            }
+        }
     }
 
     /// Lets the joints of `rod` answer for [`super::Forces`]; with `parts.commit` their plastic state and the frames move
@@ -771,16 +811,22 @@ mod tests {
         }
     }
 
-    fn respond(w: &Wire) -> (Vec<Block<JOINT>>, f64, Vec<(u32, Knee)>) {
+    fn respond(w: &Wire) -> (Vec<Block<JOINT>>, f64, Knees) {
         let mut batch = RollingJoints::default();
-        let mut knees = Vec::new();
+        let mut knees = Knees::default();
         let edges = w.frames.len();
         batch.begin(&w.frames, &w.along, w.clamps);
         batch.place(&w.q, &w.roll);
         let state = (&w.bend[..], &w.twist[..]);
         batch.lay(&laws(), state, [0, edges - 1], |_| LV);
         let energy = batch.respond(&laws(), Some(&mut knees));
-        (run(All(&batch, &mut knees)), energy, knees)
+        (run(All(&batch, &mut knees.bending)), energy, knees)
+    }
+
+    fn turned(w: &Wire, j: usize) -> Turned {
+        let d = w.q[j + 1] - w.q[j];
+        let l = d.norm();
+        Turned::edge(&w.frames[j], &w.along[j], d / l, 1.0 / l, w.roll[j])
     }
 
     /// The slow twin is one joint at a time.
@@ -789,15 +835,10 @@ mod tests {
         for (seed, edges, crooked) in [(1, 30, 0.05), (2, 7, 0.5), (3, 1, 1.0), (4, 17, 0.9)] {
             let w = wire(seed, edges, crooked);
             let (joints, energy, knees) = respond(&w);
-            let turned = |j: usize| {
-                let d = w.q[j + 1] - w.q[j];
-                let l = d.norm();
-                Turned::edge(&w.frames[j], &w.along[j], d / l, 1.0 / l, w.roll[j])
-            };
             let mut before = w.clamps[0].map(Turned::clamp).expect("there is one");
             let (mut sum, mut count) = (0.0, 0);
             for j in 0..edges {
-                let after = turned(j);
+                let after = turned(&w, j);
                 let (bend, twist) = (&w.bend[j], &w.twist[j]);
                 let (bent, rolled) = twisted(&laws(), bend, twist, LV, [&before, &after]);
                 before = after;
@@ -821,7 +862,7 @@ mod tests {
                 compare(ROLL_OWN, &rolled.own);
                 compare(TORQUE, &rolled.torque);
                 if let Some(knee) = bent.knee {
-                    let (number, own) = &knees[count];
+                    let (number, own) = &knees.bending[count];
                     assert_eq!(*number, j as u32);
                     count += 1;
                     for e in 0..2 {
@@ -838,8 +879,69 @@ mod tests {
                 }
             }
             assert!((energy - sum).abs() <= 1e-12 * sum.abs());
-            assert_eq!(count, knees.len());
+            assert_eq!(count, knees.bending.len());
         }
+    }
+
+    /// Couple and stiffness of a joint near its knee of twist are those of its law, its rows those of its twist by finite
+    /// differences.
+    #[test]
+    fn knees_of_twist_are_those_of_the_law() {
+        let mut seen = [0; 2];
+        for (seed, edges, crooked) in [(8, 30, 2e-3), (9, 17, 0.3)] {
+            let make = || {
+                let mut w = wire(seed, edges, crooked);
+                w.twist.fill(Scalar::default());
+                w
+            };
+            let w = make();
+            let (_, _, knees) = respond(&w);
+            let twist = |w: &Wire, j: usize| {
+                let before = match j {
+                    0 => w.clamps[0].map(Turned::clamp).expect("there is one"),
+                    _ => turned(w, j - 1),
+                };
+                Joint::between(&before.frame(), &turned(w, j).frame()).twist
+            };
+            let couple = |w: &Wire, j: usize, angle: f64| {
+                respond_scalar(&laws().twist, &w.twist[j], angle / LV).0
+            };
+            for (j, knee) in &knees.twist {
+                let j = *j as usize;
+                let angle = twist(&w, j);
+                let (own, far) = (couple(&w, j, angle), couple(&w, j, angle + 1e-7));
+                let sign = own.signum();
+                assert!((knee.moment - own.abs()).abs() < 1e-12, "{j}: {knee:?}");
+                let stiffness = (far - own) * 1e7;
+                let off = (knee.stiffness - stiffness).abs();
+                assert!(off < 1e-3 * stiffness, "{j}: {off} of {stiffness}");
+                seen[usize::from(knee.branch == 1)] += 1;
+                for e in usize::from(j == 0)..2 {
+                    let moved = |change: &dyn Fn(&mut Wire, f64)| {
+                        let at = |by: f64| {
+                            let mut w = make();
+                            change(&mut w, by);
+                            twist(&w, j)
+                        };
+                        (at(1.0) - at(-1.0)) * 0.5 * sign
+                    };
+                    let edge = j + e - 1;
+                    let roll = moved(&|w, by| w.roll[edge] += 1e-6 * by) / 1e-6;
+                    assert!((roll - knee.rolls[e]).abs() < 1e-6, "{j}, {e}: {roll}");
+                    for a in 0..3 {
+                        // an edge's vector alone: all nodes on its far side move
+                        let size = 1e-6 * LV;
+                        let shift = |w: &mut Wire, by: f64| {
+                            w.q[edge + 1..].iter_mut().for_each(|q| q[a] += size * by);
+                        };
+                        let row = moved(&shift) / size;
+                        let off = (row - knee.rows[e][a]).abs() * LV;
+                        assert!(off < 1e-6, "{j}, {e}, {a}: {off}");
+                    }
+                }
+            }
+        }
+        assert!(seen[0] > 2 && seen[1] > 2, "{seen:?}");
     }
 
     /// As many at once as there may be: the same to the bit.
