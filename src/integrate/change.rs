@@ -454,12 +454,6 @@ impl System {
         rod.twist[i].strain *= scale;
     }
 
-    /// Whether the node before the nozzle is bent or twisted for good.
-    pub(super) fn is_set_at_nozzle(&self) -> bool {
-        let i = self.rod.nodes() - 2;
-        self.rod.bend[i].curvature != [0.0; 2] || self.rod.twist[i].strain != 0.0
-    }
-
     /// Elastic energy per length of bending and twist at the node before the nozzle, J/m.
     pub(super) fn bent_at_nozzle(&self) -> f64 {
         let rod = &self.rod;

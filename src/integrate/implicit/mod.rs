@@ -437,9 +437,11 @@ impl<const D: usize> Work<D> {
             self.rolls.prepare(sys, step, spindle, support, inert);
             self.rolls.lay_out(&mut self.sheet.rolling);
             let (state, ends) = ((&rod.bend[..], &rod.twist[..]), self.rolls.joints());
-            (self.sheet.rolling).lay(&sys.laws, state, ends, |j| voronoi(rod, step.grown, j));
+            (self.sheet.rolling).lay(&sys.laws, state, ends, |j| {
+                (voronoi(rod, step.grown, j), set_share(rod, step.grown, j))
+            });
         } else {
-            self.turn_plastic_curvature(sys, spindle, support);
+            self.turn_plastic_curvature(sys, spindle, support, step.grown);
             let clamps = clamp_directions(support, spindle);
             self.sheet.plain.begin(rod.edges(), clamps);
         }
@@ -462,7 +464,13 @@ impl<const D: usize> Work<D> {
     }
 
     /// Plastic curvature of each joint as a vector in the core frame, turned along with the guess.
-    fn turn_plastic_curvature(&mut self, sys: &System, spindle: &Spindle, support: &[Support; 2]) {
+    fn turn_plastic_curvature(
+        &mut self,
+        sys: &System,
+        spindle: &Spindle,
+        support: &[Support; 2],
+        grown: f64,
+    ) {
         let w = &mut *self;
         let rod = &sys.rod;
         let back = turn_about_y(-spindle.angle);
@@ -491,7 +499,7 @@ impl<const D: usize> Work<D> {
             let (Some(p), Some(n)) = (before, after) else {
                 continue;
             };
-            w.set[i] = mid_frame_vector(&p, &n, k);
+            w.set[i] = mid_frame_vector(&p, &n, k) * set_share(rod, grown, i);
         }
     }
 
@@ -525,10 +533,7 @@ impl<const D: usize> Work<D> {
 fn step_of(sys: &System, scheme: Scheme, h: f64) -> Step {
     let step = Step::new(scheme, &sys.past, h);
     match (&sys.feed, sys.rod.rest.last()) {
-        // (set wire that goes back through the nozzle keeps its angle there, not its curvature)
-        (Some((_, feed)), Some(rest)) if !sys.is_set_at_nozzle() => {
-            step.with_feed(&sys.past, feed.fed, *rest)
-        }
+        (Some((_, feed)), Some(rest)) => step.with_feed(&sys.past, feed.fed, *rest),
         _ => step,
     }
 }
@@ -537,6 +542,15 @@ fn step_of(sys: &System, scheme: Scheme, h: f64) -> Step {
 fn voronoi(rod: &Rod, grown: f64, i: usize) -> f64 {
     let at_nozzle = i + 2 >= rod.nodes();
     rod.voronoi(i) + if at_nozzle { 0.5 * grown } else { 0.0 }
+}
+
+/// Share of node `i`'s set curvature and twist when the edge at the nozzle has `grown`, see `System::keep_set_at_nozzle`.
+fn set_share(rod: &Rod, grown: f64, i: usize) -> f64 {
+    if i + 2 == rod.nodes() {
+        rod.voronoi(i) / voronoi(rod, grown, i)
+    } else {
+        1.0
+    }
 }
 
 /// A vector with components `k` in the frame half-way between the frames of two edges.

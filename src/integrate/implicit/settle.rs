@@ -142,7 +142,7 @@ impl Implicit {
         for _ in 0..PASSES {
             work.q.clone_from(&work.guess);
             if !Work::<D>::ROLLS {
-                work.turn_plastic_curvature(sys, &spindle, &support);
+                work.turn_plastic_curvature(sys, &spindle, &support, 0.0);
             }
             let mut model = model_at_rest(sys);
             model.flat = self.flat;

@@ -187,13 +187,14 @@ impl RollingJoints {
         Turned::known(self.frame(j), self.along(j), self.inverse(j), detour)
     }
 
-    /// Plastic state of the joints from `first` to `last`, and the `length` that each stands for; the others are none.
+    /// Plastic state of the joints from `first` to `last`; the others are none. `length` is what each stands for, and by
+    /// how much that spreads its set.
     pub fn lay(
         &mut self,
         laws: &Laws,
         (bend, twist): (&[Bend], &[Scalar]),
         [first, last]: [usize; 2],
-        length: impl Fn(usize) -> f64,
+        length: impl Fn(usize) -> (f64, f64),
     ) {
         for j in 0..=self.edges {
             let (state, row) = (&mut self.state.blocks_mut()[j / ROWS], j % ROWS);
@@ -206,13 +207,13 @@ impl RollingJoints {
                 put([0.0; STATE]);
                 continue;
             }
-            let (bend, twist, lv) = (&bend[j], &twist[j], length(j));
+            let (bend, twist, (lv, share)) = (&bend[j], &twist[j], length(j));
             put([
-                bend.curvature[0],
-                bend.curvature[1],
+                bend.curvature[0] * share,
+                bend.curvature[1] * share,
                 bend.rise,
                 laws.bend.limit + bend.rise,
-                twist.strain,
+                twist.strain * share,
                 twist.rise,
                 laws.twist.limit + twist.rise,
                 lv,
@@ -818,7 +819,7 @@ mod tests {
         batch.begin(&w.frames, &w.along, w.clamps);
         batch.place(&w.q, &w.roll);
         let state = (&w.bend[..], &w.twist[..]);
-        batch.lay(&laws(), state, [0, edges - 1], |_| LV);
+        batch.lay(&laws(), state, [0, edges - 1], |_| (LV, 1.0));
         let energy = batch.respond(&laws(), Some(&mut knees));
         (run(All(&batch, &mut knees.bending)), energy, knees)
     }
