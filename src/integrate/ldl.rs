@@ -8,13 +8,16 @@
 //! node `s` and node `nodes - 1 - s` together, in the two lanes of one [`Pair`], until two or three
 //! nodes are left, which are factored as a small dense matrix.
 //! The lanes never meet before that, so every operation on a `Pair` maps to one two-wide
-//! instruction of the baseline instruction set, without padding and with the symmetry fully used.
+//! instruction of the baseline instruction set, without padding and with the symmetry fully used;
+//! compiled for what the machine has ([`run`]), neighbouring pairs go four wide, with the same bits.
 //!
 //! Symbols: `w` is a row of the matrix right of its pivot when its turn comes, `l = w / pivot` the
 //! same row of `L^T`.
 
 use std::ops::{Add, Mul, Sub};
 
+use crate::lanes::{WithSimd, run};
+use pulp::Simd;
 use thiserror::Error;
 
 /// Share of its original diagonal that a pivot must exceed.
@@ -370,12 +373,8 @@ impl<const D: usize> Banded<D> {
     /// The factors are not to be used then.
     pub fn factor(&mut self) -> Result<(), Loose> {
         // from the first step on that something has changed in
-        for step in std::mem::take(&mut self.kept)..self.steps.len() {
-            let (before, after) = self.carries.split_at_mut(step + 1);
-            let factors = &mut self.step_factors[step];
-            if !eliminate(&self.steps[step], &before[step], &mut after[0], factors) {
-                return Err(self.loose_in_step(step));
-            }
+        if let Some(step) = run(Eliminate(self)) {
+            return Err(self.loose_in_step(step));
         }
         self.factor_middle()?;
         self.kept = self.steps.len();
@@ -388,43 +387,7 @@ impl<const D: usize> Banded<D> {
     /// Unless `b` has one entry for each unknown.
     pub fn solve(&self, b: &mut [f64]) {
         assert_eq!(b.len(), self.nodes * D, "one entry for each unknown");
-        let steps = self.step_factors.len();
-        let (head, rest) = b.split_at_mut(steps * D);
-        let (middle, tail) = rest.split_at_mut(rest.len() - steps * D);
-        let (head, tail) = (head.as_chunks_mut().0, tail.as_chunks_mut().0);
-
-        // what the solved unknowns take from the next node and the one after
-        let mut first = [Pair::default(); D];
-        let mut second = [Pair::default(); D];
-        for ((factors, x), y) in self
-            .step_factors
-            .iter()
-            .zip(&mut *head)
-            .zip(tail.iter_mut().rev())
-        {
-            forward(factors, &mut first, &mut second, x, y);
-        }
-
-        self.solve_middle(middle, steps, &first, &second);
-
-        let count = middle.len() / D;
-        let at = |node: usize, a: usize| {
-            if node < count {
-                middle[node * D + a]
-            } else {
-                0.0
-            }
-        };
-        for a in 0..D {
-            first[a] = Pair([at(0, a), at(count.wrapping_sub(1), a)]);
-            second[a] = Pair([at(1, a), at(count.wrapping_sub(2), a)]);
-        }
-        for ((factors, x), y) in (self.step_factors.iter().rev())
-            .zip(head.iter_mut().rev())
-            .zip(tail)
-        {
-            backward(factors, &mut first, &mut second, x, y);
-        }
+        run(Sweeps(self, b));
     }
 
     /// `y = A x` with the matrix as it was added and pinned, factored or not.
@@ -631,11 +594,7 @@ fn symmetric(entry: f64, row: usize, column: usize, x: &[f64], y: &mut [f64]) {
 ///
 /// The blocks of a node are finished before anything is taken from the next two: each number of
 /// `after` is then summed over all pivots in a register and stored once.
-///
-/// Never inlined, nor are the sweeps below: as locals of the caller's loop the numbers carried along
-/// would be taken apart into single lanes and put together again in every round; behind a reference
-/// they stay pairs.
-#[inline(never)]
+#[inline(always)]
 fn eliminate<const D: usize>(
     rows: &Step<D>,
     carry: &Carry<D>,
@@ -700,8 +659,73 @@ fn eliminate<const D: usize>(
     safe
 }
 
+/// Eliminates what has changed since the last time; the step with an unsafe pivot.
+struct Eliminate<'a, const D: usize>(&'a mut Banded<D>);
+
+impl<const D: usize> WithSimd for Eliminate<'_, D> {
+    type Output = Option<usize>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Option<usize> {
+        let all = self.0;
+        for step in std::mem::take(&mut all.kept)..all.steps.len() {
+            let (before, after) = all.carries.split_at_mut(step + 1);
+            let factors = &mut all.step_factors[step];
+            if !eliminate(&all.steps[step], &before[step], &mut after[0], factors) {
+                return Some(step);
+            }
+        }
+        None
+    }
+}
+
+/// Solves with the factors: towards the middle, there, and back.
+struct Sweeps<'a, const D: usize>(&'a Banded<D>, &'a mut [f64]);
+
+impl<const D: usize> WithSimd for Sweeps<'_, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self(all, b) = self;
+        let steps = all.step_factors.len();
+        let (head, rest) = b.split_at_mut(steps * D);
+        let (middle, tail) = rest.split_at_mut(rest.len() - steps * D);
+        let (head, tail) = (head.as_chunks_mut().0, tail.as_chunks_mut().0);
+
+        // what the solved unknowns take from the next node and the one after
+        let mut first = [Pair::default(); D];
+        let mut second = [Pair::default(); D];
+        let inwards = head.iter_mut().zip(tail.iter_mut().rev());
+        for (factors, (x, y)) in all.step_factors.iter().zip(inwards) {
+            forward(factors, &mut first, &mut second, x, y);
+        }
+
+        all.solve_middle(middle, steps, &first, &second);
+
+        let count = middle.len() / D;
+        for a in 0..D {
+            let mut at = [0.0; 4];
+            for (node, x) in [0, count.wrapping_sub(1), 1, count.wrapping_sub(2)]
+                .into_iter()
+                .zip(&mut at)
+            {
+                if node < count {
+                    *x = middle[node * D + a];
+                }
+            }
+            first[a] = Pair([at[0], at[1]]);
+            second[a] = Pair([at[2], at[3]]);
+        }
+        let outwards = head.iter_mut().rev().zip(tail);
+        for (factors, (x, y)) in all.step_factors.iter().rev().zip(outwards) {
+            backward(factors, &mut first, &mut second, x, y);
+        }
+    }
+}
+
 /// Divides one node of each chain by `L`: `x` of the first chain, `y` of the last.
-#[inline(never)]
+#[inline(always)]
 fn forward<const D: usize>(
     factors: &Step<D>,
     first: &mut [Pair; D],
@@ -736,7 +760,7 @@ fn forward<const D: usize>(
 }
 
 /// Divides one node of each chain by `D L^T`, given the solution of its next two nodes.
-#[inline(never)]
+#[inline(always)]
 fn backward<const D: usize>(
     factors: &Step<D>,
     first: &mut [Pair; D],
