@@ -378,6 +378,44 @@ fn a_step_that_fails_says_where_and_why_and_keeps_the_last_state() {
     assert!(sim.centreline().points.iter().all(|p| p.norm() < 0.1));
 }
 
+/// Springy wire on a thin core under little tension: its coil opens and shoots wire out of the nozzle. The line behind it
+/// has no inertia, so nothing would ever stop that.
+#[test]
+fn wire_that_runs_away_from_the_nozzle_ends_the_run() {
+    let scene = fig8(&[
+        ("wire.material", "copper"),
+        ("wire.elastic", "true"),
+        ("wire.diameter", "0.0008"),
+        ("core.width_x", "0.0021"),
+        ("core.height_z", "0.006"),
+        ("core.length_y", "0.034"),
+        ("core.corner_radius", "0.0003"),
+        ("nozzle.distance", "0.0073"),
+        ("nozzle.y_start", "0.0006"),
+        ("start.clamp_y", "0.0023"),
+        ("tensioner.tension", "5.4"),
+        ("tensioner.mass", "4e-5"),
+        ("traverse.per_turn", "0"),
+    ]);
+    let mut sim = Simulation::new(&scene).expect("the scene starts");
+    let inputs = Inputs {
+        spindle_speed: 127.0,
+        ..sim.inputs()
+    };
+    let error = loop {
+        match sim.advance(inputs, 5e-5) {
+            Ok(()) => assert!(sim.time() < 0.1, "{:?}", sim.outputs()),
+            Err(e) => break e,
+        }
+    };
+    let text = error.to_string();
+    for part in ["at t = ", "runs away", "m/s", "N", "come in"] {
+        assert!(text.contains(part), "{text}");
+    }
+    let o = sim.outputs();
+    assert!(o.fed_length > 0.1 && o.fed_length < 0.3, "{}", o.fed_length);
+}
+
 #[test]
 fn values_out_of_range_are_refused_with_the_range() {
     for (name, value, range) in [

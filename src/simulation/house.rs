@@ -6,6 +6,7 @@ use crate::integrate::turn_about_y;
 use crate::math::{Spin, V3};
 use crate::measure::{polar_angle, wrap_to_pi};
 use crate::scene::LiveContact;
+use std::f64::consts::{PI, TAU};
 
 /// The live wire never gets shorter than this many nodes: clamp, nozzle and two between.
 const FEWEST_NODES: usize = 4;
@@ -18,7 +19,10 @@ const STRAIGHT: f64 = 0.99995;
 const WHOLE: f64 = 0.85;
 
 /// Turning angle of a node from which on its direction is not to be trusted, rad.
-const HALF_TURN: f64 = 0.9 * std::f64::consts::PI;
+const HALF_TURN: f64 = 0.9 * PI;
+
+/// Wire that has passed the nozzle over what core and way can have taken up at most, from which on it runs away.
+const RUNAWAY: f64 = 2.0;
 
 impl Simulation {
     pub(super) fn keep_house(&mut self, dt: f64) -> Result<(), SimError> {
@@ -155,7 +159,7 @@ impl Simulation {
     /// flat can land at once, so the pairs are watched from half a turn on.
     fn watch_live_wire(&mut self) {
         // wire too stiff for its tension stands off and touches nothing: there all of a turn counts
-        let turn = std::f64::consts::TAU;
+        let turn = TAU;
         let whole = self.sys.rod.nodes() - 1;
         let watched = match self.scene.solver.parts.live_contact {
             LiveContact::Always => true,
@@ -369,7 +373,7 @@ impl Simulation {
         if left > 0.0 { 0 } else { i }
     }
 
-    /// Values must be finite, the wire below its strength.
+    /// Values must be finite, the wire below its strength and where it was sent.
     fn check_health(&mut self) -> Result<(), SimError> {
         for (i, (x, v)) in self.sys.rod.x.iter().zip(&self.sys.rod.v).enumerate() {
             if !(x.sum() + v.sum()).is_finite() {
@@ -383,6 +387,7 @@ impl Simulation {
                 });
             }
         }
+        self.check_feed()?;
         let strength = self.scene.wire.strength;
         if let Some((j, t)) = self
             .sys
@@ -407,6 +412,34 @@ impl Simulation {
             self.report(EventKind::Break, text);
         }
         Ok(())
+    }
+
+    /// The wire must not run away from the nozzle.
+    ///
+    /// Wire on its way through the nozzle goes on by itself, for the line behind it has neither inertia nor an end: once
+    /// something has made it faster than its tension stops it, such as a coil of springy wire that opens or a loop
+    /// whirling round without tension, metres come in, on the way to nowhere and ever dearer to compute.
+    fn check_feed(&mut self) -> Result<(), SimError> {
+        let Some((_, feed)) = &self.sys.feed else {
+            return Ok(());
+        };
+        let angle = (self.sys.spindle.angle - self.angle0).abs();
+        self.farthest = self.farthest.max(angle);
+        let rod = &self.sys.rod;
+        let way = (self.sys.support[1].point - rod.x[0]).norm();
+        // a core cannot be larger than the nozzle's circle
+        let most = way + (self.farthest + TAU) * self.scene.nozzle.distance;
+        if feed.fed <= RUNAWAY * most {
+            return Ok(());
+        }
+        Err(SimError {
+            time: self.sys.time,
+            node: Some(rod.nodes() - 1),
+            reason: format!(
+                "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up",
+                feed.rate, self.sys.set_tension, feed.fed
+            ),
+        })
     }
 
     /// The first live node at which the wire is kinked, and the radius of its centreline there, m.

@@ -82,6 +82,8 @@ pub struct Simulation {
     was_slack: bool,
     /// how long core, nozzle, tensioner and wire have been still, s
     quiet: f64,
+    /// farthest that the spindle has been from where it started, rad
+    farthest: f64,
     /// farthest nozzle position of this pass, m, and its direction along y
     pass: (f64, f64),
     /// steps tried so far, each counted as often as it had nodes, and how much of that may be
@@ -173,6 +175,7 @@ impl Simulation {
             broken: false,
             was_slack: false,
             quiet: 0.0,
+            farthest: 0.0,
             pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
             work: 0,
             most_work: u64::MAX,

@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -71,6 +71,7 @@ struct Saved {
     broken: bool,
     was_slack: bool,
     quiet: f64,
+    farthest: f64,
     pass: (f64, f64),
 }
 
@@ -106,6 +107,7 @@ impl Simulation {
             broken,
             was_slack,
             quiet,
+            farthest,
             pass,
         } = self;
         let saved = Saved {
@@ -131,6 +133,7 @@ impl Simulation {
             broken: *broken,
             was_slack: *was_slack,
             quiet: *quiet,
+            farthest: *farthest,
             pass: *pass,
         };
         Ok(postcard::to_stdvec(&(VERSION, saved))?)
@@ -193,6 +196,7 @@ impl Simulation {
         self.broken = saved.broken;
         self.was_slack = saved.was_slack;
         self.quiet = saved.quiet;
+        self.farthest = saved.farthest;
         self.pass = saved.pass;
         Ok(())
     }
