@@ -532,12 +532,7 @@ impl Piece {
             return self.root_held(low.0, high.0, secant);
         }
         if rest < LAST_DIGITS {
-            return s;
-        }
-        // as a rule the next one will
-        let (t, rest) = self.chebyshev(s, self.g(s));
-        if rest < LAST_DIGITS && t >= low.0 && t <= high.0 {
-            t
+            s
         } else {
             self.root_held(low.0, high.0, s)
         }
@@ -674,12 +669,12 @@ mod tests {
             .prop_map(|(r, pitch, wave, longest, phase)| wavy(r, pitch, wave, longest, phase, 3.2))
     }
 
-    /// On the curve, at t = segment + share.
     fn tangent_at(tube: &SplineTube, foot: &Foot) -> V3 {
         let segment = foot.segment as usize;
         tube.curve().piece(segment, V3::zeros()).tangent(foot.share)
     }
 
+    /// On the curve, at t = segment + share.
     fn on(tube: &SplineTube, t: f64) -> V3 {
         tube.curve().piece(t as usize, V3::zeros()).arm(t.fract())
     }
