@@ -30,6 +30,9 @@ up* (the solver says when, where and why). *invariant* counts scenes that broke 
 state, energy balance, wire outside the core, friction inside its cone, wire length equals fed length, no plastic work
 that comes back, no pushing at the nozzle, frozen wire unmoved, a bound on steps per turn.
 
+Wire *runs away from the nozzle* where an elastic coil opens or a loop whirls round under little tension: the line behind the nozzle has
+no inertia in this model, so wire once fast shoots on, at 20 to 300 m/s (ARCHITECTURE, "Known and left").
+
 Steps per turn are means and the largest of one scene; depth (deepest contact) and energy (unexplained over what went
 through) are the worst of the scenes that ended well.
 
