@@ -7,7 +7,8 @@
 //! linear system is solved by conjugate gradients with the banded part as preconditioner.
 
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
-use super::line::{ALONG_SLIDE, foresight, huber, less, onset_law, times};
+use super::line::foresight;
+use super::touch::{ALONG_SLIDE, huber, less, onset_law, times};
 use super::{ContactLoss, OWN_WIRE};
 use crate::freeze::Curve;
 use crate::math::V3;

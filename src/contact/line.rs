@@ -9,15 +9,17 @@
 
 use super::between::Between;
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
+use super::point::{FRESH, Memory, PASSAGES, Point};
+use super::touch::{
+    Circumstances, Limit, NONE, Push, Touch, bristle, damped_law, less, onset_law, times,
+};
 use super::{ContactLoss, OWN_WIRE};
 use crate::core_shape::Shape;
 use crate::freeze::SplineTube;
 use crate::math::V3;
-use crate::rod::{Block, add_outer};
+use crate::rod::Block;
 use serde::{Deserialize, Serialize};
 
-/// Passages of frozen wire a point can have near it: neighbours left and right, and a layer below.
-const PASSAGES: usize = 4;
 /// A point's surroundings are looked up again after this way, in wire diameters.
 const SKIN: f64 = 0.15;
 /// Error of a contact force that an update may promise, as a depth, m, for wire of 0.7 mm; see [`foresight`].
@@ -27,233 +29,6 @@ const SAME: f64 = 0.2;
 /// Depth over which the normal force sets in, m. Ten times as much takes a tenth off the evaluations, and adds
 /// 4.5 um to the depth at rest.
 const ONSET: f64 = 1e-6;
-
-/// Share of the zero stiffness of a sliding bristle along its slide that the Hessian takes over. With
-/// all of it updates overshoot to the far side of the anchor, with none they crawl.
-pub(super) const ALONG_SLIDE: f64 = 0.9;
-/// One possible touch of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Touch {
-    /// where to look for the closest point of frozen wire
-    start: u32,
-    /// whether an anchor holds
-    held: bool,
-    /// core frame, m
-    anchor: V3,
-    /// largest friction force by the normal force of the last iterate, N
-    lag: f64,
-    /// the same at the last accepted instant, N
-    kept: f64,
-    /// the same by the iterate in hand, N
-    fresh: f64,
-    /// direction of the slide as the linear system has it; 0: the bristle holds
-    slide: V3,
-    normal: V3,
-    depth: f64,
-    /// depth at the last accepted instant, 0: none, m
-    before: f64,
-}
-
-const NONE: Touch = Touch {
-    start: u32::MAX,
-    held: false,
-    anchor: V3::new(0.0, 0.0, 0.0),
-    lag: 0.0,
-    kept: 0.0,
-    fresh: 0.0,
-    slide: V3::new(0.0, 0.0, 0.0),
-    normal: V3::new(0.0, 0.0, 0.0),
-    depth: 0.0,
-    before: 0.0,
-};
-
-impl Touch {
-    /// Adds the push of a touch with `depth` and `normal` at `p`; returns its own friction limit, N, and the
-    /// direction of its slide.
-    #[inline]
-    fn push(&self, p: V3, c: &Circumstances, sum: &mut Push) -> (f64, V3) {
-        let (e, f, s) = if c.brake > 0.0 {
-            damped_law(self.depth, c.onset, c.brake, self.before)
-        } else {
-            onset_law(self.depth, c.onset)
-        };
-        let n = self.normal;
-        let force = c.stiffness * f;
-        sum.energy += c.stiffness * e;
-        sum.energy_lagged += c.stiffness * e;
-        sum.gradient -= n * force;
-        let mut along = c.stiffness * s;
-        let (mut limit, mut slide) = (0.0, V3::zeros());
-        if c.law.mu_static > 0.0 {
-            limit = match c.limit {
-                Limit::Lagged => self.lag,
-                Limit::Latest => self.fresh,
-                Limit::Own => {
-                    let way = p - c.last;
-                    let slide = (way - n * way.dot(&n)).norm() / c.step;
-                    c.law.mu(slide) * force
-                }
-            };
-            let (b, k_t) = bristle(self, p, c.last, c.stiffness * TANGENTIAL_SHARE, c.brake);
-            let size = b.norm();
-            sum.energy_lagged += huber(k_t, self.lag, size);
-            sum.energy += huber(k_t, limit, size);
-            let dir = b / size;
-            // from sliding to sliding the other way: it would be thrown to and fro
-            let turns = c.limit == Limit::Latest && dir.dot(&self.slide) < 0.0;
-            if k_t * size <= limit || turns {
-                sum.gradient += b * k_t;
-                add_identity(&mut sum.hessian, k_t);
-                along -= k_t;
-            } else {
-                slide = dir;
-                sum.gradient += dir * limit;
-                let h = limit / size;
-                add_identity(&mut sum.hessian, h);
-                add_outer(&mut sum.hessian, &(dir * (-ALONG_SLIDE * h)), &dir);
-                along -= h;
-            }
-        }
-        add_outer(&mut sum.hessian, &(n * along), &n);
-        (limit, slide)
-    }
-}
-
-/// A contact point of the wire.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-struct Point {
-    /// place at the last accepted instant, m
-    last: V3,
-    placed: bool,
-    /// where the surroundings were looked up, and how far that holds
-    centre: V3,
-    reach: f64,
-    /// within `clear` of this place it touches nothing; 0: it may
-    free: V3,
-    clear: f64,
-    /// core first, then passages of frozen wire
-    #[serde(with = "used")]
-    touch: [Touch; 1 + PASSAGES],
-    core_near: bool,
-    passages: usize,
-}
-
-const FRESH: Point = Point {
-    last: V3::new(0.0, 0.0, 0.0),
-    placed: false,
-    centre: V3::new(0.0, 0.0, 0.0),
-    reach: -1.0,
-    free: V3::new(0.0, 0.0, 0.0),
-    clear: 0.0,
-    touch: [NONE; 1 + PASSAGES],
-    core_near: false,
-    passages: 0,
-};
-
-/// Touches in a saved state: most are unused, and take no more than their bit in a mask.
-mod used {
-    use super::{NONE, PASSAGES, Touch};
-    use serde::de::Error;
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    /// Whether nothing was ever written here, to the bit.
-    fn is_none(t: &Touch) -> bool {
-        let vectors = [t.anchor, t.slide, t.normal];
-        let numbers = [t.lag, t.kept, t.fresh, t.depth, t.before];
-        let mut all = vectors.iter().flatten().chain(&numbers);
-        t.start == NONE.start && !t.held && all.all(|x| x.to_bits() == 0)
-    }
-
-    pub(super) fn serialize<S: Serializer>(
-        touches: &[Touch; 1 + PASSAGES],
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        let mask =
-            (0..touches.len()).fold(0u8, |mask, k| mask | (u8::from(!is_none(&touches[k])) << k));
-        let list: Vec<&Touch> = touches.iter().filter(|t| !is_none(t)).collect();
-        (mask, list).serialize(serializer)
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(
-        deserializer: D,
-    ) -> Result<[Touch; 1 + PASSAGES], D::Error> {
-        let (mask, list) = <(u8, Vec<Touch>)>::deserialize(deserializer)?;
-        let mut touches = [NONE; 1 + PASSAGES];
-        let mut list = list.into_iter();
-        for k in (0..touches.len()).filter(|k| mask >> k & 1 == 1) {
-            let next = list.next();
-            touches[k] = next.ok_or_else(|| D::Error::custom("a touch is missing"))?;
-        }
-        Ok(touches)
-    }
-}
-
-/// What a node's points of contact remember: places and touches. Most have one touch or none, and there
-/// is one of these for every frozen node.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Memory {
-    last: [V3; 2],
-    placed: [bool; 2],
-    /// touches of the first point, then of the second, with their places in `Point::touch`
-    touches: Box<[(u8, Touch)]>,
-    /// how many of them are of the first
-    first: u8,
-}
-
-impl Memory {
-    fn of(points: &[Box<Point>]) -> Self {
-        let known = |p: &'_ Point| {
-            (0..=p.passages as u8)
-                .zip(p.touch)
-                .filter(|(slot, t)| if *slot == 0 { p.core_near } else { true } && *t != NONE)
-                .collect::<Vec<_>>()
-        };
-        let mut touches = known(&points[0]);
-        let first = touches.len() as u8;
-        touches.extend(known(&points[1]));
-        Self {
-            last: [points[0].last, points[1].last],
-            placed: [points[0].placed, points[1].placed],
-            touches: touches.into(),
-            first,
-        }
-    }
-
-    /// Whether [`Self::points`] finds every touch a place; bytes from elsewhere may say anything.
-    pub(crate) fn is_sound(&self) -> bool {
-        let mut slots = self.touches.iter().map(|(slot, _)| *slot as usize);
-        self.first as usize <= self.touches.len() && slots.all(|slot| slot <= PASSAGES)
-    }
-
-    /// The points again; what is near them is looked up anew.
-    fn points(&self) -> [Point; 2] {
-        let (one, two) = self.touches.split_at(self.first as usize);
-        let point = |k: usize, touches: &[(u8, Touch)]| {
-            let mut p = FRESH;
-            (p.last, p.placed) = (self.last[k], self.placed[k]);
-            for &(slot, t) in touches {
-                p.touch[slot as usize] = t;
-                p.core_near |= slot == 0;
-                p.passages = p.passages.max(slot as usize);
-            }
-            p
-        };
-        [point(0, one), point(1, two)]
-    }
-}
-
-/// What the touches of one point add to potential, gradient and Hessian.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Push {
-    /// potential with the friction limits of the iterate before, J
-    pub energy_lagged: f64,
-    /// potential with the limits of this one, J
-    pub energy: f64,
-    /// gradient with respect to the point, N
-    pub gradient: V3,
-    /// Hessian with respect to the point, N/m
-    pub hessian: Block,
-}
 
 /// The wire's contact points and what they can touch.
 #[derive(Clone, Debug)]
@@ -322,32 +97,6 @@ struct Near {
     room: f64,
     /// way that was looked ahead along last, m; none: gradient and Hessian are those of `place`
     seen: Option<V3>,
-}
-
-/// Which friction limit a push takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Limit {
-    /// that of the iterate before
-    Lagged,
-    /// by its own normal force
-    Own,
-    /// that of the last evaluation
-    Latest,
-}
-
-/// What a push depends on besides the touch.
-#[derive(Clone, Copy, Debug)]
-struct Circumstances<'a> {
-    law: &'a ContactLaw,
-    onset: f64,
-    /// stiffness of what the point stands for, N/m
-    stiffness: f64,
-    /// dashpot over stiffness, for this step
-    brake: f64,
-    step: f64,
-    /// place at the last accepted instant, m
-    last: V3,
-    limit: Limit,
 }
 
 impl LineContact {
@@ -936,21 +685,6 @@ impl LineContact {
     }
 }
 
-/// Stretch of a touch's bristle and its stiffness, with a dashpot of `brake` times the stiffness `k`
-/// against the way from `last`: together a stiffer bristle from a place in between.
-#[inline]
-fn bristle(touch: &Touch, p: V3, last: V3, k: f64, brake: f64) -> (V3, f64) {
-    let anchor = if touch.held { touch.anchor } else { last };
-    let anchor = if brake > 0.0 {
-        (anchor + last * brake) / (1.0 + brake)
-    } else {
-        anchor
-    };
-    let b = p - anchor;
-    let b = b - touch.normal * b.dot(&touch.normal);
-    (b, k * (1.0 + brake))
-}
-
 /// Error of a contact force that an update may promise, as a depth, m.
 ///
 /// What presses wire on its core goes with its cross-section. With one depth for all, an update could promise
@@ -963,106 +697,4 @@ pub(super) fn foresight(diameter: f64) -> f64 {
 /// Wire this far back along itself is the point's own neighbourhood.
 pub fn own_wire(arc: f64, diameter: f64) -> f64 {
     arc - OWN_WIRE * diameter
-}
-
-/// Energy, force and stiffness over contact stiffness at a depth: quadratic up to the onset depth,
-/// then linear.
-#[inline]
-pub(super) fn onset_law(depth: f64, onset: f64) -> (f64, f64, f64) {
-    if depth < onset {
-        let s = depth / onset;
-        (s * depth * depth / 6.0, 0.5 * s * depth, s)
-    } else {
-        (
-            0.5 * depth * depth - 0.5 * depth * onset + onset * onset / 6.0,
-            depth - 0.5 * onset,
-            1.0,
-        )
-    }
-}
-
-/// Product of a symmetric block with a vector.
-pub(super) fn times(m: &Block, v: &V3) -> V3 {
-    V3::new(
-        m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z,
-        m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
-        m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z,
-    )
-}
-
-/// Difference of two blocks.
-pub(super) fn less(a: &Block, b: &Block) -> Block {
-    std::array::from_fn(|r| std::array::from_fn(|c| a[r][c] - b[r][c]))
-}
-
-fn add_identity(m: &mut Block, c: f64) {
-    for (k, row) in m.iter_mut().enumerate() {
-        row[k] += c;
-    }
-}
-
-/// The same with a dashpot of `brake` times the stiffness against the way in from the depth `before`.
-///
-/// A dashpot alone would pull on what leaves faster than the spring can push. Here the sum ends where
-/// it is 0, so that the potential stays convex and without a kink.
-#[inline]
-fn damped_law(depth: f64, onset: f64, brake: f64, before: f64) -> (f64, f64, f64) {
-    let sum = |depth: f64| {
-        let (e, f, s) = onset_law(depth, onset);
-        let way = depth - before;
-        (e + 0.5 * brake * way * way, f + brake * way, s + brake)
-    };
-    if before == 0.0 || brake == 0.0 {
-        return sum(depth);
-    }
-    let linear = (brake * before + 0.5 * onset) / (1.0 + brake);
-    let end = if linear >= onset {
-        linear
-    } else {
-        2.0 * brake * before / (brake + (brake * (brake + 2.0 * before / onset)).sqrt())
-    };
-    if depth <= end {
-        return (0.0, 0.0, 0.0);
-    }
-    let (e, f, s) = sum(depth);
-    ((e - sum(end).0).max(0.0), f, s)
-}
-
-/// Potential of a bristle of stiffness `k` that gives way at `limit`.
-#[inline]
-pub(super) fn huber(k: f64, limit: f64, size: f64) -> f64 {
-    if k * size <= limit {
-        0.5 * k * size * size
-    } else {
-        limit * (size - 0.5 * limit / k)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Force and stiffness are the derivatives of energy and force, and the force never pulls.
-    #[test]
-    fn normal_law_is_a_family() {
-        let onset = 1e-6;
-        for brake in [0.0, 0.3, 20.0] {
-            for before in [0.0, 4e-7, 2e-6, 1e-5] {
-                for i in 1..400 {
-                    let depth = 1.37e-8 * f64::from(i) * (1.0 + 0.01 * f64::from(i));
-                    let law = |d: f64| damped_law(d, onset, brake, before);
-                    let h = 1e-12;
-                    let (e, f, s) = law(depth);
-                    let (a, b) = (law(depth - h), law(depth + h));
-                    assert!(e >= 0.0 && f >= 0.0 && s >= 0.0);
-                    let scale = onset * (1.0 + brake);
-                    assert!(((b.0 - a.0) / (2.0 * h) - f).abs() < 1e-4 * scale);
-                    // the stiffness jumps where the push ends
-                    if a.1 > 0.0 || b.1 == 0.0 {
-                        assert!(((b.1 - a.1) / (2.0 * h) - s).abs() < 1e-4 * (1.0 + brake));
-                    }
-                }
-            }
-        }
-    }
 }

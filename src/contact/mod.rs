@@ -8,12 +8,16 @@ mod between;
 mod law;
 mod line;
 mod live;
+mod point;
+mod touch;
 
 pub use between::{Between, Cross, PairPush, Triple, add_cross, point_weights};
 pub use law::{ContactLaw, TouchForce, damping_for_restitution};
 pub(crate) use line::SavedLine;
-pub use line::{LineContact, Memory, Push, own_wire};
+pub use line::{LineContact, own_wire};
 pub use live::{LiveContact, Wire};
+pub use point::Memory;
+pub use touch::Push;
 
 use crate::core_shape::{Surface, Touch};
 use crate::freeze::{FrozenNode, Tube};
