@@ -30,7 +30,7 @@ SWITCHES = [
 
 
 def bench(command, speed, switches, repeat):
-    words = [command, "bench", "W", "--omega", str(speed), "--repeat", str(repeat)]
+    words = [command, "bench", "W", "--omega", str(speed), "--repeat", str(repeat), "--tol", "2e-6"]
     for name, value in switches:
         words += ["--set", f"{name}={value}"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)

@@ -70,7 +70,8 @@ pub struct BenchArgs {
     /// Time step, s, held fixed (P1: pseudo-time of the whole load; P3: longest step)
     #[arg(long, value_name = "DT")]
     pub dt: Option<f64>,
-    /// Tolerance of the implicit method, m
+    /// Tolerance of the implicit method, m [default of W: the scene's if it has one, else 1e-5, less for wire thinner
+    /// than 0.7 mm]
     #[arg(long, value_name = "TOL")]
     pub tol: Option<f64>,
     /// Method: implicit, verlet or rk4

@@ -103,17 +103,32 @@ fn elastic_wire() -> Result<Section, BenchError> {
 ///
 /// Without twist: the problems are plane and the implicit method has none.
 fn cantilever(section: Section, points: &[V3], rest: Vec<f64>) -> System {
-    let mut sys = System::new(section, Rod::through(points, Some(rest)));
+    let mut rod = Rod::through(points, Some(rest));
+    rod.refine_clamp();
+    let mut sys = System::new(section, rod);
     sys.twist = Twist::Off;
     sys.support[0] = Support::clamped(points[0], frame_along(&V3::x(), None));
     sys.refresh();
     sys
 }
 
-/// `count + 1` points along +x from the origin.
-fn along_x(length: f64, count: usize) -> Vec<V3> {
-    (0..=count)
-        .map(|i| V3::new(length * i as f64 / count as f64, 0.0, 0.0))
+/// Lengths of `count` even edges but for the first, which is as short as a clamp is exact with, m.
+fn clamped_edges(length: f64, count: usize) -> Vec<f64> {
+    let h = length / (count as f64 - 1.0 + Rod::FIRST_EDGE);
+    let mut rest = vec![h; count];
+    rest[0] = length - h * (count as f64 - 1.0);
+    rest
+}
+
+/// Points along +x from the origin with `rest` between them.
+fn along_x(rest: &[f64]) -> Vec<V3> {
+    let mut x = 0.0;
+    std::iter::once(0.0)
+        .chain(rest.iter().map(|l| {
+            x += l;
+            x
+        }))
+        .map(|x| V3::new(x, 0.0, 0.0))
         .collect()
 }
 

@@ -8,7 +8,7 @@
 use super::args::BenchArgs;
 use super::record::{Details, Outcome};
 use super::watch::Watch;
-use super::{BenchError, along_x, cantilever, elastic_wire};
+use super::{BenchError, along_x, cantilever, clamped_edges, elastic_wire};
 use crate::integrate::{Implicit, Scheme};
 use crate::math::V3;
 use crate::rod::Section;
@@ -50,8 +50,8 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
     };
 
     let watch = Watch::start();
-    let points = along_x(LENGTH, n);
-    let mut sys = cantilever(section, &points, vec![LENGTH / n as f64; n]);
+    let rest = clamped_edges(LENGTH, n);
+    let mut sys = cantilever(section, &along_x(&rest), rest);
     let mut method = Implicit::new(Scheme::Bdf2, ON_THE_WAY, 1e-9, f64::INFINITY);
     let mut share = 0.0;
     let mut piece = (3.0 * FIRST_MOVE / (a * LENGTH)).min(0.5);

@@ -1,6 +1,6 @@
 //! Where energy comes from and where it goes.
 
-use super::system::System;
+use super::system::{Mass, System};
 use crate::rod::stored_energy;
 
 /// Where energy came from and went, J, since the start.
@@ -87,6 +87,23 @@ impl System {
         free.map(|i| 0.5 * self.rod.mass(&self.section, i) * self.rod.v[i].norm_squared())
             .sum::<f64>()
             + spin
+            - self.kinetic_between()
+    }
+
+    /// What lumped mass has too much of motion energy where it is not lumped, J.
+    fn kinetic_between(&self) -> f64 {
+        if self.mass == Mass::Lumped {
+            return 0.0;
+        }
+        let v = &self.rod.v;
+        (0..self.rod.edges())
+            .map(|j| 0.5 * self.mass_between(j) * (v[j + 1] - v[j]).norm_squared())
+            .sum()
+    }
+
+    /// Mass that couples the two ends of edge `j` where it is not lumped, kg.
+    pub(super) fn mass_between(&self, j: usize) -> f64 {
+        self.section.mass_per_length() * self.rod.rest[j] / 6.0
     }
 
     /// Energy that the books cannot explain, J: what should be there minus what is.

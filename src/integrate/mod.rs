@@ -22,5 +22,5 @@ pub use relax::{Limits, RelaxError, Relaxed, ramp, relax};
 pub(crate) use saved::SavedSystem;
 pub use stability::{RK4_LIMIT, VERLET_LIMIT, highest_frequency, longest_step};
 pub use support::{Spindle, Support, turn_about_y};
-pub use system::{Loads, System};
+pub use system::{Loads, Mass, System};
 pub use twist::Twist;

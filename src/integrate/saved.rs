@@ -48,6 +48,7 @@ impl System {
             section: _,
             laws: _,
             rod,
+            mass: _,
             support,
             spindle,
             loads: _,

@@ -25,6 +25,9 @@ pub struct Rod {
     pub bend: Vec<Bend>,
     /// plastic twist per joint (node)
     pub twist: Vec<Scalar>,
+    /// length that the first joint leaves to the second, m: see [`Rod::refine_clamp`]; no scene has it
+    #[serde(skip)]
+    pub lead: f64,
 }
 
 impl Rod {
@@ -47,6 +50,25 @@ impl Rod {
             stretch: vec![Scalar::default(); edges],
             bend: vec![Bend::default(); points.len()],
             twist: vec![Scalar::default(); points.len()],
+            lead: 0.0,
+        }
+    }
+
+    /// Length of the first edge over that of all others with which a clamp at the start is exact to one order more
+    /// after [`Rod::refine_clamp`].
+    pub const FIRST_EDGE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+    /// Makes a clamp at the start exact to third order: fourth if the first edge is [`Rod::FIRST_EDGE`] of the next.
+    ///
+    /// A joint bends the wire as much as the length does that it stands for. So where the wire is clamped its slope and place
+    /// are quadratures over the joints, by the trapezoid rule, whose error is that of the end: `h^2/12` of the
+    /// integrand's slope there, `h^2/6` of the wire's change of curvature as an angle all along the wire. A share of the first
+    /// joint given to the second takes it away (Gregory's rule, with weights 5/12 and 13/12 for even edges), and a
+    /// first edge shorter by `1/sqrt 2` the next term too, from `a + b = l0 + h/2`, `b l0 = (l0^2 + h l0)/2 + h^2/12`,
+    /// `b l0^2 = l0 (l0 + h)(2 l0 + h)/6`.
+    pub fn refine_clamp(&mut self) {
+        if let [first, second, ..] = self.rest[..] {
+            self.lead = second * second / (12.0 * first);
         }
     }
 
@@ -61,11 +83,16 @@ impl Rod {
     }
 
     /// Length that joint `i` stands for: half of each neighbouring edge (at a clamped end only
-    /// the one inside edge), m.
+    /// the one inside edge), and what the first leaves to the second, m.
     pub fn voronoi(&self, i: usize) -> f64 {
         let before = if i > 0 { self.rest[i - 1] } else { 0.0 };
         let after = if i < self.edges() { self.rest[i] } else { 0.0 };
-        0.5 * (before + after)
+        let lead = match i {
+            0 => -self.lead,
+            1 => self.lead,
+            _ => 0.0,
+        };
+        0.5 * (before + after) + lead
     }
 
     /// Unit direction of edge `j`.

@@ -19,7 +19,7 @@ pub(in crate::integrate) use model::{point_length, spline_point};
 pub use scheme::{Past, Scheme};
 pub use tangent::Seen;
 
-use super::{Banded, Spindle, Support, System, Twist, turn_about_y};
+use super::{Banded, Mass, Spindle, Support, System, Twist, turn_about_y};
 use crate::math::{Quat, Spin, V3};
 use crate::rod::{Joint, Knees, Rod, align, rotate};
 use model::Model;
@@ -95,6 +95,8 @@ struct Work<const D: usize> {
     /// lab-frame `x*` and `v*`
     star: [Vec<V3>; 2],
     mass: Vec<f64>,
+    /// mass that couples the ends of each edge; none where it is lumped
+    between: Vec<f64>,
     /// plastic curvature per joint as a vector, 1/m
     set: Vec<V3>,
     /// stretch of each edge at the last evaluation and at the accepted iterate
@@ -398,6 +400,11 @@ impl<const D: usize> Work<D> {
         w.guess.clear();
         w.target.clear();
         w.mass.clear();
+        w.between.clear();
+        if sys.mass == Mass::Consistent {
+            w.between
+                .extend((0..rod.edges()).map(|j| sys.mass_between(j)));
+        }
         for s in &mut w.star {
             s.clear();
         }

@@ -59,7 +59,7 @@ impl Model<'_> {
         work.evaluations += 1;
         let nodes = work.q.len();
         let (rod, stretch) = self.rod_and_inertia::<D, HESSIAN>(work);
-        let energy = rod + self.loads::<D, HESSIAN>(work);
+        let energy = rod + self.loads::<D, HESSIAN>(work) - self.between::<D, HESSIAN>(work);
         let mut value = Value {
             merit: energy + stretch.merit,
             now: energy + stretch.now,
@@ -95,6 +95,28 @@ impl Model<'_> {
                 pin(i, 2);
             }
         }
+    }
+
+    /// What lumped inertia has too much where mass is not lumped: `m_e / 12 |d_b - d_a|^2 / gamma^2` of an edge whose
+    /// ends are `d` away from where they would fly.
+    fn between<const D: usize, const HESSIAN: bool>(&self, work: &mut Work<D>) -> f64 {
+        let mut energy = 0.0;
+        for (j, m) in work.between.iter().enumerate() {
+            let k = m / (self.gamma * self.gamma);
+            let apart = (work.q[j + 1] - work.target[j + 1]) - (work.q[j] - work.target[j]);
+            energy += 0.5 * k * apart.norm_squared();
+            work.gradient[j] += apart * k;
+            work.gradient[j + 1] -= apart * k;
+            if HESSIAN {
+                for a in 0..3 {
+                    work.matrix.add_to_entry(j, a, -k);
+                    work.matrix.add_to_entry(j + 1, a, -k);
+                }
+                work.matrix
+                    .add(j, 1, &combine(|r, c| if r == c { k } else { 0.0 }));
+            }
+        }
+        energy
     }
 
     fn loads<const D: usize, const HESSIAN: bool>(&self, work: &mut Work<D>) -> f64 {
