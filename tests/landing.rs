@@ -157,3 +157,30 @@ fn after_a_long_flight_in_steps_of_any_length() {
         assert!(0.0 < depth && depth < limit, "{onto:?}: {depth} d");
     }
 }
+
+/// What a landing takes from the motion is booked as lost in it, however the step that it falls into is cut: by the forces at the ends
+/// of that step alone, up to half of the motion would be unexplained.
+#[test]
+fn the_books_know_the_blow() {
+    let scene = scene();
+    for fixed in [2e-6, 10e-6, 27e-6, 60e-6] {
+        let mut sys = falling(&scene, Onto::Flat, FALL);
+        let motion = sys.kinetic();
+        sys.books.initial = motion;
+        let mut method = Implicit::new(Scheme::Bdf2, scene.solver.tolerance, 1e-9, 0.1);
+        method.fixed = Some(fixed);
+        while sys.deepest == 0.0 {
+            method.step(&mut sys, 1.0).expect("a step");
+        }
+        let unexplained = sys.energy_residual(None) / motion;
+        assert!(
+            unexplained.abs() < 1e-3,
+            "steps of {fixed} s: {unexplained}"
+        );
+        let books = sys.books;
+        assert!(
+            books.damping > 0.1 * motion && books.damping + books.numerical < motion,
+            "steps of {fixed} s: {books:?}"
+        );
+    }
+}

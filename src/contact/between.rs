@@ -483,10 +483,10 @@ impl Between {
         any
     }
 
-    /// Takes the wire at `q` over as accepted: bristles move on, slip is booked.
+    /// Takes the wire at `q` over as accepted: bristles move on, slip and blows are booked, see [`super::LineContact::commit`].
     pub fn commit(
         &mut self,
-        law: &ContactLaw,
+        (law, onset): (&ContactLaw, f64),
         (q, last): (&[V3], &[V3]),
         length: impl Fn(usize) -> f64,
     ) {
@@ -505,14 +505,22 @@ impl Between {
             let n = pair.normal;
             let b = pair.bristle + way;
             let b = b - n * b.dot(&n);
-            let k_t = law.stiffness * length(pair.point as usize) * TANGENTIAL_SHARE;
+            let stiffness = law.stiffness * length(pair.point as usize);
+            let k_t = stiffness * TANGENTIAL_SHARE;
             let size = b.norm();
+            let deeper = -way.dot(&n);
+            let lands = !pair.held && deeper >= pair.depth;
+            if lands {
+                let (energy, force, _) = onset_law(pair.depth, onset);
+                self.loss.damping += stiffness * (0.5 * force * deeper - energy);
+            }
+            let share = if lands { 0.5 } else { 1.0 };
             pair.held = true;
             pair.bristle = b;
             if k_t * size > pair.fresh {
                 let kept = pair.fresh / k_t;
                 pair.bristle = b * (kept / size);
-                self.loss.friction += pair.fresh * (size - kept);
+                self.loss.friction += share * pair.fresh * (size - kept);
             }
         }
     }

@@ -48,6 +48,8 @@ pub struct LineContact {
     pub radius: f64,
     /// totals of what was lost
     pub loss: ContactLoss,
+    /// work that touches which ended in the step in hand seem to do by their forces at its ends, J
+    pub lifted: f64,
     /// take the friction limits of the iterate before instead of the present one's. A guess may be deep
     /// in what it lands on; friction from such a normal force would throw the wire sideways.
     pub hold_limits: bool,
@@ -110,6 +112,7 @@ impl LineContact {
             damping: 0.0,
             radius,
             loss: ContactLoss::default(),
+            lifted: 0.0,
             hold_limits: false,
             height: 0.0,
             deepest: 0.0,
@@ -132,6 +135,7 @@ impl LineContact {
             damping: _,
             radius: _,
             loss,
+            lifted: _,
             hold_limits,
             height,
             deepest,
@@ -594,8 +598,12 @@ impl LineContact {
         }
     }
 
-    /// Takes `p` over as the accepted place of point `k`: anchors move on, slip is booked.
+    /// Takes `p` over as the accepted place of point `k`: anchors move on, slip and blows are booked.
     /// Returns the force on the point, core frame, N.
+    ///
+    /// The books take half the sum of the forces at both ends of a step for what acted on its way. A touch that begins within the step
+    /// acted for the last of the way only and stored what its law says: the rest of its work was taken from the motion for
+    /// good, the blow of a landing, and of its slip half. One that ended acted at the beginning only.
     pub fn commit(&mut self, k: usize, p: V3, length: f64, own: f64, step: f64) -> V3 {
         let force = self
             .push(k, p, length, own, step)
@@ -603,19 +611,30 @@ impl LineContact {
         let k_t = self.law.stiffness * length * TANGENTIAL_SHARE;
         let point = &mut self.points[k];
         let last = point.last;
+        let stiffness = self.law.stiffness * length;
         for t in &mut point.touch[..=point.passages] {
             (t.lag, t.kept) = (t.fresh, t.fresh);
+            let out = (p - last).dot(&t.normal);
             if t.depth <= 0.0 {
+                if t.held && out >= t.before {
+                    let (energy, force, _) = onset_law(t.before, self.onset);
+                    self.lifted += stiffness * (0.5 * force * out - energy);
+                }
                 t.held = false;
                 t.before = 0.0;
                 continue;
             }
             let brake = self.damping / (self.law.stiffness * step);
-            if brake > 0.0 {
-                let way = t.depth - t.before;
-                let spring = onset_law(t.depth, self.onset).1;
+            let lands = !t.held && -out >= t.depth;
+            if lands || brake > 0.0 {
+                let (energy, spring, _) = onset_law(t.depth, self.onset);
                 let all = damped_law(t.depth, self.onset, brake, t.before).1;
-                self.loss.damping += self.law.stiffness * length * (all - spring) * way;
+                self.loss.damping += stiffness
+                    * if lands {
+                        -0.5 * all * out - energy
+                    } else {
+                        (all - spring) * (t.depth - t.before)
+                    };
             }
             t.before = t.depth;
             self.deepest = self.deepest.max(t.depth);
@@ -623,13 +642,14 @@ impl LineContact {
             let (braked, k_braked) = bristle(t, p, last, k_t, brake);
             let (size, pull) = (b.norm(), k_braked * braked.norm());
             t.held = true;
+            let share = if lands { 0.5 } else { 1.0 };
             t.anchor = p - b;
             if pull > t.fresh {
                 // the spring's part of it, which a dashpot may have kept from stretching so far
                 let kept = (t.fresh / k_t).min(size);
                 let dir = braked * (k_braked / pull);
                 t.anchor = p - dir * kept;
-                self.loss.friction += t.fresh * (size - kept);
+                self.loss.friction += share * t.fresh * (size - kept);
             }
         }
         point.last = p;

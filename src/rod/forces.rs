@@ -52,6 +52,10 @@ pub struct Load {
     pub plastic: [f64; 3],
     /// elastic energy of the rod, J
     pub stored: f64,
+    /// what yielding joints took more than half the sum of their moments before and after times their way, J, when
+    /// committed at once
+    #[serde(skip)]
+    pub beyond: f64,
 }
 
 impl Load {

@@ -111,6 +111,9 @@ impl Implicit {
             0.0
         };
         let held = 0.5 * (sys.unbalanced + before.2) * turned;
+        // (the work of joints that yield within the step is known better than by their moments at its ends: one that goes from yielding one
+        // way to yielding the other seems to do none)
+        work -= sys.load.beyond;
         sys.books.numerical += work - held - (sys.kinetic() - kinetic - gained);
         let past = &mut sys.past;
         std::mem::swap(&mut past.x, &mut w.start);
@@ -281,9 +284,10 @@ impl System {
             }
             self.deepest = self.deepest.max(line.deepest);
             moment += between_forces(line, rod, force, &self.past, spin, (diameter, step), commit);
-            let between = line.between.as_ref().map_or(0.0, |b| b.loss.friction);
-            self.books.friction = line.loss.friction + between;
-            self.books.damping = line.loss.damping;
+            let between = line.between.as_ref().map(|b| b.loss).unwrap_or_default();
+            self.books.friction = line.loss.friction + between.friction;
+            self.books.damping = line.loss.damping + between.damping;
+            self.books.numerical -= std::mem::take(&mut line.lifted);
         }
         self.torque_on_core = moment + self.clamp_torque();
         self.hold_unbalanced();
@@ -342,7 +346,7 @@ fn between_forces(
         },
     );
     if commit {
-        between.commit(law, (&q, last), |point| point_length(rod, point));
+        between.commit((law, *onset), (&q, last), |point| point_length(rod, point));
         *deepest = deepest.max(between.deepest());
     }
     between.scratch = q;

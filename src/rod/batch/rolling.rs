@@ -322,9 +322,12 @@ impl RollingJoints {
         load.plastic = [0.0; 3];
         load.clamp_moment = [V3::zeros(); 2];
         load.stored = 0.0;
+        load.beyond = 0.0;
         for j in 0..=self.edges {
             let (block, row) = (j / ROWS, j % ROWS);
             let end = (j == 0, j == self.edges);
+            let was = || Joint::between(&rod.frame[j - 1], &rod.frame[j]);
+            let inner = !end.0 && !end.1;
             let missing = (end.0 && clamp[0].is_none()) || (end.1 && clamp[1].is_none());
             let (mut m, mut torque) = ([0.0; 2], 0.0);
             if !missing {
@@ -335,17 +338,33 @@ impl RollingJoints {
                 let curvature = [angle[0] * inv, angle[1] * inv];
                 let (moment, bend, work) = respond_bend(&laws.bend, &rod.bend[j], curvature);
                 m = moment;
-                load.stored += 0.5 * (m[0] * m[0] + m[1] * m[1]) / laws.bend.modulus * lv;
+                load.stored += 0.5 * square(m) / laws.bend.modulus * lv;
                 if parts.commit && work > 0.0 {
+                    if inner {
+                        let before = was().bend.map(|angle| angle * inv);
+                        let old = respond_bend(&laws.bend, &rod.bend[j], before).0;
+                        let mean: f64 = (0..2)
+                            .map(|k| 0.5 * (m[k] + old[k]) * (curvature[k] - before[k]))
+                            .sum();
+                        let gained = 0.5 * (square(m) - square(old)) / laws.bend.modulus;
+                        load.beyond += (gained + work - mean) * lv;
+                    }
                     rod.bend[j] = bend;
                     load.plastic[0] += work * lv;
                 }
                 if parts.twist {
-                    let twist = angles.get(TWIST, row) * inv;
-                    let (t, twist, work) = respond_scalar(&laws.twist, &rod.twist[j], twist);
+                    let rate = angles.get(TWIST, row) * inv;
+                    let (t, twist, work) = respond_scalar(&laws.twist, &rod.twist[j], rate);
                     torque = t;
                     load.stored += 0.5 * t * t / laws.twist.modulus * lv;
                     if parts.commit && work > 0.0 {
+                        if inner {
+                            let before = was().twist * inv;
+                            let old = respond_scalar(&laws.twist, &rod.twist[j], before).0;
+                            let gained = 0.5 * (t * t - old * old) / laws.twist.modulus;
+                            let mean = 0.5 * (t + old) * (rate - before);
+                            load.beyond += (gained + work - mean) * lv;
+                        }
                         rod.twist[j] = twist;
                         load.plastic[1] += work * lv;
                     }
@@ -402,6 +421,10 @@ impl Joints for RollingJoints {
         );
         joints::<S, HESSIAN>(simd, all, first, out);
     }
+}
+
+fn square(m: [f64; 2]) -> f64 {
+    m[0] * m[0] + m[1] * m[1]
 }
 
 /// Columns of a clamp as an edge.
