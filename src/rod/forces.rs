@@ -52,8 +52,8 @@ pub struct Load {
     pub plastic: [f64; 3],
     /// elastic energy of the rod, J
     pub stored: f64,
-    /// what yielding joints took more than half the sum of their moments before and after times their way, J, when
-    /// committed at once
+    /// plastic work beyond what forces and moments at both ends of the step account for, J, see
+    /// [`beyond`](super::plasticity::beyond()), when committed at once
     #[serde(skip)]
     pub beyond: f64,
 }

@@ -97,6 +97,16 @@ pub fn respond_scalar(law: &Law, state: &Scalar, strain: f64) -> (f64, Scalar, f
     (law.modulus * (strain - next.strain), next, work)
 }
 
+/// Plastic `work` beyond what the mean of the forces `before` and `after` a step does on its `way` of plastic strain, per length.
+///
+/// On the elastic part of the way the mean of the two is exact. Where a step ends yielding that began yielding the other way it is
+/// nothing, and so would be the work.
+#[inline]
+pub fn beyond<const N: usize>(before: [f64; N], after: [f64; N], way: [f64; N], work: f64) -> f64 {
+    let mean = |k: usize| 0.5 * (before[k] + after[k]) * way[k];
+    work - (0..N).map(mean).sum::<f64>()
+}
+
 /// Plastic state of bending: curvature in the joint's mid frame, yield on its norm.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bend {

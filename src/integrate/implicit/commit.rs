@@ -111,8 +111,7 @@ impl Implicit {
             0.0
         };
         let held = 0.5 * (sys.unbalanced + before.2) * turned;
-        // (the work of joints that yield within the step is known better than by their moments at its ends: one that goes from yielding one
-        // way to yielding the other seems to do none)
+        // (what yields within the step is known better than by the forces at its ends)
         work -= sys.load.beyond;
         sys.books.numerical += work - held - (sys.kinetic() - kinetic - gained);
         let past = &mut sys.past;

@@ -5,7 +5,7 @@ use super::{GRADIENT, JOINT, Joints, RollingJoints, TORQUE};
 use crate::lanes::{Block, Lanes, ROWS, WithSimd, run};
 use crate::math::{Quat, V3};
 use crate::rod::forces::{ForceParts, Laws, Load};
-use crate::rod::plasticity::respond_scalar;
+use crate::rod::plasticity::{beyond, respond_scalar};
 use crate::rod::state::Rod;
 use pulp::Simd;
 
@@ -47,10 +47,15 @@ impl Forces {
             let (tension, state, work) =
                 respond_scalar(&laws.stretch, &rod.stretch[j], length / rod.rest[j] - 1.0);
             load.stored += 0.5 * tension * tension / laws.stretch.modulus * rod.rest[j];
-            load.tension[j] = tension;
+            let was = std::mem::replace(&mut load.tension[j], tension);
             load.torque[j] = 0.0;
             load.tangent[j] = self.along[j];
             if parts.commit && work > 0.0 {
+                // (the edge at the nozzle grows: what it takes is booked with that)
+                if j + 1 < edges {
+                    let way = state.strain - rod.stretch[j].strain;
+                    load.beyond += beyond([was], [tension], [way], work) * rod.rest[j];
+                }
                 rod.stretch[j] = state;
                 load.plastic[2] += work * rod.rest[j];
             }

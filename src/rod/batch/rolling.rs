@@ -9,7 +9,7 @@ use crate::math::{Quat, V3};
 use crate::rod::forces::{ForceParts, Laws, Load};
 use crate::rod::joint::{Joint, align, rotate};
 use crate::rod::knee::{Knee, Knees};
-use crate::rod::plasticity::{Bend, Scalar, respond_bend, respond_scalar};
+use crate::rod::plasticity::{Bend, Scalar, beyond, respond_bend, respond_scalar};
 use crate::rod::state::Rod;
 use crate::rod::twisted::{Turned, answer, twist_by};
 use pulp::Simd;
@@ -338,16 +338,14 @@ impl RollingJoints {
                 let curvature = [angle[0] * inv, angle[1] * inv];
                 let (moment, bend, work) = respond_bend(&laws.bend, &rod.bend[j], curvature);
                 m = moment;
-                load.stored += 0.5 * square(m) / laws.bend.modulus * lv;
+                load.stored += 0.5 * (m[0] * m[0] + m[1] * m[1]) / laws.bend.modulus * lv;
                 if parts.commit && work > 0.0 {
                     if inner {
                         let before = was().bend.map(|angle| angle * inv);
                         let old = respond_bend(&laws.bend, &rod.bend[j], before).0;
-                        let mean: f64 = (0..2)
-                            .map(|k| 0.5 * (m[k] + old[k]) * (curvature[k] - before[k]))
-                            .sum();
-                        let gained = 0.5 * (square(m) - square(old)) / laws.bend.modulus;
-                        load.beyond += (gained + work - mean) * lv;
+                        let set = rod.bend[j].curvature;
+                        let way = [0, 1].map(|k| bend.curvature[k] - set[k]);
+                        load.beyond += beyond(old, m, way, work) * lv;
                     }
                     rod.bend[j] = bend;
                     load.plastic[0] += work * lv;
@@ -361,9 +359,8 @@ impl RollingJoints {
                         if inner {
                             let before = was().twist * inv;
                             let old = respond_scalar(&laws.twist, &rod.twist[j], before).0;
-                            let gained = 0.5 * (t * t - old * old) / laws.twist.modulus;
-                            let mean = 0.5 * (t + old) * (rate - before);
-                            load.beyond += (gained + work - mean) * lv;
+                            let way = twist.strain - rod.twist[j].strain;
+                            load.beyond += beyond([old], [t], [way], work) * lv;
                         }
                         rod.twist[j] = twist;
                         load.plastic[1] += work * lv;
@@ -421,10 +418,6 @@ impl Joints for RollingJoints {
         );
         joints::<S, HESSIAN>(simd, all, first, out);
     }
-}
-
-fn square(m: [f64; 2]) -> f64 {
-    m[0] * m[0] + m[1] * m[1]
 }
 
 /// Columns of a clamp as an edge.
