@@ -146,6 +146,8 @@ impl Pair {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Between {
     pairs: Vec<Pair>,
+    /// the live wire begins at a seam with frozen wire
+    pub(super) goes_on: bool,
     /// those of the step before, while the next ones are listed
     #[serde(skip)]
     old: Vec<Pair>,
@@ -226,6 +228,14 @@ impl Between {
         }
     }
 
+    /// The live wire as what other wire touches.
+    fn curve<'a>(&self, q: &'a [V3]) -> Curve<'a> {
+        Curve {
+            points: q,
+            seams: [self.goes_on, false],
+        }
+    }
+
     /// Lists the pairs for a step from `q` that is expected to lead to `guess` (core frame); `rest` are the
     /// edges' unstretched lengths.
     #[inline(never)]
@@ -246,6 +256,7 @@ impl Between {
         if last.0 < 0.0 {
             self.angle.iter_mut().for_each(|a| *a = -*a);
         }
+        let curve = self.curve(q);
         let arc = &self.arc;
         std::mem::swap(&mut self.pairs, &mut self.old);
         self.pairs.clear();
@@ -285,8 +296,8 @@ impl Between {
                 while *near > 0 && self.angle[*near - 1] >= back {
                     *near -= 1;
                 }
-                let foot = Curve(q).foot(p, *near as u32);
-                let gap = foot.distance - diameter;
+                let foot = curve.foot(p, *near as u32);
+                let gap = -foot.depth(diameter);
                 let other = foot.segment as usize;
                 if arc[other] > own || (self.angle[other] - back).abs() > WINDOW {
                     continue;
@@ -372,14 +383,14 @@ impl Between {
     ) {
         self.cross.clear();
         self.near.clear();
-        let curve = Curve(q);
+        let curve = self.curve(q);
         for pair in &mut self.pairs {
             let young = point_weights(pair.point as usize);
             let p = place(q, &young);
             let foot = curve.foot(p, pair.segment);
             pair.segment = foot.segment;
             (pair.share, pair.normal) = (foot.share, foot.normal);
-            pair.depth = diameter - foot.distance;
+            pair.depth = foot.depth(diameter);
             let old = curve.weights(foot.segment as usize, foot.share);
             let minus = (old.0, old.1.map(|w| -w));
             let stiffness = law.stiffness * length(pair.point as usize);
@@ -433,6 +444,7 @@ impl Between {
         mut correct: impl FnMut(&Triple, &Triple, &Block, &V3),
     ) -> bool {
         let mut any = false;
+        let curve = self.curve(there);
         let enough = foresight(diameter);
         for near in &mut self.near {
             let relative = |q: &[V3]| place(q, &near.young) + place(q, &near.old);
@@ -445,9 +457,9 @@ impl Between {
             }
             let now = self.pairs[near.pair as usize];
             let p = place(there, &near.young);
-            let foot = Curve(there).foot(p, now.segment);
+            let foot = curve.foot(p, now.segment);
             let pair = Pair {
-                depth: diameter - foot.distance,
+                depth: foot.depth(diameter),
                 normal: foot.normal,
                 ..now
             };
@@ -490,7 +502,7 @@ impl Between {
         (q, last): (&[V3], &[V3]),
         length: impl Fn(usize) -> f64,
     ) {
-        let curve = Curve(q);
+        let curve = self.curve(q);
         for pair in &mut self.pairs {
             (pair.lag, pair.kept) = (pair.fresh, pair.fresh);
             if pair.depth <= 0.0 {

@@ -80,6 +80,8 @@ pub(crate) struct SavedLine {
     deepest: f64,
     /// wire that was taken back counts as well
     height: f64,
+    /// nodes with which the frozen wire goes on
+    ahead: Option<[(V3, f64); 2]>,
     hold_limits: bool,
     between: Option<Between>,
 }
@@ -150,6 +152,7 @@ impl LineContact {
             loss: *loss,
             deepest: *deepest,
             height: *height,
+            ahead: self.tube.ahead(),
             hold_limits: *hold_limits,
             between: between.clone(),
         }
@@ -164,16 +167,29 @@ impl LineContact {
     }
 
     /// Takes a saved state over; `wire` is the frozen wire, places and arc lengths, and `nodes` the number of
-    /// live ones. Says what is impossible about it.
+    /// live ones. No edge is as long as `far`. Says what is impossible about it.
     pub(crate) fn restore(
         &mut self,
         saved: SavedLine,
         wire: impl Iterator<Item = (V3, f64)>,
         nodes: usize,
+        far: f64,
     ) -> Result<(), &'static str> {
         let mut fresh = Self::new(self.shape.clone(), self.law, self.radius, nodes);
         wire.for_each(|(point, arc)| fresh.lay(point, arc));
-        let frozen = fresh.tube.len() as u32;
+        let mut last = (fresh.tube.points().last().copied()).zip(fresh.tube.arc().last().copied());
+        for (point, arc) in saved.ahead.into_iter().flatten() {
+            let sound = last.is_some_and(|(before, so_far)| {
+                let way = (point - before).norm();
+                way > 0.0 && way < far && arc >= so_far
+            });
+            if !sound {
+                return Err("frozen wire goes on as none");
+            }
+            last = Some((point, arc));
+        }
+        fresh.tube.go_on(saved.ahead);
+        let frozen = fresh.tube.controls().len() as u32;
         if saved.points.len() != 2 * nodes {
             return Err("contact points do not go with the nodes");
         }
@@ -207,7 +223,7 @@ impl LineContact {
         let skin = SKIN * 2.0 * self.tube.radius();
         let wire = self.radius + self.tube.radius();
         // the node before got its share of the curve changed as well
-        let laid = &self.tube.points()[from.saturating_sub(2)..];
+        let laid = &self.tube.controls()[from.saturating_sub(2)..];
         for p in &mut self.points {
             let reach = wire + p.reach.max(skin);
             let near = |ends: &[V3]| {
@@ -284,6 +300,26 @@ impl LineContact {
             .height
             .max(self.shape.nearness(point).distance + self.radius);
         self.tube.push(point, arc);
+    }
+
+    /// From here on the frozen wire goes on with these live nodes, core frame and unstretched lengths from the clamp, the clamp's first; with
+    /// `None` it ends, and more of it can be laid or taken up.
+    pub fn go_on(&mut self, ahead: Option<[(V3, f64); 2]>) {
+        self.tube.go_on(ahead);
+        self.meet();
+    }
+
+    /// Tells live wire whether it begins at a seam.
+    fn meet(&mut self) {
+        if let Some(between) = &mut self.between {
+            between.goes_on = self.tube.ahead().is_some();
+        }
+    }
+
+    /// From now on live wire may touch live wire.
+    pub fn watch_live_wire(&mut self) {
+        self.between.get_or_insert_default();
+        self.meet();
     }
 
     /// Depth of the deepest touch of node `i` and the halves of its edges, m; 0: none.
@@ -363,8 +399,8 @@ impl LineContact {
         let mut nearest = f64::INFINITY;
         for &start in &self.found {
             let foot = self.tube.foot(p, start);
-            nearest = nearest.min(foot.distance - wire);
-            if foot.distance - wire > skin || count == PASSAGES {
+            nearest = nearest.min(-foot.depth(wire));
+            if -foot.depth(wire) > skin || count == PASSAGES {
                 continue;
             }
             // the passage keeps its friction: it is the one whose segment is close by along the wire
@@ -464,7 +500,7 @@ impl LineContact {
                     (point.touch[slot].depth, point.touch[slot].fresh) = (0.0, 0.0);
                     continue;
                 }
-                (*radius + tube.radius() - foot.distance, foot.normal)
+                (foot.depth(*radius + tube.radius()), foot.normal)
             };
             let touch = &mut point.touch[slot];
             touch.depth = depth;
@@ -517,7 +553,7 @@ impl LineContact {
             } else {
                 let foot = self.tube.foot(p, touch.start);
                 let wire = self.radius + self.tube.radius();
-                (wire - foot.distance, foot.normal)
+                (foot.depth(wire), foot.normal)
             };
             if depth > 0.0 {
                 let there = Touch {
@@ -688,18 +724,22 @@ impl LineContact {
         worst
     }
 
-    /// Energy stored in the touches of point `k` standing for `length`, J.
+    /// Energy stored in the touches of point `k` standing for `length`, J; also in those that a change of the wire has just
+    /// brought about, which no bristle holds yet.
     pub fn stored(&self, k: usize, length: f64) -> f64 {
         let k_n = self.law.stiffness * length;
         let point = &self.points[k];
         point.touch[..=point.passages]
             .iter()
-            .filter(|t| t.depth > 0.0 && t.held)
+            .filter(|t| t.depth > 0.0)
             .map(|t| {
+                let pressed = k_n * onset_law(t.depth, self.onset).0;
+                if !t.held {
+                    return pressed;
+                }
                 let b = point.last - t.anchor;
                 let b = b - t.normal * b.dot(&t.normal);
-                k_n * onset_law(t.depth, self.onset).0
-                    + 0.5 * k_n * TANGENTIAL_SHARE * b.norm_squared()
+                pressed + 0.5 * k_n * TANGENTIAL_SHARE * b.norm_squared()
             })
             .sum()
     }

@@ -18,6 +18,13 @@
 //! the range of s: the wire starts at node 0 with s = 1/2 in segment 0 and ends at node n-1 with
 //! s = 1/2 in segment n-1. There are as many segments as nodes, and C' is continuous throughout.
 //!
+//! # Seams
+//!
+//! Where wire goes on as other wire, frozen wire as live wire, neither ends. Both have the edge in common that lies about
+//! the seam, so both curves pass its middle in its direction, and there the one ends and the other begins. What lies
+//! beyond is the other's: its foot is at the end, with [`Foot::beyond`] above zero, and it touches nothing of this one. A wire that
+//! simply ended here would be a chord where it lies bent, off by an eighth of the second difference of its nodes.
+//!
 //! # The foot of a point p
 //!
 //! Half the derivative of the squared distance, g(s) = (C - p) C', is a cubic on a segment. Where it
@@ -47,9 +54,14 @@ pub struct SplineTube {
     radius: f64,
     points: Vec<V3>,
     arc: Vec<f64>,
+    /// the last two nodes are those of the wire it goes on with
+    goes_on: bool,
     /// all segments but the last, which changes with the next node
     grid: Grid,
 }
+
+/// Nodes of a wire on the far side of a seam that this side has as well.
+const SHARED: usize = 2;
 
 /// The point of the centreline nearest to a point p, in one passage of the wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,6 +78,21 @@ pub struct Foot {
     pub normal: V3,
     /// whether the wire ends here, and p may lie beyond its end
     pub at_end: bool,
+    /// how far past a seam p lies, m
+    pub beyond: f64,
+}
+
+impl Foot {
+    /// Depth of a point in what lies within `reach` of the centreline, m; negative: it is at least so far off.
+    #[inline(always)]
+    pub fn depth(&self, reach: f64) -> f64 {
+        let depth = reach - self.distance;
+        if self.beyond > 0.0 {
+            depth.min(-self.beyond)
+        } else {
+            depth
+        }
+    }
 }
 
 /// Where on a segment, or beyond which end of it, a minimum lies.
@@ -95,13 +122,14 @@ impl SplineTube {
             radius,
             points: Vec::new(),
             arc: Vec::new(),
+            goes_on: false,
             grid: Grid::new(CELL * 2.0 * radius),
         }
     }
 
-    /// Number of nodes, and of segments once there are two.
+    /// Number of its own nodes, and of segments once there are two.
     pub fn len(&self) -> usize {
-        self.points.len()
+        self.points.len() - self.shared()
     }
 
     /// Whether there is no wire.
@@ -109,23 +137,55 @@ impl SplineTube {
         self.points.is_empty()
     }
 
+    fn shared(&self) -> usize {
+        if self.goes_on { SHARED } else { 0 }
+    }
+
     /// Radius of the wire, m.
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
-    /// Nodes, the control points of the centreline, core frame, m.
+    /// Its own nodes, control points of the centreline, core frame, m.
     pub fn points(&self) -> &[V3] {
+        &self.points[..self.len()]
+    }
+
+    /// Control points of the centreline, those of the wire that it goes on with included, core frame, m.
+    pub fn controls(&self) -> &[V3] {
         &self.points
     }
 
-    /// Unstretched length from the clamp to each node, m.
+    /// Unstretched length from the clamp to each of its nodes, m.
     pub fn arc(&self) -> &[f64] {
-        &self.arc
+        &self.arc[..self.len()]
     }
 
-    /// Appends a node apart from the last one; `arc` grows along the wire.
+    /// The nodes of the wire that it goes on with, and their arc lengths, if it does.
+    pub fn ahead(&self) -> Option<[(V3, f64); SHARED]> {
+        let own = self.len();
+        self.goes_on
+            .then(|| [own, own + 1].map(|k| (self.points[k], self.arc[k])))
+    }
+
+    /// From here on the wire goes on with these nodes and arc lengths, or ends.
+    pub fn go_on(&mut self, ahead: Option<[(V3, f64); SHARED]>) {
+        for _ in 0..self.shared() {
+            self.goes_on = false;
+            self.pop();
+        }
+        if self.points.is_empty() {
+            return;
+        }
+        for (point, arc) in ahead.into_iter().flatten() {
+            self.push(point, arc);
+        }
+        self.goes_on = ahead.is_some();
+    }
+
+    /// Appends a node apart from the last one; `arc` grows along the wire, which goes on with nothing.
     pub fn push(&mut self, point: V3, arc: f64) {
+        debug_assert!(!self.goes_on, "the wire goes on with other wire");
         debug_assert!(self.points.last() != Some(&point), "wire of no length");
         debug_assert!(self.arc.last().is_none_or(|&last| last <= arc));
         self.points.push(point);
@@ -138,6 +198,7 @@ impl SplineTube {
 
     /// Takes the last node off again, with its arc length; the tube is then as before its push.
     pub fn pop(&mut self) -> Option<(V3, f64)> {
+        debug_assert!(!self.goes_on, "the wire goes on with other wire");
         if self.points.len() > 1 {
             let full = self.points.len() - 2;
             self.for_boxes(full, Grid::remove);
@@ -174,17 +235,26 @@ impl SplineTube {
         }
         let mut consider = |segment: u32| {
             let k = segment as usize;
-            if self.arc[k] <= own && self.may_reach(k, p, reach) && self.has_foot(k, p, reach) {
+            if self.arc_of(k) <= own && self.may_reach(k, p, reach) && self.has_foot(k, p, reach) {
                 out.push(segment);
             }
         };
         self.grid.visit_near(p, reach, |segments| {
             segments.iter().for_each(|&segment| consider(segment));
         });
-        consider(self.points.len() as u32 - 1);
+        if !self.goes_on {
+            consider(self.points.len() as u32 - 1);
+        }
         // a segment may have been met in several cells
         out.sort_unstable();
         out.dedup();
+    }
+
+    /// Arc length by which a segment is somebody's own wire or not: of its node, of the next at a seam, where the wire that goes on
+    /// begins on it.
+    fn arc_of(&self, segment: usize) -> f64 {
+        let at_seam = self.goes_on && segment + SHARED == self.points.len();
+        self.arc[segment + usize::from(at_seam)]
     }
 
     /// Whether a local minimum of the distance, within `reach`, lies on a segment.
@@ -209,7 +279,10 @@ impl SplineTube {
     /// The centreline.
     #[inline(always)]
     pub fn curve(&self) -> Curve<'_> {
-        Curve(&self.points)
+        Curve {
+            points: &self.points,
+            seams: [false, self.goes_on],
+        }
     }
 
     /// The foot of `p` on the passage that `start` belongs to, see [`Curve::foot`].
@@ -230,7 +303,8 @@ impl SplineTube {
         // t: segment plus share
         let distance = |t: f64| self.curve().piece(t as usize, p).arm(t.fract()).norm();
         let first = SAMPLES / 2;
-        let last = (self.points.len() - 1) * SAMPLES + SAMPLES / 2;
+        let half = if self.goes_on { 0 } else { SAMPLES / 2 };
+        let last = (self.points.len() - 1) * SAMPLES + half;
         let t_of = |i: usize| i as f64 / SAMPLES as f64;
         for i in first..=last {
             let here = distance(t_of(i));
@@ -255,7 +329,7 @@ impl SplineTube {
                 .curve()
                 .piece(segment, p)
                 .foot(p, segment, t.fract(), at_end);
-            if foot.distance <= reach && self.arc[segment] <= own {
+            if foot.distance <= reach && self.arc_of(segment) <= own {
                 feet.push(foot);
             }
         }
@@ -263,9 +337,14 @@ impl SplineTube {
     }
 }
 
-/// A centreline by its nodes, two at least: frozen wire, or live wire as it lies now.
+/// A centreline by its nodes, two at least, three between seams: frozen wire, or live wire as it lies now.
 #[derive(Clone, Copy, Debug)]
-pub struct Curve<'a>(pub &'a [V3]);
+pub struct Curve<'a> {
+    /// its nodes
+    pub points: &'a [V3],
+    /// whether it goes on as other wire before the first segment, and from the last on
+    pub seams: [bool; 2],
+}
 
 impl Curve<'_> {
     /// The foot of `p` in the passage of the wire that `start` (a segment) belongs to: downhill
@@ -276,10 +355,11 @@ impl Curve<'_> {
     /// its neighbour, and two starts end on one foot. After 64 joints it stops where it is.
     #[inline]
     pub fn foot(&self, p: V3, start: u32) -> Foot {
-        assert!(self.0.len() > 1, "a foot needs wire to stand on");
-        let segment = (start as usize).min(self.0.len() - 1);
+        assert!(self.points.len() > 1, "a foot needs wire to stand on");
+        let [first, last] = self.ends();
+        let segment = (start as usize).clamp(first, last);
         // By far the most frequent case: the foot is where it was, away from the wire's ends.
-        if segment > 0 && segment + 1 < self.0.len() {
+        if segment > 0 && segment + 1 < self.points.len() {
             let piece = self.inner_piece(segment, p);
             if piece.rises() {
                 return piece.foot(p, segment, piece.dip(), false);
@@ -294,7 +374,15 @@ impl Curve<'_> {
         let mut piece = self.piece(segment, p);
         for _ in 0..HOPS {
             match self.settle(segment, &piece) {
-                (Lies::At(s), at_end) => return piece.foot(p, segment, s, at_end),
+                (Lies::At(s), at_end) => {
+                    let foot = piece.foot(p, segment, s, at_end);
+                    let beyond = if at_end {
+                        self.beyond(segment, &piece, s)
+                    } else {
+                        0.0
+                    };
+                    return Foot { beyond, ..foot };
+                }
                 (Lies::Before, _) => segment -= 1,
                 (Lies::Beyond, _) => segment += 1,
             }
@@ -311,7 +399,7 @@ impl Curve<'_> {
     /// The edges before and after a node; at the wire's ends the one edge there is, twice.
     #[inline(always)]
     fn edges(&self, segment: usize) -> [V3; 2] {
-        let points = &self.0;
+        let points = &self.points;
         let here = points[segment];
         if segment == 0 {
             let edge = points[1] - here;
@@ -326,23 +414,23 @@ impl Curve<'_> {
 
     /// A segment as seen from `p`, with the range of it that is wire.
     fn piece(&self, segment: usize, p: V3) -> Piece {
-        let last = self.0.len() - 1;
+        let last = self.points.len() - 1;
         if segment > 0 && segment < last {
             return self.inner_piece(segment, p);
         }
-        let here = self.0[segment];
+        let here = self.points[segment];
         let [edge, _] = self.edges(segment);
         // the same operations as in the neighbour, so that g agrees at the joint
         let (start, low, g_low) = if segment == 0 {
             (here - edge * 0.5 - p, 0.5, (here - p).dot(&edge))
         } else {
-            let start = (self.0[segment - 1] + here) * 0.5 - p;
+            let start = (self.points[segment - 1] + here) * 0.5 - p;
             (start, 0.0, start.dot(&edge))
         };
         let (high, g_high) = if segment == last {
             (0.5, (here - p).dot(&edge))
         } else {
-            let end = (here + self.0[segment + 1]) * 0.5 - p;
+            let end = (here + self.points[segment + 1]) * 0.5 - p;
             (1.0, end.dot(&edge))
         };
         Piece {
@@ -360,7 +448,7 @@ impl Curve<'_> {
     /// [`Self::piece`] of a segment that is not at an end.
     #[inline(always)]
     fn inner_piece(&self, segment: usize, p: V3) -> Piece {
-        let [behind, here, ahead] = *self.0[segment - 1..]
+        let [behind, here, ahead] = *self.points[segment - 1..]
             .first_chunk()
             .expect("an inner node has two neighbours");
         let (before, after) = (here - behind, ahead - here);
@@ -389,15 +477,38 @@ impl Curve<'_> {
     /// the wire.
     fn settle(&self, segment: usize, piece: &Piece) -> (Lies, bool) {
         match piece.minimum() {
-            Lies::Before if segment == 0 => (Lies::At(piece.low), true),
-            Lies::Beyond if segment + 1 == self.0.len() => (Lies::At(piece.high), true),
+            Lies::Before if segment == self.ends()[0] => (Lies::At(piece.low), true),
+            Lies::Beyond if segment == self.ends()[1] => (Lies::At(piece.high), true),
             lies => (lies, false),
         }
     }
 
+    /// The first and the last segment that are wire of its own.
+    #[inline(always)]
+    fn ends(&self) -> [usize; 2] {
+        let last = self.points.len() - 1;
+        [
+            usize::from(self.seams[0]),
+            last - usize::from(self.seams[1]),
+        ]
+    }
+
+    /// How far past a seam at `share` the place lies that a segment is seen from, m.
+    fn beyond(&self, segment: usize, piece: &Piece, share: f64) -> f64 {
+        let [first, last] = self.ends();
+        let past = if self.seams[0] && segment == first && share == piece.low {
+            piece.g_low
+        } else if self.seams[1] && segment == last && share == piece.high {
+            -piece.g_high
+        } else {
+            return 0.0;
+        };
+        past.max(0.0) / piece.along(share).norm()
+    }
+
     /// Nodes on which the point at `share` of a segment depends, and how much on each.
     pub fn weights(&self, segment: usize, share: f64) -> ([usize; 3], [f64; 3]) {
-        let last = self.0.len() - 1;
+        let last = self.points.len() - 1;
         let s = share;
         if segment == 0 {
             return ([0, 1, 1], [1.5 - s, s - 0.5, 0.0]);
@@ -612,6 +723,7 @@ impl Piece {
             distance,
             normal,
             at_end,
+            beyond: 0.0,
         }
     }
 }
@@ -810,6 +922,46 @@ mod tests {
                 prop_assert!((a.point - b.point).norm() < 1e-7);
                 prop_assert!((tangent_at(&tube, &a) - tangent_at(&tube, &b)).norm() < 1e-4);
             }
+        }
+
+        /// Wire cut in two by a seam is the wire in one piece: one side has the foot, the other says that it is beyond.
+        #[test]
+        fn a_seam_does_not_show(
+            tube in wire(),
+            (cut, along) in (0.1..0.9f64, -2.5..2.5f64),
+            off in prop::array::uniform3(-0.8..0.8f64),
+        ) {
+            let cut = 2 + (cut * (tube.len() - 5) as f64) as usize;
+            let mut frozen = SplineTube::new(R);
+            for i in 0..cut {
+                frozen.push(tube.points()[i], tube.arc()[i]);
+            }
+            let shared = [cut, cut + 1].map(|i| (tube.points()[i], tube.arc()[i]));
+            frozen.go_on(Some(shared));
+            prop_assert_eq!(frozen.len(), cut);
+            let live = Curve { points: &tube.points()[cut..], seams: [true, false] };
+            let t = (cut as f64 + 1.0 + along).clamp(0.5, (tube.len() - 1) as f64);
+            // (beyond a centre of curvature both sides may have a foot)
+            let mut about = (-12..=12).map(|i| t + 0.25 * f64::from(i));
+            let inside = |t: &f64| *t > 0.5 && *t < (tube.len() - 1) as f64;
+            prop_assume!(about.all(|t| !inside(&t) || bend_radius(&tube, t) > 2.5 * R));
+            let p = on(&tube, t) + V3::from(off) * R;
+            let whole = tube.foot(p, t as u32);
+            let sides = [
+                frozen.foot(p, whole.segment),
+                live.foot(p, whole.segment.saturating_sub(cut as u32)),
+            ];
+            let depth = sides.map(|foot| foot.depth(2.0 * R));
+            prop_assert!(depth[0] < 0.0 || depth[1] < 0.0, "{:?}", sides);
+            let most = depth[0].max(depth[1]);
+            prop_assert!((most - whole.depth(2.0 * R)).abs() < 1e-12, "{:?} {:?}", sides, whole);
+            // to the frozen side, from which it is looked for, it is there or not
+            let mut starts = Vec::new();
+            frozen.gather(p, 2.0 * R, f64::INFINITY, &mut starts);
+            let found = starts.iter().any(|s| frozen.foot(p, *s).depth(2.0 * R) == depth[0]);
+            prop_assert!(depth[0] < 0.0 || found, "{:?} {}", starts, depth[0]);
+            frozen.go_on(None);
+            prop_assert_eq!(frozen.pop(), Some((tube.points()[cut - 1], tube.arc()[cut - 1])));
         }
 
         #[test]

@@ -115,7 +115,7 @@ impl System {
         match (&mut self.line, saved.line, &self.contacts) {
             (Some(line), Some(saved), Some(contacts)) => {
                 let wire = contacts.tube.nodes().map(|node| (node.point, node.arc));
-                line.restore(saved, wire, nodes)?;
+                line.restore(saved, wire, nodes, contacts.far())?;
             }
             (None, None, _) => {}
             _ => return Err("smooth contact is there in one of scene and state only"),

@@ -172,7 +172,7 @@ impl Simulation {
         if watched {
             match &mut self.sys.line {
                 Some(line) => {
-                    line.between.get_or_insert_default();
+                    line.watch_live_wire();
                 }
                 None => {
                     self.sys.live.get_or_insert_default();
@@ -199,6 +199,9 @@ impl Simulation {
         let spin = Spin::new(angle);
         let back = turn_about_y(-angle);
         let mut arc = self.sys.arc0;
+        if let Some(l) = &mut self.sys.line {
+            l.go_on(None);
+        }
         for i in 0..count {
             let node = FrozenNode {
                 point: spin.to_core(self.sys.rod.x[i]),
@@ -228,6 +231,7 @@ impl Simulation {
         if let Some(c) = &mut self.sys.contacts {
             c.forget_surroundings();
         }
+        self.join_frozen_to_live();
         if let Some(l) = &mut self.sys.line {
             l.forget_near(l.tube.len() - count);
         }
@@ -315,8 +319,24 @@ impl Simulation {
             .count()
     }
 
+    /// The curve of frozen wire runs on to the middle of the first live edge, where that of live wire begins.
+    fn join_frozen_to_live(&mut self) {
+        let spin = Spin::new(self.sys.spindle.angle);
+        let (rod, arc) = (&self.sys.rod, self.sys.arc0);
+        let ahead = [
+            (spin.to_core(rod.x[0]), arc),
+            (spin.to_core(rod.x[1]), arc + rod.rest[0]),
+        ];
+        if let Some(l) = &mut self.sys.line {
+            l.go_on(Some(ahead));
+        }
+    }
+
     /// The last `count` frozen nodes come back to life.
     fn thaw(&mut self, count: usize) {
+        if let Some(l) = &mut self.sys.line {
+            l.go_on(None);
+        }
         let count = self.sys.thaw_front(count);
         for _ in 0..count {
             if let Some(l) = &mut self.sys.line {
@@ -326,6 +346,7 @@ impl Simulation {
                 c.tube.pop();
             }
         }
+        self.join_frozen_to_live();
         self.coil.unsettle(count);
         self.watch.insert_front(count);
         if let Some(l) = &mut self.sys.line {

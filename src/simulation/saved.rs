@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
