@@ -25,7 +25,7 @@ def settings(quick):
             ["P4", "--omega", "500", *p4(82, 1e-5)],
             ["W", "--omega", "500", "--tol", "1e-5"],
         ]
-    words = [["P1", "--a", str(a), "--n", str(n)] for a in (1, 5, 10) for n in (6, 10, 14, 20, 40, 80, 160, 320)]
+    words = [["P1", "--a", str(a), "--n", str(n)] for a in (1, 5, 10) for n in (6, 8, 12, 16, 20, 40, 80, 160, 320)]
     words += [["P2", *p2(*s)] for s in ((4, 50), (5, 100), (5, 200), (6, 400), (7, 500), (8, 600), (10, 1600), (12, 3200))]
     words += [["P2", "--n", str(n), "--integrator", "verlet"] for n in (10, 20, 40, 60)]
     words += [["P3", "--n", str(n)] for n in (20, 40, 80, 160, 320)]

@@ -21,8 +21,8 @@ const DURATION: f64 = 1e4;
 /// Newton's tolerance at the full load and on the way there, m.
 const TOLERANCE: f64 = 1e-8;
 const ON_THE_WAY: f64 = 5e-3;
-/// First step over the tip's deflection that a unit of it makes: the tip moves 1 mm.
-const FIRST_MOVE: f64 = 1e-3;
+/// First step over the tip's deflection that a unit of it makes: the tip moves 3 mm, fewest Newton steps from a = 0.1 to 20.
+const FIRST_MOVE: f64 = 3e-3;
 /// Factorisations that a load step should take, and how its length follows from them.
 const WELL: u64 = 3;
 const LONGER: f64 = 1.5;
