@@ -53,7 +53,7 @@ pub struct Load {
     /// elastic energy of the rod, J
     pub stored: f64,
     /// plastic work beyond what forces and moments at both ends of the step account for, J, see
-    /// [`beyond`](super::plasticity::beyond()), when committed at once
+    /// `plasticity::beyond`, when committed at once
     #[serde(skip)]
     pub beyond: f64,
 }
