@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Every check: format, lints, documentation, packaging, exact answers, Rust tests, tests of the FMU.
+# Every check: format, lints, documentation, packaging, exact answers, random scenes, whether the benchmarks run, Rust tests,
+# tests of the FMU.
 #
 #     scripts/test.sh
 #
@@ -60,6 +61,15 @@ step exact answers
 
 step random scenes
 "$target/release/coilwind" stress --count 100 --seed 1 --quiet --out "$target/stress" | tail -n 1
+
+step benchmarks at their coarsest
+log=$target/bench-quick.log
+if ! COILWIND_COMMAND="$target/release/coilwind" COILWIND_FMU="$target/fmu/CoilWinding.fmu" \
+    scripts/bench.sh --quick >"$log" 2>&1; then
+    tail -n 40 "$log"
+    exit 1
+fi
+tail -n 1 "$log"
 
 step Rust tests
 cargo test --locked --workspace
