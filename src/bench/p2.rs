@@ -136,19 +136,19 @@ fn released(section: Section, rest: Vec<f64>) -> System {
 
 /// First mode of a cantilever at a share of its length.
 fn mode(share: f64) -> f64 {
-    let b = ROOT * share;
-    libm::cosh(b) - libm::cos(b) - sigma() * (libm::sinh(b) - libm::sin(b))
+    shape(ROOT * share, -1.0)
 }
 
 /// Its curvature over the square of `ROOT` per length.
 fn curvature(share: f64) -> f64 {
-    let b = ROOT * share;
-    libm::cosh(b) + libm::cos(b) - sigma() * (libm::sinh(b) + libm::sin(b))
+    shape(ROOT * share, 1.0)
 }
 
-/// What the odd part has of the mode for each of the even.
-fn sigma() -> f64 {
-    (libm::cosh(ROOT) + libm::cos(ROOT)) / (libm::sinh(ROOT) + libm::sin(ROOT))
+/// The mode at `b`, with the `sign` of its circular functions: they change it where it is derived twice.
+fn shape(b: f64, sign: f64) -> f64 {
+    let sigma = (libm::cosh(ROOT) + libm::cos(ROOT)) / (libm::sinh(ROOT) + libm::sin(ROOT));
+    let even = libm::cosh(b) + sign * libm::cos(b);
+    even - sigma * (libm::sinh(b) + sign * libm::sin(b))
 }
 
 /// Share of the amplitude lost over all periods, from fits of a harmonic to the first and the last.

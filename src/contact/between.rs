@@ -8,7 +8,7 @@
 
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
 use super::line::foresight;
-use super::touch::{ALONG_SLIDE, huber, less, onset_law, times};
+use super::touch::{ALONG_SLIDE, huber, less, onset_law, times, unstored};
 use super::{ContactLoss, OWN_WIRE};
 use crate::freeze::Curve;
 use crate::math::V3;
@@ -524,7 +524,7 @@ impl Between {
             let lands = !pair.held && deeper >= pair.depth;
             if lands {
                 let (energy, force, _) = onset_law(pair.depth, onset);
-                self.loss.damping += stiffness * (0.5 * force * deeper - energy);
+                self.loss.damping += stiffness * unstored(force, energy, deeper);
             }
             let share = if lands { 0.5 } else { 1.0 };
             pair.held = true;

@@ -11,7 +11,7 @@ use super::between::Between;
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
 use super::point::{FRESH, Memory, PASSAGES, Point};
 use super::touch::{
-    Circumstances, Limit, NONE, Push, Touch, bristle, damped_law, less, onset_law, times,
+    Circumstances, Limit, NONE, Push, Touch, bristle, damped_law, less, onset_law, times, unstored,
 };
 use super::{ContactLoss, OWN_WIRE};
 use crate::core_shape::Shape;
@@ -654,7 +654,7 @@ impl LineContact {
             if t.depth <= 0.0 {
                 if t.held && out >= t.before {
                     let (energy, force, _) = onset_law(t.before, self.onset);
-                    self.lifted += stiffness * (0.5 * force * out - energy);
+                    self.lifted += stiffness * unstored(force, energy, out);
                 }
                 t.held = false;
                 t.before = 0.0;
@@ -667,7 +667,7 @@ impl LineContact {
                 let all = damped_law(t.depth, self.onset, brake, t.before).1;
                 self.loss.damping += stiffness
                     * if lands {
-                        -0.5 * all * out - energy
+                        unstored(all, energy, -out)
                     } else {
                         (all - spring) * (t.depth - t.before)
                     };

@@ -168,7 +168,14 @@ pub(super) fn onset_law(depth: f64, onset: f64) -> (f64, f64, f64) {
     }
 }
 
-/// The same with a dashpot of `brake` times the stiffness against the way in from the depth `before`.
+/// Work of a touch that acts at one end of a step only, on a `way` over which the books take half its `force`, beyond the
+/// `energy` it stores at that end; all over its stiffness, see [`super::LineContact::commit`].
+#[inline]
+pub(super) fn unstored(force: f64, energy: f64, way: f64) -> f64 {
+    0.5 * force * way - energy
+}
+
+/// [`onset_law`] with a dashpot of `brake` times the stiffness against the way in from the depth `before`.
 ///
 /// A dashpot alone would pull on what leaves faster than the spring can push. Here the sum ends where
 /// it is 0, so that the potential stays convex and without a kink.

@@ -96,7 +96,7 @@ struct Work<const D: usize> {
     star: [Vec<V3>; 2],
     mass: Vec<f64>,
     /// mass that couples the ends of each edge; none where it is lumped
-    between: Vec<f64>,
+    shared_mass: Vec<f64>,
     /// plastic curvature per joint as a vector, 1/m
     set: Vec<V3>,
     /// stretch of each edge at the last evaluation and at the accepted iterate
@@ -400,9 +400,9 @@ impl<const D: usize> Work<D> {
         w.guess.clear();
         w.target.clear();
         w.mass.clear();
-        w.between.clear();
+        w.shared_mass.clear();
         if sys.mass == Mass::Consistent {
-            w.between
+            w.shared_mass
                 .extend((0..rod.edges()).map(|j| sys.mass_between(j)));
         }
         for s in &mut w.star {

@@ -59,7 +59,7 @@ impl Model<'_> {
         work.evaluations += 1;
         let nodes = work.q.len();
         let (rod, stretch) = self.rod_and_inertia::<D, HESSIAN>(work);
-        let energy = rod + self.loads::<D, HESSIAN>(work) - self.between::<D, HESSIAN>(work);
+        let energy = rod + self.loads::<D, HESSIAN>(work) - self.shared_inertia::<D, HESSIAN>(work);
         let mut value = Value {
             merit: energy + stretch.merit,
             now: energy + stretch.now,
@@ -99,9 +99,9 @@ impl Model<'_> {
 
     /// What lumped inertia has too much where mass is not lumped: `m_e / 12 |d_b - d_a|^2 / gamma^2` of an edge whose
     /// ends are `d` away from where they would fly.
-    fn between<const D: usize, const HESSIAN: bool>(&self, work: &mut Work<D>) -> f64 {
+    fn shared_inertia<const D: usize, const HESSIAN: bool>(&self, work: &mut Work<D>) -> f64 {
         let mut energy = 0.0;
-        for (j, m) in work.between.iter().enumerate() {
+        for (j, m) in work.shared_mass.iter().enumerate() {
             let k = m / (self.gamma * self.gamma);
             let apart = (work.q[j + 1] - work.target[j + 1]) - (work.q[j] - work.target[j]);
             energy += 0.5 * k * apart.norm_squared();
