@@ -5,12 +5,14 @@
 #![allow(missing_docs)]
 
 use coilwind::contact::{ContactLaw, Contacts, damping_for_restitution};
-use coilwind::core_shape::Surface;
-use coilwind::core_shape::generate::cylinder;
-use coilwind::integrate::{RK4_LIMIT, System, VERLET_LIMIT, highest_frequency, rk4, verlet};
+use coilwind::geometry::Surface;
+use coilwind::geometry::generate::cylinder;
+use coilwind::integrate::{RK4_LIMIT, VERLET_LIMIT, highest_frequency, rk4, verlet};
 use coilwind::math::V3;
 use coilwind::rod::Rod;
-use coilwind::scene::{Scene, SceneSettings};
+use coilwind::scene::Scene;
+use coilwind::settings::SceneSettings;
+use coilwind::system::System;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::sync::Arc;

@@ -6,11 +6,14 @@
 #![allow(missing_docs)]
 
 use coilwind::contact::{ContactLaw, LineContact};
-use coilwind::core_shape::Shape;
-use coilwind::integrate::{Implicit, Scheme, Support, System, Twist};
+use coilwind::geometry::Shape;
+use coilwind::integrate::{Implicit, Scheme};
 use coilwind::math::V3;
 use coilwind::rod::Rod;
-use coilwind::scene::{Scene, SceneSettings};
+use coilwind::rod::Twist;
+use coilwind::scene::Scene;
+use coilwind::settings::SceneSettings;
+use coilwind::system::{Support, System};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::f64::consts::TAU;
 use std::hint::black_box;

@@ -4,7 +4,7 @@
 //! reciprocal of the throughput is the time per node.
 #![allow(missing_docs)]
 
-use coilwind::integrate::Banded;
+use coilwind::linalg::Banded;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 

@@ -1,8 +1,9 @@
 //! Cost and effect of the communication step: the same wind, half a turn at 300 rad/s with a ramp, in
 //! communication steps of one length. `cargo run --release --example communication_step`
 
-use coilwind::scene::SceneSettings;
-use coilwind::simulation::{Inputs, Simulation};
+use coilwind::settings::SceneSettings;
+use coilwind::signals::Inputs;
+use coilwind::simulation::Simulation;
 use cpu_time::ThreadTime;
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -56,7 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             sim.advance_ramped(inputs, rates, step)?;
         }
         let cpu = began.elapsed().as_secs_f64();
-        let e = sim.effort();
+        let e = sim.statistics();
         let o = *sim.outputs();
         let reference = finest.get_or_insert_with(|| sim.clone());
         let r = *reference.outputs();

@@ -1,8 +1,9 @@
 //! What a saved state costs on the way through a long wind: bytes, CPU time to save and restore, and memory of
 //! copies that share settled wire. `cargo run --release --example saved_states [TURNS]`
 
-use coilwind::scene::SceneSettings;
-use coilwind::simulation::{Inputs, Simulation};
+use coilwind::settings::SceneSettings;
+use coilwind::signals::Inputs;
+use coilwind::simulation::Simulation;
 use cpu_time::ThreadTime;
 use std::error::Error;
 use std::f64::consts::TAU;

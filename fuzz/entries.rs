@@ -2,8 +2,8 @@
 //!
 //! Shared by the fuzz targets and by the tests that run with every `cargo test`.
 
-use coilwind::core_shape::stl;
-use coilwind::scene::SceneSettings;
+use coilwind::geometry::stl;
+use coilwind::settings::SceneSettings;
 use std::io::Cursor;
 use std::path::Path;
 

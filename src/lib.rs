@@ -5,20 +5,20 @@
 //! and the FMU drive it. SI units everywhere, see `ARCHITECTURE.md` for the map.
 #![forbid(unsafe_code)]
 
-pub mod bench;
 pub mod contact;
-pub mod core_shape;
 pub mod feed;
-pub mod freeze;
+pub mod geometry;
 pub mod integrate;
-pub mod lanes;
+#[cfg(feature = "lab")]
+pub mod lab;
+pub mod linalg;
 pub mod math;
 pub mod measure;
 pub mod output;
-pub mod pile;
 pub mod rod;
 pub mod scene;
+pub mod settings;
+pub mod signals;
 pub mod simulation;
-pub mod stress;
+pub mod system;
 pub mod variables;
-pub mod verify;

@@ -1,7 +1,7 @@
 //! The implicit step takes no heap once it is warm.
 #![allow(missing_docs)]
 
-use coilwind::scene::SceneSettings;
+use coilwind::settings::SceneSettings;
 use coilwind::simulation::Simulation;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -47,13 +47,13 @@ fn warm_steps(twist: &str) {
     settings.solver.twist = twist.to_owned();
     let scene = settings.build().expect("valid");
     let mut sim = Simulation::new(&scene).expect("starts");
-    let warm = sim.programme().time_at(1.3 * std::f64::consts::TAU);
-    sim.advance_programme(warm).expect("winds");
+    let warm = sim.motion_profile().time_at(1.3 * std::f64::consts::TAU);
+    sim.advance_profile(warm).expect("winds");
     let (mut quiet, mut noisy) = (0, Vec::new());
     for _ in 0..400 {
         let wire = |s: &Simulation| (s.outputs().live_nodes, s.outputs().turns_settled);
         let (before, count) = (wire(&sim), COUNT.load(Ordering::Relaxed));
-        sim.advance_programme(2e-5).expect("winds");
+        sim.advance_profile(2e-5).expect("winds");
         let taken = COUNT.load(Ordering::Relaxed) - count;
         if wire(&sim) == before {
             quiet += 1;

@@ -53,7 +53,7 @@ fn spoilt(good: Vec<u8>) -> impl Strategy<Value = Vec<u8>> {
 #[test]
 fn the_good_files_are_good() {
     let read = |text: &str| {
-        coilwind::scene::SceneSettings::from_toml_str(text, "good", std::path::Path::new(""))
+        coilwind::settings::SceneSettings::from_toml_str(text, "good", std::path::Path::new(""))
     };
     for text in [FIG8, EVERY_KIND] {
         read(text).expect("a good scene");
@@ -61,7 +61,7 @@ fn the_good_files_are_good() {
     }
     for bytes in [TETRAHEDRON.as_bytes().to_vec(), binary_tetrahedron()] {
         let mut cursor = std::io::Cursor::new(bytes.clone());
-        let mesh = coilwind::core_shape::stl::read(&mut cursor, 1e-3).expect("a good mesh");
+        let mesh = coilwind::geometry::stl::read(&mut cursor, 1e-3).expect("a good mesh");
         assert!((mesh.volume() - 1e-6 / 6.0).abs() < 1e-12);
         entries::stl_file(&bytes);
     }

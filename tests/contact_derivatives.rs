@@ -2,7 +2,7 @@
 //! held as the line search sees them.
 
 use coilwind::contact::{ContactLaw, LineContact, Push};
-use coilwind::core_shape::Shape;
+use coilwind::geometry::Shape;
 use coilwind::math::V3;
 use proptest::prelude::*;
 
@@ -225,7 +225,7 @@ fn a_look_ahead_comes_back() {
         line.hold_limits = false;
         let (mut gradient, mut hessian) = (push.gradient, push.hessian);
         let mut look = |way: V3| {
-            line.foresee(
+            line.predict(
                 STEP,
                 |_| way,
                 |_, more, change| {

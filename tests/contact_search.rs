@@ -266,7 +266,7 @@ fn merged_feet_push_once() {
         layer: 1.0,
     };
     let mut line = contact(&coil, 0.0);
-    line.tube = coilwind::freeze::SplineTube::new(0.35e-3);
+    line.tube = coilwind::geometry::SplineTube::new(0.35e-3);
     let legs = [
         (-3.5, 9.0),
         (-1.5, 3.0),

@@ -1,7 +1,7 @@
 //! Contact geometry against analytic distances and against its own slow twins.
 
-use coilwind::core_shape::generate::{cylinder, rounded_box, sagitta};
-use coilwind::core_shape::{Nearest, Surface, Touch, TriMesh};
+use coilwind::geometry::generate::{cylinder, rounded_box, sagitta};
+use coilwind::geometry::{Nearest, Surface, Touch, TriMesh};
 use coilwind::math::V3;
 use proptest::prelude::*;
 

@@ -6,7 +6,7 @@
 //! verdict at 300 rad/s with 9 um.
 
 use coilwind::measure::{Coil, Verdict};
-use coilwind::scene::SceneSettings;
+use coilwind::settings::SceneSettings;
 use coilwind::simulation::Simulation;
 
 /// Bulge may differ by this, m rms: a twentieth of what the verdict hangs on.
@@ -26,12 +26,10 @@ fn wound(speed: &str, freeze: &str) -> Coil {
     }
     let scene = settings.build().expect("a valid scene");
     let mut simulation = Simulation::new(&scene).expect("the scene starts");
-    let end = simulation.programme().end();
+    let end = simulation.motion_profile().end();
     while simulation.time() < end * (1.0 - 1e-12) {
         let piece = (end - simulation.time()).min(end / 100.0);
-        simulation
-            .advance_programme(piece)
-            .expect("the run goes on");
+        simulation.advance_profile(piece).expect("the run goes on");
     }
     simulation.coil_with_live_wire()
 }

@@ -2,11 +2,14 @@
 //! method chooses or is given.
 
 use coilwind::contact::{ContactLaw, LineContact};
-use coilwind::core_shape::Shape;
-use coilwind::integrate::{Implicit, Scheme, Stopped, System, Twist};
+use coilwind::geometry::Shape;
+use coilwind::integrate::{Implicit, Scheme, StepError};
 use coilwind::math::V3;
 use coilwind::rod::Rod;
-use coilwind::scene::{Scene, SceneSettings};
+use coilwind::rod::Twist;
+use coilwind::scene::Scene;
+use coilwind::settings::SceneSettings;
+use coilwind::system::System;
 
 /// Speed of a wire that is drawn onto a flat, m/s.
 const SPEED: f64 = 10.0;
@@ -84,7 +87,7 @@ fn land(
     fall: f64,
     fixed: Option<f64>,
     longest: f64,
-) -> Result<(f64, bool), Stopped> {
+) -> Result<(f64, bool), StepError> {
     let mut sys = falling(scene, onto, fall);
     let mut method = Implicit::new(Scheme::Bdf2, scene.solver.tolerance, 1e-9, longest);
     method.fixed = fixed;
@@ -166,7 +169,7 @@ fn the_books_know_the_blow() {
     for fixed in [2e-6, 10e-6, 27e-6, 60e-6] {
         let mut sys = falling(&scene, Onto::Flat, FALL);
         let motion = sys.kinetic();
-        sys.books.initial = motion;
+        sys.balance.initial = motion;
         let mut method = Implicit::new(Scheme::Bdf2, scene.solver.tolerance, 1e-9, 0.1);
         method.fixed = Some(fixed);
         while sys.deepest == 0.0 {
@@ -177,9 +180,9 @@ fn the_books_know_the_blow() {
             unexplained.abs() < 1e-3,
             "steps of {fixed} s: {unexplained}"
         );
-        let books = sys.books;
+        let balance = sys.balance;
         assert!(
-            books.damping > 0.1 * motion && books.damping + books.numerical < motion,
+            balance.damping > 0.1 * motion && balance.damping + balance.numerical < motion,
             "steps of {fixed} s: {books:?}"
         );
     }

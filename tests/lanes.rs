@@ -2,7 +2,7 @@
 
 mod common;
 
-use coilwind::lanes::{Width, at_most, width};
+use coilwind::math::simd::{Width, at_most, width};
 use coilwind::simulation::Simulation;
 use common::fig8;
 
@@ -15,8 +15,8 @@ fn a_run_is_the_same_to_the_bit_at_any_width() {
         widths.push(width());
         let scene = fig8(&[("spindle.speed", "300")]);
         let mut sim = Simulation::new(&scene).expect("the scene starts");
-        let end = sim.programme().time_at(0.8 * std::f64::consts::TAU);
-        sim.advance_programme(end).expect("the run goes on");
+        let end = sim.motion_profile().time_at(0.8 * std::f64::consts::TAU);
+        sim.advance_profile(end).expect("the run goes on");
         assert!(sim.outputs().turns_wound > 0.5);
         sim.to_bytes().expect("a state can be saved")
     });

@@ -1,18 +1,18 @@
 //! Measures of made coils whose gaps, heights and places are known beforehand.
 
 use coilwind::math::V3;
+use coilwind::measure::DefectLimits;
 use coilwind::measure::{
     Coil, CoilSpec, DefectFlags, Profile, STATION_STEP, STATIONS_PER_TURN, SettledNode, Station,
     Verdict, Worst,
 };
-use coilwind::scene::Defects;
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 
 const D: f64 = 0.7e-3;
 const RADIUS: f64 = 10e-3;
 
-fn limits() -> Defects {
-    Defects {
+fn limits() -> DefectLimits {
+    DefectLimits {
         gap: 0.15,
         gap_fraction: 0.10,
         bulge_excess: 0.5,
@@ -418,7 +418,7 @@ fn bulge_is_judged_against_the_quasi_static_height() {
     );
     assert!(!no_yardstick.flags().bulge);
     assert_eq!(no_yardstick.turns()[1].bulge_excess_max, None);
-    let absolute = Defects {
+    let absolute = DefectLimits {
         bulge_absolute: 1e-3,
         ..limits()
     };
@@ -504,7 +504,7 @@ fn the_neighbourhood_of_the_clamp_is_left_out() {
     assert_eq!(coil.flags(), DefectFlags::default());
     assert_eq!(coil.turns()[1].verdict, Verdict::Aligned);
     // Judged from the clamp on, the same wire is bad.
-    let all = Defects {
+    let all = DefectLimits {
         skip_angle: 0.0,
         ..limits()
     };
@@ -598,7 +598,7 @@ fn gap_by_brute_force(station: &Station, nodes: &[SettledNode], angles: &[f64]) 
 fn pointer_search_finds_what_brute_force_finds() {
     let nodes = eventful();
     let points: Vec<V3> = nodes.iter().map(|node| node.position).collect();
-    let angles = coilwind::measure::unwrap_angles(&points, 0.0, 1.0);
+    let angles = coilwind::math::unwrap_angles(&points, 0.0, 1.0);
     let coil = wound(spec(), &nodes);
     let mut compared = 0;
     for station in coil.stations() {
@@ -627,7 +627,7 @@ fn incremental_measures_equal_those_of_a_whole_coil() {
 fn new_limits_judge_old_wire() {
     let mut coil = wound(spec(), &helix(2.0, 1.3 * D));
     assert!(coil.flags().gap);
-    let loose = Defects {
+    let loose = DefectLimits {
         gap: 0.5,
         ..limits()
     };

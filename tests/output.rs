@@ -1,12 +1,12 @@
 //! Files of a made coil, read back.
 
 use coilwind::math::V3;
+use coilwind::measure::DefectLimits;
 use coilwind::measure::{Coil, CoilSpec, SettledNode};
 use coilwind::output::{
     Colouring, CoreMesh, OutputError, Picture, render, render_png, write_core_vtp, write_stations,
     write_summary, write_turns, write_vtp,
 };
-use coilwind::scene::Defects;
 use coilwind::simulation::Centreline;
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -115,7 +115,7 @@ fn wire(turns: f64) -> Centreline {
 fn coil(wire: &Centreline) -> Coil {
     let mut coil = Coil::new(CoilSpec {
         diameter: D,
-        limits: Defects {
+        limits: DefectLimits {
             gap: 0.15,
             gap_fraction: 0.10,
             bulge_excess: 0.5,

@@ -3,7 +3,8 @@
 mod common;
 
 use coilwind::scene::Scene;
-use coilwind::simulation::{Inputs, RestoreError, Simulation};
+use coilwind::signals::Inputs;
+use coilwind::simulation::{RestoreError, Simulation};
 use common::fig8;
 use std::f64::consts::TAU;
 

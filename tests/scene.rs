@@ -1,9 +1,8 @@
 //! Scene files through the front door: what is read, in which order, and what is refused.
 
-use coilwind::integrate::Twist;
-use coilwind::scene::{
-    Core, Integrator, LiveContact, Place, Preset, Scene, SceneError, SceneSettings, Start,
-};
+use coilwind::rod::Twist;
+use coilwind::scene::{Core, Integrator, LiveContact, Preset, Scene, SceneError};
+use coilwind::settings::{Place, SceneSettings, Start};
 use coilwind::variables::{Value, by_name, table};
 use std::path::Path;
 
@@ -529,7 +528,7 @@ fn a_switch_is_obeyed_and_no_decision() {
     assert_eq!(built("friction = 'off'").friction.static_, 0.0);
     let coarse = built("coarse_span = 'off'").solver;
     assert_eq!(coarse.spacing_free, coarse.spacing_near);
-    let parts = |line: &str| built(line).solver.parts;
+    let parts = |line: &str| built(line).solver.features;
     assert!(!parts("coarse_settled = 'off'").coarse_settled);
     assert!(!parts("inertia = 'off'").inertia && parts("inertia = 'on'").inertia);
     for (value, meaning) in [

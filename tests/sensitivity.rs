@@ -1,7 +1,8 @@
 //! Derivatives of the outputs by the inputs against differences of runs that start from the same state.
 
-use coilwind::scene::SceneSettings;
-use coilwind::simulation::{Inputs, Outputs, Simulation};
+use coilwind::settings::SceneSettings;
+use coilwind::signals::{Inputs, Outputs};
+use coilwind::simulation::Simulation;
 
 /// Communication step and step of the solver, s.
 const STEP: f64 = 1e-5;

@@ -2,7 +2,8 @@
 
 mod common;
 
-use coilwind::simulation::{Inputs, Simulation};
+use coilwind::signals::Inputs;
+use coilwind::simulation::Simulation;
 use common::fig8;
 use std::f64::consts::TAU;
 
@@ -73,11 +74,14 @@ fn the_communication_step_hardly_matters() {
 #[test]
 fn a_short_step_is_one_solve_from_a_good_guess() {
     let sim = ramp(|_| 5e-6);
-    let e = sim.effort();
+    let e = sim.statistics();
     let count = (END / 5e-6).round();
     assert!((e.steps as f64) < 1.02 * count, "{e:?}");
     assert!((e.evaluations as f64) < 1.5 * count, "{e:?}");
-    assert!((e.rejects + e.stalls) as f64 <= 0.01 * count, "{e:?}");
+    assert!(
+        (e.rejects + e.newton_failures) as f64 <= 0.01 * count,
+        "{e:?}"
+    );
 }
 
 /// However short: nothing is lost, and nothing fails.

@@ -1,8 +1,9 @@
 //! Scenes that once failed, replayed; and a random draw judged like `coilwind stress` does.
 
-use coilwind::stress::judge::judge;
-use coilwind::stress::keep::{self, Files};
-use coilwind::stress::{Invariant, Outcome, draw};
+use coilwind::lab::stress::case_files::Files;
+use coilwind::lab::stress::invariants::judge;
+use coilwind::lab::stress::keep;
+use coilwind::lab::stress::{Invariant, Outcome, draw};
 use std::path::{Path, PathBuf};
 
 /// The scenes kept in `tests/stress`.

@@ -3,8 +3,9 @@
 mod common;
 
 use coilwind::math::V3;
-use coilwind::scene::SceneSettings;
-use coilwind::simulation::{Event, EventKind, Inputs, Outputs, Simulation};
+use coilwind::settings::SceneSettings;
+use coilwind::signals::{Event, EventKind, Inputs, Outputs};
+use coilwind::simulation::Simulation;
 use common::fig8;
 use std::f64::consts::TAU;
 
@@ -86,7 +87,7 @@ fn freeze_and_thaw(mut m: Machine) {
     m.turn(0.6, 100.0);
     let before = m.sim.system().clone();
     let mut sys = before.clone();
-    let frozen = sys.dormant_lengths().count();
+    let frozen = sys.frozen_lengths().count();
     assert!(frozen > 10, "some wire lies frozen: {frozen}");
     sys.freeze_front(6);
     sys.freeze_front(3);
@@ -94,7 +95,7 @@ fn freeze_and_thaw(mut m: Machine) {
     assert_eq!(sys.rod.nodes() + 9, before.rod.nodes());
     assert_eq!(sys.thaw_front(5) + sys.thaw_front(4), 9);
     sys.refresh();
-    assert_eq!(sys.dormant_lengths().count(), frozen);
+    assert_eq!(sys.frozen_lengths().count(), frozen);
     let (a, b) = (&before.rod, &sys.rod);
     assert_eq!(a.rest, b.rest);
     for i in 0..a.nodes() {
@@ -129,14 +130,14 @@ fn freeze_and_thaw(mut m: Machine) {
         );
     }
     assert!((before.arc0 - sys.arc0).abs() < 1e-15);
-    let moment = |s: &coilwind::integrate::System| s.clamp_frame(0).expect("clamped");
+    let moment = |s: &coilwind::system::System| s.clamp_frame(0).expect("clamped");
     let turned = (moment(&before).conjugate() * moment(&sys)).imag().norm();
     assert!(turned < 1e-12, "the clamp is as it was: {turned:.1e}");
     let (x, y) = (before.energy_residual(None), sys.energy_residual(None));
     // what little the frozen wire still moved by is gone: 0.3 % of 4 uJ
     assert!((x - y).abs() < 5e-8, "{x} {y}");
-    assert!((before.books.frozen_stored - sys.books.frozen_stored).abs() < 1e-12);
-    assert!((before.books.frozen_kinetic - sys.books.frozen_kinetic).abs() < 1e-12);
+    assert!((before.balance.frozen_stored - sys.balance.frozen_stored).abs() < 1e-12);
+    assert!((before.balance.frozen_kinetic - sys.balance.frozen_kinetic).abs() < 1e-12);
 }
 
 #[test]
@@ -192,21 +193,21 @@ fn a_standing_spindle_lets_wire_settle_and_costs_nothing() {
     assert!(m.out().turns_settled > settled + 0.05, "rest by time");
     m.step = 0.1;
     m.wait(10);
-    let (effort, place) = (m.sim.effort(), m.sim.centreline().points);
+    let (statistics, place) = (m.sim.statistics(), m.sim.centreline().points);
     let clock = std::time::Instant::now();
     m.wait(100);
     let took = clock.elapsed().as_secs_f64();
-    let after = m.sim.effort();
+    let after = m.sim.statistics();
     eprintln!(
         "{:.0} steps for 10 s in {took:.4} s, {} solves",
-        after.steps - effort.steps,
-        after.solves - effort.solves
+        after.steps - statistics.steps,
+        after.solves - statistics.solves
     );
     assert!(
-        after.steps - effort.steps <= 100,
+        after.steps - statistics.steps <= 100,
         "the longest step there is"
     );
-    assert!(after.solves - effort.solves <= 20, "nothing to solve");
+    assert!(after.solves - statistics.solves <= 20, "nothing to solve");
     for (p, q) in place.iter().zip(&m.sim.centreline().points) {
         assert!((p - q).norm() < 1e-6, "nothing creeps");
     }
@@ -436,9 +437,9 @@ fn values_out_of_range_are_refused_with_the_range() {
 fn an_interval_may_end_where_the_ramp_does() {
     let changes = [("spindle.speed", "300"), ("spindle.turns", "1")];
     let mut sim = Simulation::new(&fig8(&changes)).expect("the scene starts");
-    let dt = sim.programme().end() / 200.0;
+    let dt = sim.motion_profile().end() / 200.0;
     for _ in 0..200 {
-        sim.advance_programme(dt).expect("the run goes on");
+        sim.advance_profile(dt).expect("the run goes on");
     }
     assert!((sim.outputs().spindle_angle - TAU).abs() < 1e-9);
 }

@@ -1,10 +1,12 @@
 //! Twist in the implicit method: modes stepped in time, and agreement with the explicit methods.
 
-use coilwind::integrate::{
-    Implicit, Limits, Scheme, Support, System, Twist, highest_frequency, ramp, verlet,
-};
+use coilwind::integrate::{Implicit, Scheme, highest_frequency, verlet};
+use coilwind::lab::statics::{Limits, ramp};
 use coilwind::math::{Quat, V3};
-use coilwind::rod::{Joint, Rod, Section, frame_along, rotate};
+use coilwind::math::{frame_along, rotate};
+use coilwind::rod::Twist;
+use coilwind::rod::{Joint, Rod, Section};
+use coilwind::system::{Support, System};
 
 /// The paper's wire; elastic but for torsion, which yields at `t_y`.
 fn section(t_y: f64) -> Section {
@@ -228,7 +230,7 @@ fn twist_stays_after_yield() {
             "{x:?} {y:?}"
         );
     }
-    let spent = [a.books.plastic[1], b.books.plastic[1]];
+    let spent = [a.balance.plastic[1], b.balance.plastic[1]];
     assert!((spent[0] / spent[1] - 1.0).abs() < 0.01, "{spent:?}");
 }
 
@@ -254,17 +256,17 @@ fn rolls_cross_the_knee_of_torsion_within_a_step() {
     let mut method = Implicit::new(Scheme::Bdf2, 2e-5, 1e-9, 1e-9);
     method.fixed = Some(1e-9);
     // turn at which the weak joint yields
-    let knee = torsion / sys.section.gj * 0.06;
+    let yield_branch = torsion / sys.section.gj * 0.06;
     let length: f64 = sys.rod.rest.iter().sum();
     for share in [0.9, 1.3, 1.1, 1.6, 0.4, 1.8, 2.5] {
-        sys.support[1].frame = Some(rolled(share * knee));
+        sys.support[1].frame = Some(rolled(share * yield_branch));
         method.step(&mut sys, 1e-9).expect("settles");
         let off = sys.load.torque.iter().fold(0.0, |m: f64, t| m.max(t.abs()));
         assert!(off < 1e-6 * torsion, "{share}: {off}");
         // the couple turns the whole wire elastically, and the weak joint for good
         let weak = sys.rod.twist[30];
         let set = weak.strain * sys.rod.voronoi(30);
-        let couple = (share * knee - set) / length * sys.section.gj;
+        let couple = (share * yield_branch - set) / length * sys.section.gj;
         let limit = torsion + weak.rise;
         assert!(
             couple < limit * (1.0 + 1e-6),

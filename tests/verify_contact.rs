@@ -1,7 +1,7 @@
 //! Contact, friction and feed against exact answers: the packed reference cases, by the production
 //! method and by the paper's.
 
-use coilwind::verify::{VerifyArgs, run};
+use coilwind::lab::verify::{VerifyArgs, run};
 
 fn all_right(kind: &str, preset: &str) {
     let args = VerifyArgs {

@@ -1,9 +1,10 @@
 //! The rod against exact answers: the packed reference cases, and the modes stepped in time.
 
-use coilwind::integrate::{Loads, Support, System, highest_frequency, rk4, verlet};
+use coilwind::integrate::{highest_frequency, rk4, verlet};
+use coilwind::lab::verify::{CaseFile, Manner, Record, VerifyArgs, run, run_file};
 use coilwind::math::V3;
 use coilwind::rod::{Rod, Section};
-use coilwind::verify::{CaseFile, Manner, Record, VerifyArgs, run, run_file};
+use coilwind::system::{Loads, Support, System};
 use std::f64::consts::PI;
 
 fn all_right(kind: &str, preset: &str) {
@@ -189,7 +190,7 @@ fn modes_stepped_in_time_have_the_frequency_of_theory() {
             nodal: vec![(40, V3::x() * 5.0)],
             ..Loads::default()
         };
-        sys.twist = coilwind::integrate::Twist::Off;
+        sys.twist = coilwind::rod::Twist::Off;
         let f = stepped(sys, false, 1, |s| libm::sin(PI * s), step);
         let theory = expected(&file, 4, "f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "bending {f} {theory}");

@@ -3,8 +3,10 @@
 mod common;
 
 use coilwind::math::V3;
-use coilwind::scene::{Scene, SceneSettings};
-use coilwind::simulation::{Centreline, EventKind, Inputs, Simulation, core_surface};
+use coilwind::scene::Scene;
+use coilwind::settings::SceneSettings;
+use coilwind::signals::{EventKind, Inputs};
+use coilwind::simulation::{Centreline, Simulation, core_surface};
 use common::fig8;
 use std::f64::consts::TAU;
 
@@ -15,9 +17,9 @@ fn wind(scene: &Scene, turns: f64) -> Simulation {
     let pieces = (turns * 72.0).ceil() as usize;
     for k in 1..=pieces {
         let next = sim
-            .programme()
+            .motion_profile()
             .time_at(turns * TAU * k as f64 / pieces as f64);
-        sim.advance_programme(next - time).expect("the run goes on");
+        sim.advance_profile(next - time).expect("the run goes on");
         time = next;
     }
     sim

@@ -9,8 +9,9 @@ use CoilWinding::exports::{
     fmi2Instantiate, fmi2SetupExperiment,
 };
 use CoilWinding::ffi::{Status, fmi2Component};
-use coilwind::scene::SceneSettings;
-use coilwind::simulation::{Inputs, Simulation};
+use coilwind::settings::SceneSettings;
+use coilwind::signals::Inputs;
+use coilwind::simulation::Simulation;
 use coilwind_model_description::guid;
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::ffi::CString;

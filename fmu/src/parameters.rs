@@ -2,8 +2,9 @@
 
 use crate::refusal::Refusal;
 use crate::resources;
-use coilwind::scene::{Scene, SceneSettings, Warning};
-use coilwind::simulation::Inputs;
+use coilwind::scene::{Scene, Warning};
+use coilwind::settings::SceneSettings;
+use coilwind::signals::Inputs;
 use coilwind::variables::{Access, Value, Variable, by_reference};
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,7 +1,7 @@
 //! Files of a run: a row per communication point, results at the end, in `output.directory`.
 
 use coilwind::output::{Ending, History, Mark, OutputError, Snapshot, write_results};
-use coilwind::scene::SceneSettings;
+use coilwind::settings::SceneSettings;
 use coilwind::simulation::{SimError, Simulation};
 use std::path::PathBuf;
 use std::time::Duration;

@@ -1,6 +1,7 @@
 //! Saved states at the instance: continuation to the bit, refusals, files.
 
-use crate::ffi::{self, Status};
+use crate::ffi;
+use crate::ffi::Status;
 use crate::instance::Instance;
 use crate::lifecycle::State;
 use crate::refusal::Refusal;

@@ -12,7 +12,8 @@ use crate::lifecycle::State;
 use crate::parameters::{Parameters, SavedParameters};
 use crate::refusal::Refusal;
 use coilwind::output::Mark;
-use coilwind::simulation::{Inputs, Simulation};
+use coilwind::signals::Inputs;
+use coilwind::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! `documentation/index.html`: what the FMU models, and every variable with unit and meaning.
 
 use crate::{DescriptionError, guid, variables};
-use coilwind::scene::SceneSettings;
+use coilwind::settings::SceneSettings;
 use coilwind::variables::{Causality, Unit, Variability, Variable, units};
 use std::fmt::Write;
 

@@ -1,7 +1,7 @@
 //! `modelDescription.xml` (FMI 2.0.5, section 2.2) from the variable table.
 
 use crate::{CATEGORIES, DescriptionError, MODEL_IDENTIFIER, guid, structure, units, variables};
-use coilwind::scene::SceneSettings;
+use coilwind::settings::SceneSettings;
 use coilwind::variables::{Causality, Kind, Value, Variable};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};

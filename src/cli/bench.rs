@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::print;
-use coilwind::bench::{BenchArgs, run};
+use coilwind::lab::bench::{BenchArgs, run};
 
 /// Runs a problem and prints its line; a run that stopped on the way has one as well.
 pub(super) fn bench(args: &BenchArgs) -> Result<(), Failure> {

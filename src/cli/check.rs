@@ -22,7 +22,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         scene: args.scene.scene.clone(),
         reason,
     })?;
-    let seconds = simulation.programme().end();
+    let seconds = simulation.motion_profile().end();
     print(&format!(
         "{}: valid; {} wire of {} mm at {} N, {} turns at {} rad/s in {seconds:.4} s\n",
         args.scene.scene,

@@ -74,10 +74,10 @@ pub(super) enum Failure {
     },
     /// Case files or settings of `verify` are wrong.
     #[error(transparent)]
-    Cases(#[from] coilwind::verify::VerifyError),
+    Cases(#[from] coilwind::lab::verify::VerifyError),
     /// Options or files of `bench` are wrong.
     #[error(transparent)]
-    Bench(#[from] coilwind::bench::BenchError),
+    Bench(#[from] coilwind::lab::bench::BenchError),
     /// A benchmark stopped on the way; its line is printed.
     #[error("bench: no complete answer: {reason}")]
     BenchStopped {
@@ -92,7 +92,7 @@ pub(super) enum Failure {
     },
     /// Ctrl-C during `stress`.
     #[error("interrupted; what failed so far is in {directory}")]
-    Stopped {
+    StepError {
         /// where the files are
         directory: String,
     },
@@ -138,7 +138,7 @@ impl Failure {
             | Self::Bench(_)
             | Self::Draw { .. } => 2,
             Self::Solver { .. } | Self::BenchStopped { .. } => 3,
-            Self::Interrupted { .. } | Self::Stopped { .. } => 130,
+            Self::Interrupted { .. } | Self::StepError { .. } => 130,
         }
     }
 

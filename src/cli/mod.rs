@@ -12,7 +12,8 @@ mod variables;
 mod verify;
 
 use clap::{Args, Parser, Subcommand};
-use coilwind::scene::{SceneError, SceneSettings, assignment};
+use coilwind::scene::{SceneError, assignment};
+use coilwind::settings::SceneSettings;
 use failure::Failure;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -40,9 +41,9 @@ enum Command {
     /// List every variable: inputs, outputs, diagnostics, parameters
     Variables(variables::VariablesArgs),
     /// Compare exact answers with what the code that winds computes
-    Verify(coilwind::verify::VerifyArgs),
+    Verify(coilwind::lab::verify::VerifyArgs),
     /// Time a known problem or a whole scene and print error and cost as one line of JSON
-    Bench(coilwind::bench::BenchArgs),
+    Bench(coilwind::lab::bench::BenchArgs),
     /// Wind random valid scenes, judge them by what must always hold, keep what fails
     Stress(stress::StressArgs),
 }

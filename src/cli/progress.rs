@@ -1,6 +1,7 @@
 //! The progress bar: turns, speed, time left. Hidden where nobody looks.
 
-use coilwind::simulation::{Event, Simulation};
+use coilwind::signals::Event;
+use coilwind::simulation::Simulation;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// Ticks of the whole bar.

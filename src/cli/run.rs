@@ -7,8 +7,10 @@ use super::signals::{Grid, Signals};
 use super::{SceneArgs, print, stop_flag};
 use clap::Args;
 use coilwind::output::{Ending, History, OutputError, Snapshot, write_results};
-use coilwind::scene::{Scene, SceneSettings};
-use coilwind::simulation::{Inputs, Outputs, SimError, Simulation};
+use coilwind::scene::Scene;
+use coilwind::settings::SceneSettings;
+use coilwind::signals::{Inputs, Outputs};
+use coilwind::simulation::{SimError, Simulation};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -187,7 +189,7 @@ fn flags(outputs: &Outputs) -> Vec<&'static str> {
 #[derive(Debug)]
 enum Drive {
     /// the scene's own spindle and traverse, a row per core angle
-    Programme {
+    MotionProfile {
         /// rad between rows
         interval: f64,
         /// rows so far
@@ -209,9 +211,9 @@ enum Drive {
 impl Drive {
     fn new(args: &RunArgs, scene: &Scene, simulation: &Simulation) -> Result<Self, Failure> {
         let Some((path, step)) = args.inputs.as_deref().zip(args.step) else {
-            let end = simulation.programme().end();
+            let end = simulation.motion_profile().end();
             let end = args.stop_time.map_or(end, |stop| stop.min(end));
-            return Ok(Self::Programme {
+            return Ok(Self::MotionProfile {
                 interval: scene.output.history_interval,
                 count: 0,
                 end,
@@ -234,14 +236,14 @@ impl Drive {
     /// Simulated time at the end, s.
     fn end(&self) -> f64 {
         match self {
-            Self::Programme { end, .. } | Self::Signals { end, .. } => *end,
+            Self::MotionProfile { end, .. } | Self::Signals { end, .. } => *end,
         }
     }
 
     /// Advances to the next point and gives its time, s; `None` at the end.
     fn advance(&mut self, simulation: &mut Simulation) -> Option<Result<f64, SimError>> {
         match self {
-            Self::Programme {
+            Self::MotionProfile {
                 interval,
                 count,
                 end,
@@ -253,9 +255,11 @@ impl Drive {
                     return None;
                 }
                 *count += 1;
-                let row = simulation.programme().time_at(*count as f64 * *interval);
+                let row = simulation
+                    .motion_profile()
+                    .time_at(*count as f64 * *interval);
                 let next = if row >= *end - sliver { *end } else { row };
-                Some(simulation.advance_programme(next - time).map(|()| next))
+                Some(simulation.advance_profile(next - time).map(|()| next))
             }
             Self::Signals {
                 signals,

@@ -5,7 +5,7 @@
 //! value after the jump holds from there.
 
 use super::failure::Failure;
-use coilwind::simulation::Inputs;
+use coilwind::signals::Inputs;
 use coilwind::variables::{Access, Causality, Value, Variable, table};
 use std::path::Path;
 

@@ -3,11 +3,11 @@
 use super::failure::Failure;
 use super::{print, stop_flag};
 use clap::Args;
-use coilwind::stress::judge::judge;
-use coilwind::stress::keep::Files;
-use coilwind::stress::region::Totals;
-use coilwind::stress::shrink::shrink;
-use coilwind::stress::{Case, Outcome, Verdict, draw};
+use coilwind::lab::stress::case_files::Files;
+use coilwind::lab::stress::invariants::judge;
+use coilwind::lab::stress::region::Totals;
+use coilwind::lab::stress::shrink::shrink;
+use coilwind::lab::stress::{Case, Outcome, Verdict, draw};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -75,7 +75,7 @@ pub(super) fn stress(args: &StressArgs) -> Result<(), Failure> {
     fs::write(&path, totals.tables()).map_err(|e| Failure::write(&path, e))?;
     print(&format!("\n{}\n{}\n", totals.tables(), totals.line()))?;
     if stop.load(Ordering::SeqCst) {
-        return Err(Failure::Stopped {
+        return Err(Failure::StepError {
             directory: args.out.display().to_string(),
         });
     }
@@ -220,7 +220,7 @@ fn line(_args: &StressArgs, done: &Done) -> String {
         m.turns,
         m.steps,
         m.rejects,
-        m.stalls,
+        m.newton_failures,
         m.nodes,
         m.depth,
         100.0 * m.energy,

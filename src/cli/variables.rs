@@ -3,7 +3,8 @@
 use super::failure::Failure;
 use super::print;
 use clap::Args;
-use coilwind::scene::{SceneSettings, unit_suffixes};
+use coilwind::scene::unit_suffixes;
+use coilwind::settings::SceneSettings;
 use coilwind::variables::{Value, Variable, table};
 use serde_json::json;
 

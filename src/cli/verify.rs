@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::print;
-use coilwind::verify::{VerifyArgs, run};
+use coilwind::lab::verify::{VerifyArgs, run};
 
 /// Runs the cases, a line each; fails if a number is out of tolerance.
 pub(super) fn verify(args: &VerifyArgs) -> Result<(), Failure> {

@@ -7,12 +7,12 @@
 //! linear system is solved by conjugate gradients with the banded part as preconditioner.
 
 use super::law::{ContactLaw, TANGENTIAL_SHARE};
-use super::line::foresight;
+use super::line::prediction_tolerance;
 use super::touch::{ALONG_SLIDE, huber, less, onset_law, times, unstored};
 use super::{ContactLoss, OWN_WIRE};
-use crate::freeze::Curve;
+use crate::geometry::Curve;
 use crate::math::V3;
-use crate::measure::{polar_angle, wrap_to_pi};
+use crate::math::{polar_angle, wrap_to_pi};
 use crate::rod::{Block, add_outer};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -66,7 +66,7 @@ struct NearPair {
     /// distance to the push, while it has none, m
     room: f64,
     /// gradient and Hessian are those of a place that an update led to
-    foreseen: bool,
+    predicted: bool,
     /// direction of the slide in it; 0: the bristle holds
     slide: V3,
     /// its coupling, if it has one
@@ -402,7 +402,7 @@ impl Between {
                 gradient: V3::zeros(),
                 hessian: Block::default(),
                 room: (-pair.depth).max(0.0),
-                foreseen: false,
+                predicted: false,
                 slide: V3::zeros(),
                 cross: None,
             };
@@ -437,7 +437,7 @@ impl Between {
 
     /// As [`LineContact::foresee`](super::LineContact::foresee), for pairs, with the wire at `there`;
     /// `correct` gets both triples.
-    pub fn foresee(
+    pub fn predict(
         &mut self,
         (law, onset, diameter): (&ContactLaw, f64, f64),
         (q, last, there): (&[V3], &[V3], &[V3]),
@@ -445,13 +445,13 @@ impl Between {
     ) -> bool {
         let mut any = false;
         let curve = self.curve(there);
-        let enough = foresight(diameter);
+        let enough = prediction_tolerance(diameter);
         for near in &mut self.near {
             let relative = |q: &[V3]| place(q, &near.young) + place(q, &near.old);
             let way = relative(there) - relative(q);
             let far = way.norm_squared();
             // (the foot moves along with its wire, whose turning is small beside that)
-            let still = far <= enough * enough && !near.foreseen;
+            let still = far <= enough * enough && !near.predicted;
             if 4.0 * far < near.room * near.room || still {
                 continue;
             }
@@ -490,7 +490,7 @@ impl Between {
             });
             self.cross[at as usize].block = hessian;
             (near.gradient, near.hessian, near.room) = (gradient, hessian, 0.0);
-            near.foreseen = true;
+            near.predicted = true;
         }
         any
     }

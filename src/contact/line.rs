@@ -14,8 +14,8 @@ use super::touch::{
     Circumstances, Limit, NONE, Push, Touch, bristle, damped_law, less, onset_law, times, unstored,
 };
 use super::{ContactLoss, OWN_WIRE};
-use crate::core_shape::Shape;
-use crate::freeze::SplineTube;
+use crate::geometry::Shape;
+use crate::geometry::SplineTube;
 use crate::math::V3;
 use crate::rod::Block;
 use serde::{Deserialize, Serialize};
@@ -580,31 +580,33 @@ impl LineContact {
     /// thrown back and forth, with all its neighbours on a flat; so would one that slides round a corner,
     /// or whose bristle comes to hold.
     #[inline(never)]
-    pub fn foresee(
+    pub fn predict(
         &mut self,
         step: f64,
         move_of: impl Fn(usize) -> V3,
         mut correct: impl FnMut(usize, &Block, &V3),
     ) -> bool {
         let mut any = false;
-        let foresight = foresight(2.0 * self.radius);
-        let same = SAME * foresight;
+        let prediction_tolerance = prediction_tolerance(2.0 * self.radius);
+        let same = SAME * prediction_tolerance;
         let mut near = std::mem::take(&mut self.near);
         for n in &mut near {
             let way = move_of(n.point as usize);
             let far = way.norm_squared();
             // no push, none that the way can change by more than what is let pass, or as good as where it was looked at
             // before and is right
-            let still = n.seen.map_or(far <= foresight * foresight, |seen| {
-                (way - seen).norm_squared() <= same * same
-            });
+            let still = n
+                .seen
+                .map_or(far <= prediction_tolerance * prediction_tolerance, |seen| {
+                    (way - seen).norm_squared() <= same * same
+                });
             if far < n.room * n.room || still {
                 continue;
             }
             n.seen = Some(way);
             let there = self.push_there(n.point as usize, n.place + way, n.length, step);
             let off = there.gradient - n.gradient - times(&n.hessian, &way);
-            if off.amax() <= foresight * self.law.stiffness * n.length {
+            if off.amax() <= prediction_tolerance * self.law.stiffness * n.length {
                 continue;
             }
             any = true;
@@ -749,7 +751,7 @@ impl LineContact {
 ///
 /// What presses wire on its core goes with its cross-section. With one depth for all, an update could promise
 /// fine wire (0.05 mm) fifty times the force there was: Newton's method went to and fro, in steps of a microsecond.
-pub(super) fn foresight(diameter: f64) -> f64 {
+pub(super) fn prediction_tolerance(diameter: f64) -> f64 {
     let size = diameter / 0.7e-3;
     FORESIGHT * (size * size).min(1.0)
 }

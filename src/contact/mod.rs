@@ -9,6 +9,7 @@ mod law;
 mod line;
 mod live;
 mod point;
+mod stencil;
 mod touch;
 
 pub use between::{Between, Cross, PairPush, Triple, add_cross, point_weights};
@@ -17,10 +18,11 @@ pub(crate) use line::SavedLine;
 pub use line::{LineContact, own_wire};
 pub use live::{LiveContact, Wire};
 pub use point::Memory;
+pub(crate) use stencil::{point_length, spline_point};
 pub use touch::Push;
 
-use crate::core_shape::{Surface, Touch};
-use crate::freeze::{FrozenNode, Tube};
+use crate::geometry::{FrozenNode, Tube};
+use crate::geometry::{Surface, Touch};
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -1,14 +1,14 @@
 //! The settled wire, node by node, and what is measured on it.
 
-use super::polar::{polar_angle, wrap_to_pi};
 use super::profile::Profile;
 use super::runs::{Run, stations_for};
 use super::state::DefectKind;
 use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
+use crate::math::PersistentVec;
 use crate::math::V3;
-use crate::pile::Pile;
-use crate::scene::Defects;
+use crate::math::{polar_angle, wrap_to_pi};
+use crate::measure::DefectLimits;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -25,7 +25,7 @@ pub struct CoilSpec {
     /// wire diameter d, m
     pub diameter: f64,
     /// limits of the defect flags
-    pub limits: Defects,
+    pub limits: DefectLimits,
     /// quasi-static height of this wire at this tension; without one the bulge is reported but
     /// only judged against `limits.bulge_absolute`
     pub profile: Option<Profile>,
@@ -100,9 +100,9 @@ pub(crate) struct Record {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coil {
     pub(crate) spec: CoilSpec,
-    pub(crate) nodes: Pile<Node, 256>,
+    pub(crate) nodes: PersistentVec<Node, 256>,
     /// a turn to the chunk
-    pub(crate) records: Pile<Record, STATIONS_PER_TURN>,
+    pub(crate) records: PersistentVec<Record, STATIONS_PER_TURN>,
     /// latest station by polar station and `floor(y / d)`
     buckets: BTreeMap<(usize, i64), usize>,
     traverse: f64,
@@ -121,8 +121,8 @@ impl Coil {
         let traverse = if spec.traverse < 0.0 { -1.0 } else { 1.0 };
         Self {
             spec,
-            nodes: Pile::default(),
-            records: Pile::default(),
+            nodes: PersistentVec::default(),
+            records: PersistentVec::default(),
             buckets: BTreeMap::new(),
             traverse,
         }
@@ -134,7 +134,7 @@ impl Coil {
     }
 
     /// Replaces the defect limits and judges all settled wire again (linear in the wire).
-    pub fn set_limits(&mut self, limits: Defects) {
+    pub fn set_limits(&mut self, limits: DefectLimits) {
         if self.spec.limits == limits {
             return;
         }

@@ -10,7 +10,7 @@
 //! back is truncation and leaves exactly what was there before.
 
 mod coil;
-mod polar;
+mod limits;
 mod profile;
 mod runs;
 mod state;
@@ -19,7 +19,7 @@ mod turn;
 
 pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode};
-pub use polar::{polar_angle, unwrap_angles, wrap_to_pi};
+pub use limits::DefectLimits;
 pub use profile::Profile;
 pub use state::{DefectFlags, DefectPlace, Worst};
 pub use station::{Neighbour, Station};

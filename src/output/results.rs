@@ -4,7 +4,7 @@ use super::{
     CoreMesh, OutputError, Picture, render_png, write_core_vtp, write_stations, write_summary,
     write_turns, write_vtp,
 };
-use crate::core_shape::Surface;
+use crate::geometry::Surface;
 use crate::simulation::{Centreline, SimError, Simulation, Summary, core_surface};
 use serde::Serialize;
 use std::path::Path;

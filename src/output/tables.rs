@@ -103,7 +103,7 @@ impl From<(usize, &Station)> for StationRow {
             turn: index / STATIONS_PER_TURN + 1,
             station: index % STATIONS_PER_TURN,
             angle: station.angle,
-            polar: crate::measure::polar_angle(p).rem_euclid(TAU),
+            polar: crate::math::polar_angle(p).rem_euclid(TAU),
             x: p.x,
             y: p.y,
             z: p.z,

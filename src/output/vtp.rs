@@ -3,7 +3,7 @@
 use super::OutputError;
 use super::tube::tube_mesh;
 use crate::math::V3;
-use crate::measure::{polar_angle, unwrap_angles};
+use crate::math::{polar_angle, unwrap_angles};
 use crate::simulation::Centreline;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesEnd, BytesStart, BytesText, Event};

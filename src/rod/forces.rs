@@ -5,11 +5,12 @@
 //! joint moment M turns the edge after it and, oppositely, the edge before it; an edge of
 //! length L and direction t passes the moment G on as the shear couple `G x t / L`.
 
-use super::joint::{Joint, align, rotate};
+use super::joint::Joint;
 use super::plasticity::{Law, respond_bend, respond_scalar};
 use super::section::Section;
 use super::state::Rod;
 use crate::math::{Quat, V3};
+use crate::math::{align, rotate};
 use serde::{Deserialize, Serialize};
 
 /// The three laws of a section, ready for use in a loop.

@@ -5,23 +5,25 @@
 //! from node `j` to node `j + 1`; joint `i` is the bend and twist at node `i`.
 
 pub mod batch;
-mod discrete;
+mod bending;
 mod forces;
 mod joint;
-mod knee;
 mod plasticity;
 mod section;
 mod state;
-mod twisted;
+mod twist;
+mod twisting;
+mod yield_branch;
 
-pub use batch::{Forces, PlainJoints, RollingJoints};
-pub use discrete::{
+pub use batch::{BendingJoints, Forces, TwistingJoints};
+pub use bending::{
     Bent, Block, Stretched, Symmetric, add_outer, add_square, bent, stretched, turning,
 };
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
-pub use joint::{Joint, align, frame_along, relative, rotate, rotate_back};
-pub use knee::{Knee, Knees};
+pub use joint::Joint;
 pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
 pub use section::Section;
 pub use state::Rod;
-pub use twisted::{Rolled, Turned, twisted};
+pub use twist::Twist;
+pub use twisting::{Rolled, Turned, twisted};
+pub use yield_branch::{YieldBranch, YieldBranches};

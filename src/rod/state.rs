@@ -1,9 +1,9 @@
 //! The rod's state: the least that restarts it.
 
-use super::joint::{align, frame_along, rotate};
 use super::plasticity::{Bend, Scalar};
 use super::section::Section;
 use crate::math::{Quat, V3};
+use crate::math::{align, frame_along, rotate};
 use serde::{Deserialize, Serialize};
 
 /// Arrays over `n + 1` nodes and `n` edges, lab frame.

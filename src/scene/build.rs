@@ -1,12 +1,12 @@
 //! From settings to a scene: every leaf in range, and no two that contradict each other.
 
 use super::error::Warning;
+use super::features::{Decisions, Features, LiveContact};
 use super::material::section;
-use super::settings::SceneSettings;
-use super::skip::{Decisions, LiveContact, Parts};
 use super::{Core, Integrator, Preset, Scene, SceneError, Solver};
-use crate::integrate::Twist;
 use crate::rod::Section;
+use crate::rod::Twist;
+use crate::settings::SceneSettings;
 use std::path::{Path, PathBuf};
 
 /// Node spacing near the core that goes with a tolerance, m: 0.4 mm to 2e-6 m.
@@ -314,7 +314,7 @@ impl SceneSettings {
             step_share: s.step_share,
             step: s.step,
             tolerance: s.tolerance,
-            parts: Parts {
+            features: Features {
                 live_contact: LiveContact::Always,
                 inertia: true,
                 coarse_settled: false,

@@ -1,9 +1,10 @@
 //! Scene files: TOML to settings, each leaf with the line it stands on.
 
 use super::SceneError;
-use super::error::Place;
+use super::assign::Given;
 use super::key::{nearest, resolve, sections};
-use super::settings::{Given, SceneSettings};
+use crate::settings::Place;
+use crate::settings::SceneSettings;
 use crate::variables::Value;
 use std::collections::BTreeMap;
 use std::path::Path;

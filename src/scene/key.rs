@@ -1,7 +1,7 @@
 //! Keys as people write them: exact, with a unit, or nearly right.
 
 use super::SceneError;
-use super::error::Place;
+use crate::settings::Place;
 use crate::variables::{
     Causality, Kind, Scale, Variable, by_name, split_suffix, suffixes_of, table,
 };

@@ -1,8 +1,8 @@
 //! From a material's name and a diameter to the rigidities and limits of a round section.
 
-use super::settings::{SceneSettings, WireSettings};
 use super::{SceneError, build::si};
 use crate::rod::Section;
+use crate::settings::{SceneSettings, WireSettings};
 use std::f64::consts::PI;
 
 /// Stretch, bend and twist rigidities: elastic, then beyond yield.

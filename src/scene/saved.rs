@@ -3,8 +3,8 @@
 //! Numbers in the bits they have, unlike a scene file, and leaves nobody set as well: another version's
 //! defaults may differ.
 
-use super::SceneSettings;
-use super::error::Place;
+use crate::settings::Place;
+use crate::settings::SceneSettings;
 use crate::variables::{Access, Value, by_reference, table};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

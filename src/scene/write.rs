@@ -1,6 +1,6 @@
 //! Settings back to a scene file, so that a run can leave what it really ran.
 
-use super::settings::SceneSettings;
+use crate::settings::SceneSettings;
 use crate::variables::{Access, Kind, Variable, table};
 
 impl SceneSettings {

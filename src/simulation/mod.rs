@@ -4,31 +4,36 @@
 //! house (insert wire at the nozzle, refine near the core, let settled wire go), then measure.
 
 mod coarsen;
-mod house;
+mod freezing;
 mod io;
-mod programme;
+mod motion_profile;
 mod quasi_static;
 mod rates;
+mod remeshing;
 mod saved;
 mod sensitivity;
 mod start;
 mod summary;
 
-pub use io::{Centreline, Event, EventKind, Inputs, Outputs, SimError};
-pub use programme::Programme;
-use programme::ROUNDING;
+pub use freezing::{FreezePolicy, Watch};
+pub use io::{Centreline, SimError};
+pub use motion_profile::MotionProfile;
+use motion_profile::ROUNDING;
 pub use saved::RestoreError;
 pub use start::core_surface;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 
 use crate::contact::damping_for_restitution;
-use crate::freeze::{FreezePolicy, Watch};
+use crate::integrate;
 use crate::integrate::{
-    self, Implicit, RK4_LIMIT, Scheme, System, VERLET_LIMIT, highest_frequency, longest_step,
+    Implicit, RK4_LIMIT, Scheme, VERLET_LIMIT, highest_frequency, longest_step,
 };
-use crate::math::{Spin, V3};
-use crate::measure::{Coil, SettledNode, polar_angle, wrap_to_pi};
+use crate::math::{Spin, V3, turn_about_y};
+use crate::math::{polar_angle, wrap_to_pi};
+use crate::measure::{Coil, SettledNode};
 use crate::scene::{Integrator, Scene};
+use crate::signals::{Event, EventKind, Inputs, Outputs};
+use crate::system::System;
 use rates::Instant;
 
 /// Wire slower than this, m/s, on a standing core counts as quiet: in a second it would move by less than
@@ -43,7 +48,7 @@ const SLACK: f64 = 1e-3;
 const WORTH_A_STEP: f64 = 1e-9;
 
 /// Steps between looks for edges to refine and values that are not finite.
-const HOUSE_STEPS: u64 = 32;
+const REMESH_STEPS: u64 = 32;
 
 /// A winding run.
 #[derive(Clone, Debug)]
@@ -55,7 +60,7 @@ pub struct Simulation {
     policy: FreezePolicy,
     /// polar angle from each laid node to lift-off, at the last look, rad
     behind: Vec<f64>,
-    programme: Programme,
+    motion_profile: MotionProfile,
     /// core angle at the start, rad
     angle0: f64,
     /// the implicit method, if that is the one
@@ -136,7 +141,7 @@ impl Simulation {
             )));
         }
         sys.refresh();
-        sys.books.initial = sys.stored() + sys.kinetic();
+        sys.balance.initial = sys.stored() + sys.kinetic();
         let policy = FreezePolicy {
             window: scene.freeze.window,
             time: scene.freeze.time,
@@ -151,7 +156,7 @@ impl Simulation {
             margin: scene.freeze.margin,
         };
         let mut sim = Self {
-            programme: Programme::new(scene),
+            motion_profile: MotionProfile::new(scene),
             watch: Watch::new(sys.rod.nodes(), sys.spindle.angle),
             scene: scene.clone(),
             sys,
@@ -263,9 +268,9 @@ impl Simulation {
         self.reset_extremes();
         self.sys.place_supports();
         self.sys.support[1].velocity = V3::new(0.0, travel / span, 0.0);
-        let efforts = self.effort();
+        let statistics_before = self.statistics();
         let gone = self.through(span, 0.0);
-        self.tell_of_trouble(efforts);
+        self.tell_of_trouble(statistics_before);
         self.sys.support[1].velocity = V3::zeros();
         (self.sys.spindle.acceleration, self.sys.set_rate) = (0.0, 0.0);
         if gone.is_err() {
@@ -302,11 +307,11 @@ impl Simulation {
 
     /// Says that the solver could not solve steps as long as it wanted to; being too long for the error is
     /// its daily bread.
-    fn tell_of_trouble(&mut self, before: integrate::Effort) {
-        let stalls = self.effort().stalls - before.stalls;
-        if stalls > 0 {
+    fn tell_of_trouble(&mut self, before: integrate::SolverStatistics) {
+        let newton_failures = self.statistics().newton_failures - before.newton_failures;
+        if newton_failures > 0 {
             let text = format!(
-                "the solver found no solution {stalls} times and went on in shorter steps, the last of {:.2e} s",
+                "the solver found no solution {newton_failures} times and went on in shorter steps, the last of {:.2e} s",
                 self.last_step
             );
             self.report(EventKind::Solver, text);
@@ -314,14 +319,14 @@ impl Simulation {
     }
 
     /// Advances by `dt` along the scene's own spindle ramp and traverse, which are continuous.
-    pub fn advance_programme(&mut self, dt: f64) -> Result<(), SimError> {
+    pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
         self.reset_extremes();
         self.quiet = 0.0;
         let end = self.time + dt;
-        for piece in self.programme.pieces(self.time, end) {
+        for piece in self.motion_profile.pieces(self.time, end) {
             self.sys.spindle.speed = piece.speed;
             self.sys.spindle.acceleration = piece.acceleration;
-            self.through(piece.duration, self.programme.travel_per_angle)?;
+            self.through(piece.duration, self.motion_profile.travel_per_angle)?;
         }
         self.time += dt;
         self.finish();
@@ -335,7 +340,7 @@ impl Simulation {
             self.turn_on(dt, per_angle);
             return Ok(());
         }
-        if self.asleep() {
+        if self.is_quiescent() {
             self.sys.time += dt;
             return Ok(());
         }
@@ -383,7 +388,7 @@ impl Simulation {
     /// Nothing has moved for long enough that all wire which may freeze has frozen (two windows: a
     /// vibration's turning point is over in a fraction of one), and no input has changed since: the
     /// state stays as it is until one does.
-    fn asleep(&self) -> bool {
+    fn is_quiescent(&self) -> bool {
         self.implicit.is_some() && self.quiet >= 2.0 * self.policy.time
     }
 
@@ -419,7 +424,8 @@ impl Simulation {
             return Ok(most);
         };
         let fixed = method.fixed;
-        let tried = |m: &Implicit| m.effort.steps + m.effort.rejects + m.effort.stalls;
+        let tried =
+            |m: &Implicit| m.statistics.steps + m.statistics.rejects + m.statistics.newton_failures;
         let before = tried(method);
         let taken = method.step(&mut self.sys, most).map_err(|e| SimError {
             time: self.sys.time,
@@ -435,7 +441,7 @@ impl Simulation {
         self.last_step = taken;
         self.steps += 1;
         self.watch_tension();
-        self.keep_house(taken)?;
+        self.remesh(taken)?;
         if self.work > self.most_work {
             return Err(SimError {
                 time: self.sys.time,
@@ -472,7 +478,7 @@ impl Simulation {
         }
         self.steps += 1;
         self.watch_tension();
-        self.keep_house(dt)
+        self.remesh(dt)
     }
 
     fn watch_tension(&mut self) {
@@ -575,8 +581,8 @@ impl Simulation {
     }
 
     /// The programme of the scene.
-    pub fn programme(&self) -> &Programme {
-        &self.programme
+    pub fn motion_profile(&self) -> &MotionProfile {
+        &self.motion_profile
     }
 
     /// What happened since the last call.
@@ -693,10 +699,9 @@ impl Simulation {
         o.fill_factor = self.coil.fill_factor();
         o.wire_strain = self.coil.wire_strain();
         o.solver_steps = self.steps as f64;
-        o.solver_rejects = self
-            .implicit
-            .as_ref()
-            .map_or(0.0, |m| (m.effort.rejects + m.effort.stalls) as f64);
+        o.solver_rejects = self.implicit.as_ref().map_or(0.0, |m| {
+            (m.statistics.rejects + m.statistics.newton_failures) as f64
+        });
         o.live_nodes = rod.nodes() as i32;
         o.penetration_max = self.sys.deepest;
         o.energy_residual = residual;
@@ -709,7 +714,7 @@ impl Simulation {
     /// The whole wire in the core frame.
     pub fn centreline(&self) -> Centreline {
         let spin = Spin::new(self.sys.spindle.angle);
-        let back = integrate::turn_about_y(-self.sys.spindle.angle);
+        let back = turn_about_y(-self.sys.spindle.angle);
         let rod = &self.sys.rod;
         let mut line = match &self.sys.contacts {
             Some(c) => Centreline {
@@ -736,10 +741,10 @@ impl Simulation {
     }
 
     /// What the implicit method took so far; nothing for an explicit one.
-    pub fn effort(&self) -> integrate::Effort {
+    pub fn statistics(&self) -> integrate::SolverStatistics {
         self.implicit
             .as_ref()
-            .map_or_else(Default::default, |m| m.effort)
+            .map_or_else(Default::default, |m| m.statistics)
     }
 
     /// The mechanical system, for verification and tests.

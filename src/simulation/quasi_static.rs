@@ -7,12 +7,16 @@
 
 use super::start::core_shape;
 use crate::contact::{ContactLaw, LineContact};
-use crate::core_shape::Surface;
-use crate::integrate::{Implicit, Scheme, Support, System, Twist};
+use crate::geometry::Surface;
+use crate::integrate::{Implicit, Scheme};
 use crate::math::V3;
-use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN, polar_angle};
-use crate::rod::{Bend, Rod, Section, frame_along};
+use crate::math::frame_along;
+use crate::math::polar_angle;
+use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN};
+use crate::rod::Twist;
+use crate::rod::{Bend, Rod, Section};
 use crate::scene::{Core, Scene};
+use crate::system::{Support, System};
 use std::sync::Arc;
 
 /// Node spacing of the loop, m; half of it moves the heights of the 0.7 mm wire by 4 um.

@@ -1,6 +1,7 @@
 //! First derivatives of the outputs, for importers that look ahead.
 
-use super::{Outputs, Simulation};
+use super::Simulation;
+use crate::signals::Outputs;
 use serde::{Deserialize, Serialize};
 
 /// What outputs change evenly from one step of the method to the next.
@@ -33,7 +34,7 @@ impl Simulation {
             spindle_angle: self.sys.spindle.speed,
             ..Outputs::default()
         };
-        if self.broken || self.asleep() || step <= 0.0 {
+        if self.broken || self.is_quiescent() || step <= 0.0 {
             return;
         }
         self.rates.wire_tension = (now.tension - old.tension) / step;

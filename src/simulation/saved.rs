@@ -4,12 +4,14 @@
 //! From it the run is started anew and the state laid over. What can be rebuilt from the state to
 //! the bit is not in the bytes either (search trees, measures of settled wire).
 
+use super::Simulation;
+use super::freezing::{FreezePolicy, Watch};
 use super::rates::Instant;
-use super::{Event, Outputs, Simulation};
-use crate::freeze::{FreezePolicy, Watch};
-use crate::integrate::{Effort, SavedSystem};
+use crate::integrate::SolverStatistics;
 use crate::measure::SavedCoil;
 use crate::scene::Scene;
+use crate::signals::{Event, Outputs};
+use crate::system::SavedSystem;
 use serde::{Deserialize, Serialize};
 
 /// Changes whenever the bytes of the same state do.
@@ -54,7 +56,7 @@ struct Saved {
     watch: Watch,
     policy: FreezePolicy,
     /// of the implicit method: next step, s, and what it took so far
-    implicit: Option<(f64, Effort)>,
+    implicit: Option<(f64, SolverStatistics)>,
     angle0: f64,
     last_step: f64,
     last_span: f64,
@@ -86,7 +88,7 @@ impl Simulation {
             watch,
             policy,
             behind: _,
-            programme: _,
+            motion_profile: _,
             angle0,
             implicit,
             longest_step: _,
@@ -116,7 +118,7 @@ impl Simulation {
             coil: coil.saved(),
             watch: watch.clone(),
             policy: *policy,
-            implicit: implicit.as_ref().map(|m| (m.next, m.effort)),
+            implicit: implicit.as_ref().map(|m| (m.next, m.statistics)),
             angle0: *angle0,
             last_step: *last_step,
             last_span: *last_span,
@@ -171,9 +173,9 @@ impl Simulation {
             return Err("the watch does not go with the nodes");
         }
         match (&mut self.implicit, saved.implicit) {
-            (Some(method), Some((next, effort))) => {
+            (Some(method), Some((next, statistics))) => {
                 method.next = next.clamp(method.shortest, method.longest);
-                method.effort = effort;
+                method.statistics = statistics;
             }
             (None, None) => {}
             _ => return Err("the method is another one"),

@@ -1,9 +1,10 @@
 //! Derivatives of the outputs by the inputs, for importers that solve loops or linearise.
 
-use super::{Inputs, Outputs, SimError, Simulation, check_finite};
-use crate::integrate::Seen;
+use super::{SimError, Simulation, check_finite};
+use crate::integrate::OutputSensitivity;
 use crate::math::V3;
-use crate::measure::{polar_angle, wrap_to_pi};
+use crate::math::{polar_angle, wrap_to_pi};
+use crate::signals::{Inputs, Outputs};
 use std::f64::consts::TAU;
 
 /// Move of the node at lift-off over its distance from the axis that the derivative of its angle is taken over.
@@ -56,7 +57,7 @@ impl Simulation {
     }
 }
 
-fn outputs_of(slope: &Seen, lift: V3, direction: f64) -> Outputs {
+fn outputs_of(slope: &OutputSensitivity, lift: V3, direction: f64) -> Outputs {
     let way = slope.lift.norm();
     let turned = if way > 0.0 {
         let by = TURN * lift.norm() / way;

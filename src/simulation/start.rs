@@ -1,15 +1,19 @@
 //! The state at the start: wire clamped at mid-face, straight to the nozzle, at the set tension.
 
-use super::{Inputs, SimError};
+use super::SimError;
 use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution};
-use crate::core_shape::generate::{cylinder, rounded_box, segments_for_sagitta};
-use crate::core_shape::{Shape, Surface, TriMesh};
 use crate::feed::{Feed, FeedSpec};
-use crate::integrate::{Spindle, Support, System, turn_about_y};
+use crate::geometry::generate::{cylinder, rounded_box, segments_for_sagitta};
+use crate::geometry::{Shape, Surface, TriMesh};
+use crate::math::frame_along;
+use crate::math::polar_angle;
+use crate::math::turn_about_y;
 use crate::math::{Spin, V3};
-use crate::measure::{Coil, CoilSpec, polar_angle};
-use crate::rod::{Rod, Scalar, frame_along};
+use crate::measure::{Coil, CoilSpec};
+use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene};
+use crate::signals::Inputs;
+use crate::system::{Spindle, Support, System};
 use std::sync::Arc;
 
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
@@ -41,7 +45,7 @@ pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
         Core::Mesh { path, unit } => {
             let file = std::fs::File::open(path)
                 .map_err(|e| fail(format!("cannot open {}: {e}", path.display())))?;
-            crate::core_shape::stl::read(&mut std::io::BufReader::new(file), *unit)
+            crate::geometry::stl::read(&mut std::io::BufReader::new(file), *unit)
                 .map_err(|e| fail(format!("{}: {e}", path.display())))?
         }
     };
@@ -103,7 +107,7 @@ fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
 pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
     let surface = Arc::new(core_surface(&scene.core)?);
     let mut section = scene.wire.clone();
-    if !scene.solver.parts.inertia {
+    if !scene.solver.features.inertia {
         section.density *= MASSLESS;
     }
     let radius = section.radius();
@@ -115,7 +119,7 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
             surface.radius_max() + radius
         )));
     }
-    let angle0 = crate::scene::Start::core_angle(half, radius, scene.nozzle.distance);
+    let angle0 = crate::settings::Start::core_angle(half, radius, scene.nozzle.distance);
     let clamp_core = V3::new(half + radius, scene.start.clamp_y, 0.0);
     let clamp = Spin::new(angle0).to_lab(clamp_core);
     let nozzle = V3::new(scene.nozzle.distance, inputs.nozzle_position, 0.0);

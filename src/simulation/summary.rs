@@ -94,7 +94,7 @@ pub struct PenetrationSummary {
 impl Simulation {
     /// Energy balance up to now.
     pub fn energy(&self) -> EnergySummary {
-        let b = self.sys.books;
+        let b = self.sys.balance;
         let plastic: f64 = b.plastic.iter().sum();
         let dissipated = plastic + b.friction + b.damping;
         let scale = if dissipated > 0.0 {

@@ -1,7 +1,7 @@
 //! Slow, obvious twins of the contact search: no grid, no tree, no memory.
 #![allow(dead_code)] // not every test file needs all of it
 
-use coilwind::core_shape::{Shape, Surface, TriMesh, generate};
+use coilwind::geometry::{Shape, Surface, TriMesh, generate};
 use coilwind::math::V3;
 use std::sync::Arc;
 

@@ -1,6 +1,7 @@
 //! What several of these tests begin with.
 
-use coilwind::scene::{Scene, SceneSettings};
+use coilwind::scene::Scene;
+use coilwind::settings::SceneSettings;
 
 /// The scene of Fig. 8 with other values for some of its variables.
 pub fn fig8(changes: &[(&str, &str)]) -> Scene {

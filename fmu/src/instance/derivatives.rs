@@ -3,7 +3,7 @@
 use super::{Instance, find, write_input, wrong_type};
 use crate::lifecycle::State;
 use crate::refusal::Refusal;
-use coilwind::simulation::{Inputs, Outputs};
+use coilwind::signals::{Inputs, Outputs};
 use coilwind::variables::{Access, Causality, Value};
 
 impl Instance {

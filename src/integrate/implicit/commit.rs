@@ -1,13 +1,14 @@
 //! Taking a converged step over as the new state, and the books of it.
 
-use super::model::{point_length, spline_point};
-use super::scheme::{Past, Scheme, Step};
+use super::scheme::{Scheme, Step};
 use super::tensioner::{NozzleEdge, advance};
 use super::{Implicit, Work};
 use crate::contact::{LineContact, own_wire};
-use crate::integrate::{Spindle, Support, System};
+use crate::contact::{point_length, spline_point};
 use crate::math::{Spin, V3};
 use crate::rod::Rod;
+use crate::system::Past;
+use crate::system::{Spindle, Support, System};
 
 impl Implicit {
     pub(super) fn commit<const D: usize>(
@@ -69,7 +70,7 @@ impl Implicit {
             sys.rod.rest[last] += grown;
             sys.keep_set_at_nozzle(grown);
             // the node before the nozzle gains mass that moves as it does
-            sys.books.inflow += 0.5 * inflow * sys.rod.v[last].norm_squared();
+            sys.balance.inflow += 0.5 * inflow * sys.rod.v[last].norm_squared();
         }
         if let Some(line) = &mut sys.line {
             // late Newton steps hold the friction limits of the iterate before; what is accepted goes by its own
@@ -82,20 +83,20 @@ impl Implicit {
         sys.settle_forces(h, true);
         // books: work of forces at both ends of the step
         let turned = sys.spindle.angle - before.0.angle;
-        sys.books.spindle -= 0.5 * (sys.torque_on_core + before.1) * turned;
+        sys.balance.spindle -= 0.5 * (sys.torque_on_core + before.1) * turned;
         if feeds {
             let last = sys.rod.edges() - 1;
             // a moment at the node before, spread over more or less wire: the grid's doing
-            sys.books.numerical += 0.5 * sys.bent_at_nozzle() * grown;
+            sys.balance.numerical += 0.5 * sys.bent_at_nozzle() * grown;
             let plastic = sys.rod.stretch[last].strain;
             let now = sys.load.tension[last];
             let tension = 0.5 * (now + before.3.unwrap_or(now));
             let law = sys.laws.stretch;
-            sys.books.nozzle -=
+            sys.balance.nozzle -=
                 (tension * (1.0 + plastic) + 0.5 * tension * tension / law.modulus) * grown;
             let n = nodes - 1;
             let force = (sys.load.force[n] + w.force[n]) * 0.5;
-            sys.books.nozzle -= force.dot(&sys.support[1].velocity) * h;
+            sys.balance.nozzle -= force.dot(&sys.support[1].velocity) * h;
         }
         // what Newton's law and the forces at both ends of the step do not agree on is the method's
         let mut work = 0.0;
@@ -113,7 +114,7 @@ impl Implicit {
         let held = 0.5 * (sys.unbalanced + before.2) * turned;
         // (what yields within the step is known better than by the forces at its ends)
         work -= sys.load.beyond;
-        sys.books.numerical += work - held - (sys.kinetic() - kinetic - gained);
+        sys.balance.numerical += work - held - (sys.kinetic() - kinetic - gained);
         let past = &mut sys.past;
         std::mem::swap(&mut past.x, &mut w.start);
         std::mem::swap(&mut past.v, &mut w.guess);
@@ -284,9 +285,9 @@ impl System {
             self.deepest = self.deepest.max(line.deepest);
             moment += between_forces(line, rod, force, &self.past, spin, (diameter, step), commit);
             let between = line.between.as_ref().map(|b| b.loss).unwrap_or_default();
-            self.books.friction = line.loss.friction + between.friction;
-            self.books.damping = line.loss.damping + between.damping;
-            self.books.numerical -= std::mem::take(&mut line.lifted);
+            self.balance.friction = line.loss.friction + between.friction;
+            self.balance.damping = line.loss.damping + between.damping;
+            self.balance.numerical -= std::mem::take(&mut line.lifted);
         }
         self.torque_on_core = moment + self.clamp_torque();
         self.hold_unbalanced();

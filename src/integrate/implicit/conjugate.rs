@@ -4,7 +4,7 @@
 //! lies between them, so the sum is positive semidefinite and the preconditioner is its upper bound.
 
 use crate::contact::{Cross, add_cross};
-use crate::integrate::Banded;
+use crate::linalg::Banded;
 
 /// Residual, in the norm of the preconditioner, at which an update is good enough: Newton's method needs no more.
 const CLOSE: f64 = 1e-2;
@@ -19,7 +19,7 @@ pub(super) struct Scratch {
     z: Vec<f64>,
     y: Vec<f64>,
     banded: Vec<f64>,
-    pub(super) rounds: u64,
+    pub(super) cg_iterations: u64,
 }
 
 /// Solves (banded + couplings) x = b in place; `matrix` is factored.
@@ -53,7 +53,7 @@ pub(super) fn solve<const D: usize>(
                 }
             }
         }
-        s.rounds += 1;
+        s.cg_iterations += 1;
         let curvature = dot(&s.p, &s.y);
         if curvature <= 0.0 || rz <= 0.0 {
             break;

@@ -4,24 +4,27 @@
 //! incremental potential, estimate the error, commit. Everything before the commit happens in
 //! scratch arrays, so a rejected step leaves no trace.
 
+mod assembly;
 mod commit;
 mod conjugate;
 mod model;
 mod newton;
 mod roll;
 mod scheme;
-mod settle;
-mod sheet;
-mod tangent;
+mod sensitivity;
+mod statics;
 mod tensioner;
 
-pub(in crate::integrate) use model::{point_length, spline_point};
-pub use scheme::{Past, Scheme};
-pub use tangent::Seen;
+pub use scheme::Scheme;
+pub use sensitivity::OutputSensitivity;
 
-use super::{Banded, Mass, Spindle, Support, System, Twist, turn_about_y};
+use crate::linalg::Banded;
+use crate::math::turn_about_y;
 use crate::math::{Quat, Spin, V3};
-use crate::rod::{Joint, Knees, Rod, align, rotate};
+use crate::math::{align, rotate};
+use crate::rod::Twist;
+use crate::rod::{Joint, Rod, YieldBranches};
+use crate::system::{Mass, Spindle, Support, System};
 use model::Model;
 use roll::{Rolls, WITH_ROLL};
 use scheme::{Step, extrapolation};
@@ -60,7 +63,7 @@ pub struct Implicit {
     /// a dead couple has nothing to hold it there
     pub flat: bool,
     /// what it took so far
-    pub effort: Effort,
+    pub statistics: SolverStatistics,
     work: Work<3>,
     /// the same where twist is carried
     twisted: Work<WITH_ROLL>,
@@ -68,21 +71,21 @@ pub struct Implicit {
 
 /// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Effort {
+pub struct SolverStatistics {
     /// accepted steps
     pub steps: u64,
     /// steps thrown away for their error
     pub rejects: u64,
     /// steps thrown away because Newton's method stalled
-    pub stalls: u64,
+    pub newton_failures: u64,
     /// factorisations
     pub solves: u64,
     /// evaluations of potential, gradient and Hessian
     pub evaluations: u64,
     /// halvings of a Newton step
-    pub cuts: u64,
+    pub line_search_halvings: u64,
     /// rounds of conjugate gradients
-    pub rounds: u64,
+    pub cg_iterations: u64,
 }
 
 /// Scratch arrays of a step with `D` unknowns a node, core frame.
@@ -105,7 +108,7 @@ struct Work<const D: usize> {
     /// stretch of each edge as the update promises it
     expected: Vec<Axial>,
     /// joints that may change between yielding and not
-    knees: Knees,
+    yield_branches: YieldBranches,
     gradient: Vec<V3>,
     update: Vec<f64>,
     load: Vec<f64>,
@@ -113,12 +116,12 @@ struct Work<const D: usize> {
     plain: Vec<f64>,
     matrix: Banded<D>,
     rolls: Rolls,
-    sheet: sheet::Sheet,
+    assembly: assembly::Assembly,
     gradients: conjugate::Scratch,
     force: Vec<V3>,
     evaluations: u64,
     solves: u64,
-    cuts: u64,
+    line_search_halvings: u64,
 }
 
 /// Nothing in here outlives a step, so a copy starts with empty arrays.
@@ -162,7 +165,7 @@ struct Axial {
 #[error(
     "no step of {step:.2e} s or more goes on from here: {cause} at node {node} (update {update:.2e} m)"
 )]
-pub struct Stopped {
+pub struct StepError {
     /// smallest step tried, s
     pub step: f64,
     /// node that would not settle
@@ -173,8 +176,8 @@ pub struct Stopped {
     pub cause: &'static str,
 }
 
-impl Stopped {
-    fn at(step: f64, stuck: &newton::Stuck) -> Self {
+impl StepError {
+    fn at(step: f64, stuck: &newton::NewtonFailure) -> Self {
         Self {
             step,
             node: stuck.node,
@@ -199,14 +202,14 @@ impl Implicit {
             fixed: None,
             scheme,
             flat: false,
-            effort: Effort::default(),
+            statistics: SolverStatistics::default(),
             work: Work::default(),
             twisted: Work::default(),
         }
     }
 
     /// Takes one step of at most `most` seconds; returns its length.
-    pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, Stopped> {
+    pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, StepError> {
         if sys.twist == Twist::Off {
             let mut work = std::mem::take(&mut self.work);
             let taken = self.step_with(&mut work, sys, most);
@@ -224,7 +227,7 @@ impl Implicit {
         work: &mut Work<D>,
         sys: &mut System,
         most: f64,
-    ) -> Result<f64, Stopped> {
+    ) -> Result<f64, StepError> {
         sys.begin_past();
         let mut h = self.fixed.unwrap_or(self.next).min(self.longest);
         if self.fixed.is_none() {
@@ -269,10 +272,10 @@ impl Implicit {
                     self.scheme == Scheme::Bdf2,
                 ),
             );
-            self.effort.evaluations += std::mem::take(&mut work.evaluations);
-            self.effort.solves += std::mem::take(&mut work.solves);
-            self.effort.cuts += std::mem::take(&mut work.cuts);
-            self.effort.rounds += std::mem::take(&mut work.gradients.rounds);
+            self.statistics.evaluations += std::mem::take(&mut work.evaluations);
+            self.statistics.solves += std::mem::take(&mut work.solves);
+            self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
+            self.statistics.cg_iterations += std::mem::take(&mut work.gradients.cg_iterations);
             let missed = sys.line.as_ref().and_then(|l| {
                 let between = l.between.as_ref()?;
                 between.missed(&sys.past.q[0], &work.q)
@@ -280,7 +283,7 @@ impl Implicit {
             let retry = match solved {
                 // farther than the pairs of wire were looked for
                 Ok(_) if missed.is_some() && h > self.shortest && self.fixed.is_none() => {
-                    self.effort.rejects += 1;
+                    self.statistics.rejects += 1;
                     0.5 * h
                 }
                 Ok(_) => {
@@ -288,7 +291,7 @@ impl Implicit {
                     let factor = libm::cbrt(AIM * self.tolerance / error.max(1e-30));
                     if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
                         self.commit(work, sys, &step, spindle, &support, nozzle);
-                        self.effort.steps += 1;
+                        self.statistics.steps += 1;
                         // a step cut short by the end of the interval says nothing against a longer one
                         let allowed = h * factor;
                         self.next = if h < self.next && allowed > self.next {
@@ -301,19 +304,19 @@ impl Implicit {
                         .clamp(self.shortest, self.longest);
                         return Ok(h);
                     }
-                    self.effort.rejects += 1;
+                    self.statistics.rejects += 1;
                     h * factor.clamp(0.2, 0.8)
                 }
-                Err(newton::Stuck { far: Some(way), .. }) => {
-                    self.effort.rejects += 1;
+                Err(newton::NewtonFailure { far: Some(way), .. }) => {
+                    self.statistics.rejects += 1;
                     let factor = libm::cbrt(AIM * self.tolerance / (step.error * way));
                     h * factor.clamp(0.3, 0.8)
                 }
                 Err(stuck) => {
-                    self.effort.stalls += 1;
+                    self.statistics.newton_failures += 1;
                     failures += 1;
                     if h <= self.shortest || self.fixed.is_some() {
-                        return Err(Stopped::at(h, &stuck));
+                        return Err(StepError::at(h, &stuck));
                     }
                     0.4 * h
                 }
@@ -442,17 +445,17 @@ impl<const D: usize> Work<D> {
         w.q.clone_from(&w.guess);
         if Self::ROLLS {
             self.rolls.prepare(sys, step, spindle, support, inert);
-            self.rolls.lay_out(&mut self.sheet.rolling);
+            self.rolls.lay_out(&mut self.assembly.rolling);
             let (state, ends) = ((&rod.bend[..], &rod.twist[..]), self.rolls.joints());
-            (self.sheet.rolling).lay(&sys.laws, state, ends, |j| {
+            (self.assembly.rolling).lay(&sys.laws, state, ends, |j| {
                 (voronoi(rod, step.grown, j), set_share(rod, step.grown, j))
             });
         } else {
             self.turn_plastic_curvature(sys, spindle, support, step.grown);
             let clamps = clamp_directions(support, spindle);
-            self.sheet.plain.begin(rod.edges(), clamps);
+            self.assembly.plain.begin(rod.edges(), clamps);
         }
-        self.sheet.begin(&self.target, &self.mass);
+        self.assembly.begin(&self.target, &self.mass);
         let (spec, feed) = sys.feed.as_ref()?;
         let last = rod.edges() - 1;
         Some(NozzleEdge::new(
@@ -563,7 +566,7 @@ fn set_share(rod: &Rod, grown: f64, i: usize) -> f64 {
 /// A vector with components `k` in the frame half-way between the frames of two edges.
 fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
     let joint = Joint::between(p, n);
-    let half = crate::rod::relative([0.5 * joint.bend[0], 0.5 * joint.bend[1]], 0.0);
+    let half = crate::math::relative([0.5 * joint.bend[0], 0.5 * joint.bend[1]], 0.0);
     let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
     let mid = p * Quat::new(c, 0.0, 0.0, s) * half;
     rotate(&mid, &V3::new(k[0], k[1], 0.0))

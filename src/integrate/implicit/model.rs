@@ -1,11 +1,12 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
 use super::tensioner::NozzleEdge;
-use super::{Axial, Work, sheet, voronoi};
-use crate::contact::{LineContact, own_wire};
-use crate::integrate::{Banded, Loads};
+use super::{Axial, Work, assembly, voronoi};
+use crate::contact::{LineContact, own_wire, point_length, spline_point};
+use crate::linalg::Banded;
 use crate::math::V3;
 use crate::rod::{Block, Laws, Rod, stretched, turning};
+use crate::system::Loads;
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {
@@ -156,7 +157,7 @@ impl Model<'_> {
             let mut couple = m.cross(&t) / length;
             if Work::<D>::ROLLS {
                 let about = m.dot(&t);
-                couple = work.sheet.rolling.turned(*j).derivative(&m).0;
+                couple = work.assembly.rolling.turned(*j).derivative(&m).0;
                 energy -= about * (work.rolls.angle[*j] - work.rolls.guess[*j]);
                 work.rolls.gradient[*j] -= about;
             }
@@ -213,43 +214,44 @@ impl Model<'_> {
         work: &mut Work<D>,
     ) -> (f64, Value) {
         let Work {
-            sheet,
+            assembly,
             q,
             rolls,
             set,
-            knees,
+            yield_branches,
             ..
         } = work;
-        knees.clear();
+        yield_branches.clear();
         let mut energy;
         if Work::<D>::ROLLS {
-            sheet.rolling.place(q, &rolls.angle);
-            energy = (sheet.rolling).respond(self.laws, HESSIAN.then_some(knees));
+            assembly.rolling.place(q, &rolls.angle);
+            energy = (assembly.rolling).respond(self.laws, HESSIAN.then_some(yield_branches));
         } else {
-            sheet.plain.place(q);
+            assembly.plain.place(q);
             let state = (&set[..], &self.rod.bend[..]);
             let own = |j| voronoi(self.rod, self.grown, j);
-            energy = (sheet.plain).respond(&self.laws.bend, state, own, &mut knees.bending);
+            energy =
+                (assembly.plain).respond(&self.laws.bend, state, own, &mut yield_branches.bending);
         }
         let mut axial = Value::default();
         for j in 0..self.rod.edges() {
             let edge = if Work::<D>::ROLLS {
-                let all = &work.sheet.rolling;
+                let all = &work.assembly.rolling;
                 (all.along(j), all.length(j), all.inverse(j))
             } else {
-                let all = &work.sheet.plain;
+                let all = &work.assembly.plain;
                 (all.along(j), all.length(j), all.inverse(j))
             };
             let across = self.stretch(work, j, edge, &mut axial);
             let s = work.axial[j];
-            work.sheet.stretch(j, s.tension, s.stiffness, across);
+            work.assembly.stretch(j, s.tension, s.stiffness, across);
         }
         if !HESSIAN {
-            work.knees.clear();
+            work.yield_branches.clear();
         }
         let weight = 1.0 / (self.gamma * self.gamma);
         let gravity = self.back.to_core(self.loads.gravity);
-        energy += sheet::gather::<D, HESSIAN>(work, weight, gravity);
+        energy += assembly::gather::<D, HESSIAN>(work, weight, gravity);
         (energy, axial)
     }
 
@@ -326,15 +328,6 @@ impl Model<'_> {
     }
 }
 
-/// Length of wire that a contact point stands for, m.
-pub(in crate::integrate) fn point_length(rod: &Rod, point: usize) -> f64 {
-    0.5 * if point.is_multiple_of(2) {
-        rod.voronoi(point / 2)
-    } else {
-        rod.rest[point / 2]
-    }
-}
-
 /// Adds a point's Hessian to three neighbouring nodes.
 pub(super) fn add_block<const D: usize>(
     matrix: &mut Banded<D>,
@@ -355,11 +348,6 @@ pub(super) fn add_block<const D: usize>(
             }
         }
     }
-}
-
-/// Point of the wire's spline at node `i` (not an end), m.
-pub(in crate::integrate) fn spline_point(q: &[V3], i: usize) -> V3 {
-    (q[i - 1] + q[i + 1]) * 0.125 + q[i] * 0.75
 }
 
 #[inline]

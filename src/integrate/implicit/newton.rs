@@ -3,7 +3,7 @@
 use super::model::{Model, add_block};
 use super::{Work, conjugate, roll};
 use crate::contact::{Triple, point_weights};
-use crate::integrate::Banded;
+use crate::linalg::Banded;
 use crate::math::V3;
 use crate::rod::{Block, Laws, add_outer};
 
@@ -34,7 +34,7 @@ pub(super) struct Reach {
     /// root mean square of the first update from which on the solve isn't worth its while, m
     pub(super) far: f64,
     /// halvings of one Newton step before the solve counts as failed
-    pub(super) cuts: usize,
+    pub(super) line_search_halvings: usize,
     /// the scheme forgets a small error: a guess that is good enough may stand
     pub(super) damped: bool,
     /// the last update may be taken with the factors of the one before
@@ -48,7 +48,7 @@ impl Reach {
         longest: 0.5e-3,
         turn: f64::INFINITY,
         far: f64::INFINITY,
-        cuts: 12,
+        line_search_halvings: 12,
         damped: true,
         chord: true,
     };
@@ -61,7 +61,11 @@ impl Reach {
     pub(super) fn of_step(short: bool, far: f64, damped: bool) -> Self {
         Self {
             far,
-            cuts: if short { Self::STEP.cuts } else { 2 },
+            line_search_halvings: if short {
+                Self::STEP.line_search_halvings
+            } else {
+                2
+            },
             damped,
             ..Self::STEP
         }
@@ -89,7 +93,7 @@ impl Reach {
 
 /// Why a solve gave up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Stuck {
+pub(super) struct NewtonFailure {
     /// node with the largest update
     pub(super) node: usize,
     /// that update, m
@@ -107,7 +111,7 @@ pub(super) fn solve<const D: usize>(
     work: &mut Work<D>,
     close: f64,
     reach: Reach,
-) -> Result<usize, Stuck> {
+) -> Result<usize, NewtonFailure> {
     expect_nothing(model, work);
     hold_limits(model, true);
     let mut value = model.evaluate(work).now;
@@ -132,7 +136,7 @@ pub(super) fn solve<const D: usize>(
     let mut worst = (0, f64::INFINITY);
     for step in 1..=reach.steps {
         work.solves += 1;
-        let fits = solve_linear(model, work).map_err(|node| Stuck {
+        let fits = solve_linear(model, work).map_err(|node| NewtonFailure {
             node,
             update: f64::NAN,
             steps: step,
@@ -142,7 +146,7 @@ pub(super) fn solve<const D: usize>(
             work.update.clone_from(&work.plain);
         }
         let (update, node, rolls) = largest_update(model, work);
-        let stuck = |far| Stuck {
+        let stuck = |far| NewtonFailure {
             node,
             update,
             steps: step,
@@ -171,7 +175,7 @@ pub(super) fn solve<const D: usize>(
             take(work, 1.0);
             return Ok(step);
         }
-        let mut cuts = 0;
+        let mut line_search_halvings = 0;
         if share == 1.0
             && fits
             && reach.chord
@@ -191,11 +195,15 @@ pub(super) fn solve<const D: usize>(
                 }
                 break;
             }
-            cuts += 1;
-            work.cuts += 1;
+            line_search_halvings += 1;
+            work.line_search_halvings += 1;
             // a shorter step does not help rolls
-            let most = if rolls { Reach::STEP.cuts } else { reach.cuts };
-            if cuts > most {
+            let most = if rolls {
+                Reach::STEP.line_search_halvings
+            } else {
+                reach.line_search_halvings
+            };
+            if line_search_halvings > most {
                 return Err(stuck(None));
             }
             share *= 0.5;
@@ -203,7 +211,7 @@ pub(super) fn solve<const D: usize>(
         last_update = if share == 1.0 { update } else { f64::INFINITY };
         worst = (node, update);
     }
-    Err(Stuck {
+    Err(NewtonFailure {
         node: worst.0,
         update: worst.1,
         steps: reach.steps,
@@ -334,7 +342,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
             }
         };
         if let Some(line) = model.line.as_deref_mut() {
-            any |= line.foresee(
+            any |= line.predict(
                 model.elapsed,
                 |point| move_of(&point_weights(point)),
                 |point, stiffness, gradient| correct(&point_weights(point), stiffness, gradient),
@@ -344,7 +352,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
                 for (i, p) in q.iter().enumerate() {
                     there.push(p + V3::new(update[D * i], update[D * i + 1], update[D * i + 2]));
                 }
-                any |= between.foresee(
+                any |= between.predict(
                     (&line.law, line.onset, model.diameter),
                     (q, model.last, there),
                     |young, old, stiffness, gradient| {
@@ -378,7 +386,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
 fn foresee_knees<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
     let Work {
-        knees,
+        yield_branches,
         update,
         load,
         matrix,
@@ -387,49 +395,55 @@ fn foresee_knees<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
     let nodes = update.len() / D;
     let mut any = false;
 
-    let bending = knees.bending.iter_mut().map(|knee| (&laws.bend, knee));
-    let twist = knees.twist.iter_mut().map(|knee| (&laws.twist, knee));
-    for (law, (joint, knee)) in bending.chain(twist) {
+    let bending = yield_branches
+        .bending
+        .iter_mut()
+        .map(|yield_branch| (&laws.bend, yield_branch));
+    let twist = yield_branches
+        .twist
+        .iter_mut()
+        .map(|yield_branch| (&laws.twist, yield_branch));
+    for (law, (joint, yield_branch)) in bending.chain(twist) {
         let j = *joint as usize;
         // derivative of the angle by the rolls, which stand with the first nodes of their edges
         let mut rolls = [0.0; 3];
         if Work::<D>::ROLLS {
             if j > 0 {
-                rolls[0] = knee.rolls[0];
+                rolls[0] = yield_branch.rolls[0];
             }
             if j + 1 < nodes {
-                rolls[1] = knee.rolls[1];
+                rolls[1] = yield_branch.rolls[1];
             }
         }
         let move_of = |u: &[f64]| V3::new(u[0], u[1], u[2]);
         let mut angle = 0.0;
         if j > 0 {
             let u = &update[D * (j - 1)..D * (j + 1)];
-            angle += knee.rows[0].dot(&(move_of(&u[D..]) - move_of(u)));
+            angle += yield_branch.rows[0].dot(&(move_of(&u[D..]) - move_of(u)));
             if Work::<D>::ROLLS {
                 angle += rolls[0] * u[D - 1];
             }
         }
         if j + 1 < nodes {
             let u = &update[D * j..D * (j + 2)];
-            angle += knee.rows[1].dot(&(move_of(&u[D..]) - move_of(u)));
+            angle += yield_branch.rows[1].dot(&(move_of(&u[D..]) - move_of(u)));
             if Work::<D>::ROLLS {
                 angle += rolls[1] * u[D - 1];
             }
         }
-        let Some((stiffness, moment)) = knee.foresee(law, angle) else {
+        let Some((stiffness, moment)) = yield_branch.predict(law, angle) else {
             continue;
         };
         any = true;
         // derivative of the angle by the nodes
         let mut rows = [V3::zeros(); 3];
         if j > 0 {
-            rows[0] -= knee.rows[0];
-            rows[1] += knee.rows[0];
+            rows[0] -= yield_branch.rows[0];
+            rows[1] += yield_branch.rows[0];
         }
         if j + 1 < nodes {
-            rows[1] -= knee.rows[1];
-            rows[2] += knee.rows[1];
+            rows[1] -= yield_branch.rows[1];
+            rows[2] += yield_branch.rows[1];
         }
         let none = |a: usize| rows[a] == V3::zeros() && rolls[a] == 0.0;
         for a in 0..3 {

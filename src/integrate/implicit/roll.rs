@@ -7,10 +7,15 @@
 //! where its torques balance. Contact acts on the centreline: friction puts no moment on the wire
 //! about its own axis, neither here nor in the explicit methods.
 
-use super::scheme::{Past, Scheme, Step, extrapolation};
-use crate::integrate::{Banded, Spindle, Support, System, Twist, turn_about_y};
+use super::scheme::{Scheme, Step, extrapolation};
+use crate::linalg::Banded;
+use crate::math::rotate;
+use crate::math::turn_about_y;
 use crate::math::{Quat, V3};
-use crate::rod::{RollingJoints, rotate};
+use crate::rod::Twist;
+use crate::rod::TwistingJoints;
+use crate::system::Past;
+use crate::system::{Spindle, Support, System};
 
 /// Unknowns of a node with twist: place and roll.
 pub(super) const WITH_ROLL: usize = 4;
@@ -100,7 +105,7 @@ impl Rolls {
     }
 
     /// Hands what stays the same in a step to `batch`.
-    pub(super) fn lay_out(&self, batch: &mut RollingJoints) {
+    pub(super) fn lay_out(&self, batch: &mut TwistingJoints) {
         batch.begin(&self.frame, &self.along, self.clamp);
     }
 
@@ -207,7 +212,7 @@ impl Rolls {
 
 impl Past {
     /// Rolls before the present instant are not known.
-    pub(in crate::integrate) fn forget_rolls(&mut self, edges: usize) {
+    pub(crate) fn forget_rolls(&mut self, edges: usize) {
         for v in self.roll.iter_mut().chain([&mut self.spin]) {
             v.clear();
             v.resize(edges, 0.0);

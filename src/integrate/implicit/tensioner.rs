@@ -5,9 +5,10 @@
 //! the edge is the root of a quadratic and its tension has a closed potential: the feed costs no
 //! unknown.
 
-use super::scheme::{Past, Step};
+use super::scheme::Step;
 use crate::feed::{Feed, FeedSpec};
 use crate::rod::Stretched;
+use crate::system::Past;
 
 /// The edge at the nozzle during one solve.
 ///
@@ -35,7 +36,7 @@ enum Way {
     /// either way, and the tension is the line's times this
     Free(f64),
     /// held by friction
-    Stuck,
+    NewtonFailure,
 }
 
 impl NozzleEdge {
@@ -87,7 +88,7 @@ impl NozzleEdge {
         } else if held < line / self.grip {
             Way::Free(1.0 / self.grip)
         } else {
-            Way::Stuck
+            Way::NewtonFailure
         }
     }
 
@@ -95,7 +96,7 @@ impl NozzleEdge {
     pub(super) fn rest(&self, length: f64) -> f64 {
         match self.way(length) {
             Way::Free(grip) => self.balanced(length, grip),
-            Way::Stuck => self.start,
+            Way::NewtonFailure => self.start,
         }
     }
 
@@ -103,7 +104,7 @@ impl NozzleEdge {
     pub(super) fn line(&self, length: f64) -> f64 {
         match self.way(length) {
             Way::Free(grip) => self.free(length, grip).tension / grip,
-            Way::Stuck => self.line_at_start(),
+            Way::NewtonFailure => self.line_at_start(),
         }
     }
 
@@ -111,7 +112,7 @@ impl NozzleEdge {
     pub(super) fn stretched(&self, length: f64) -> Stretched {
         let grip = match self.way(length) {
             Way::Free(grip) => grip,
-            Way::Stuck => return self.stuck(length),
+            Way::NewtonFailure => return self.stuck(length),
         };
         let free = self.free(length, grip);
         if self.grip == 1.0 {

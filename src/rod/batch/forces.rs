@@ -1,8 +1,8 @@
 //! Internal forces of a rod, many joints at once: what [`internal_forces`](crate::rod::internal_forces()) does joint by
 //! joint.
 
-use super::{GRADIENT, JOINT, Joints, RollingJoints, TORQUE};
-use crate::lanes::{Block, Lanes, ROWS, WithSimd, run};
+use super::{GRADIENT, JOINT, Joints, TORQUE, TwistingJoints};
+use crate::math::simd::{Block, Lanes, ROWS, WithSimd, run};
 use crate::math::{Quat, V3};
 use crate::rod::forces::{ForceParts, Laws, Load};
 use crate::rod::plasticity::{beyond, respond_scalar};
@@ -12,7 +12,7 @@ use pulp::Simd;
 /// Forces of a rod; nothing is kept from one call to the next.
 #[derive(Debug, Default)]
 pub struct Forces {
-    joints: RollingJoints,
+    joints: TwistingJoints,
     along: Vec<V3>,
 }
 
@@ -74,7 +74,7 @@ impl Forces {
 
 /// Forces and torques of the joints, from their gradients.
 struct Add<'a> {
-    joints: &'a RollingJoints,
+    joints: &'a TwistingJoints,
     edges: usize,
     twist: bool,
     load: &'a mut Load,
@@ -113,7 +113,8 @@ impl WithSimd for Add<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rod::{Bend, Scalar, Section, frame_along, internal_forces, relative};
+    use crate::math::{frame_along, relative};
+    use crate::rod::{Bend, Scalar, Section, internal_forces};
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 

@@ -5,17 +5,17 @@
 //! gradients and Hessians, a block of joints at a time for whoever puts them together ([`Joints`]). The row before
 //! the first edge is the clamp there, the row after the last the clamp at the other end.
 
+mod bending_joints;
 mod forces;
-mod plain;
-mod rolling;
+mod twisting_joints;
 
-use super::knee::Knee;
-use crate::lanes::{Block, Columns, Lanes, Lanes3, ROWS};
+use super::yield_branch::YieldBranch;
 use crate::math::V3;
+use crate::math::simd::{Block, Columns, Lanes, Lanes3, ROWS};
+pub use bending_joints::BendingJoints;
 pub use forces::Forces;
-pub use plain::PlainJoints;
 use pulp::Simd;
-pub use rolling::RollingJoints;
+pub use twisting_joints::TwistingJoints;
 
 /// Columns of a joint's gradient and Hessian, see [`super::Bent`] and [`super::Rolled`].
 pub const JOINT: usize = 52;
@@ -62,24 +62,24 @@ pub trait Joints {
         simd: S,
         block: usize,
         out: &mut Block<JOINT>,
-        knees: &mut &mut [(u32, Knee)],
+        yield_branches: &mut &mut [(u32, YieldBranch)],
     ) {
-        let here = |knees: &[(u32, Knee)]| {
-            let first = knees.first()?.0 as usize;
+        let here = |yield_branches: &[(u32, YieldBranch)]| {
+            let first = yield_branches.first()?.0 as usize;
             (first / ROWS == block).then_some(first % ROWS)
         };
-        let near = here(knees).is_some();
+        let near = here(yield_branches).is_some();
         for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
             self.derive::<S, HESSIAN>(simd, block, first, near, out);
         }
-        while let Some(row) = here(knees) {
-            let (one, rest) = std::mem::take(knees).split_at_mut(1);
-            *knees = rest;
-            let knee = &mut one[0].1;
+        while let Some(row) = here(yield_branches) {
+            let (one, rest) = std::mem::take(yield_branches).split_at_mut(1);
+            *yield_branches = rest;
+            let yield_branch = &mut one[0].1;
             for k in 0..2 {
                 let at = |a: usize| out.get(LEAD[k] + a, row);
-                knee.rows[k] = V3::new(at(0), at(1), at(2));
-                knee.rolls[k] = out.get(LEAD_ROLL + k, row);
+                yield_branch.rows[k] = V3::new(at(0), at(1), at(2));
+                yield_branch.rolls[k] = out.get(LEAD_ROLL + k, row);
             }
         }
     }

@@ -1,0 +1,40 @@
+//! Shapes that wire can touch: the core, and frozen wire on it, in the core's own (turning) frame.
+//!
+//! The frame: the axis is +y through the origin, the section lies in x-z. Lengths in metres.
+//!
+//! * [`TriMesh`]: a closed, outward triangle mesh with what every query needs, worked out once
+//! * [`generate`]: meshes of the rounded box and the cylinder
+//! * [`stl`]: meshes from STL files
+//! * [`Bvh`]: the search for triangles near a point
+//! * [`Touch`]: where a sphere touches the mesh (paper eq. 3-7, mended)
+//! * [`Surface`]: mesh and search in one
+//!
+//! * [`Tube`]: frozen wire as cylinder meshes, for the explicit steps
+//! * [`SplineTube`]: frozen wire as a tube with a continuous normal, for smooth contact
+//!
+//! Nothing here knows the wire: a node is a point with a radius.
+
+pub mod generate;
+pub mod stl;
+
+mod bvh;
+mod error;
+mod feature;
+mod grid;
+mod mesh;
+mod shape;
+mod spline;
+mod surface;
+mod topology;
+mod touch;
+mod tube;
+
+pub use bvh::Bvh;
+pub use error::MeshError;
+pub use feature::Nearest;
+pub use mesh::TriMesh;
+pub use shape::{Nearness, Shape};
+pub use spline::{Curve, Foot, SplineTube};
+pub use surface::Surface;
+pub use touch::Touch;
+pub use tube::{FrozenNode, SIDES, Tube};

@@ -1,0 +1,287 @@
+//! Equilibrium by the same incremental potential without inertia, and along a ramp of loads.
+//!
+//! A step so long that inertia is below rounding, from rest, is a static solve: rod, loads and contact
+//! are those of a time step. Plastic state, frames and anchors move on only where an increment has
+//! converged.
+
+use super::model::Model;
+use super::newton::{self, Reach};
+use super::scheme::Step;
+use super::{CLOSE, Implicit, StepError, Work};
+use crate::math::{Spin, V3};
+use crate::rod::Twist;
+use crate::system::System;
+
+/// Time over which forces act in a static solve, s: inertia is then 1e-10 of the softest wire's stiffness.
+const LONG: f64 = 1e3;
+/// Solves of one increment: the last ones turn plastic curvature along with what the first one found.
+const PASSES: usize = 3;
+/// Share of a ramp in its first increment, at most, and at least.
+const SHARES: [f64; 3] = [0.1, 0.25, 1e-5];
+/// Solver steps up to which an increment was quick, and what happens to the next one.
+const QUICK: usize = 8;
+const GROWTH: f64 = 1.4;
+const SHRINK: f64 = 0.5;
+
+impl Implicit {
+    /// Moves `sys` to equilibrium under its present loads and supports, and commits it.
+    ///
+    /// The nozzle holds the wire: nothing is fed. Velocities become zero.
+    pub fn settle(&mut self, sys: &mut System) -> Result<(), StepError> {
+        self.equilibrium(sys, &[], 0.0).map(|_| ())
+    }
+
+    /// Follows equilibrium while `apply` brings loads and supports from share 0 to share 1 of what
+    /// they shall be, in increments that shrink where the solve fails and grow where it is quick.
+    pub fn follow(
+        &mut self,
+        sys: &mut System,
+        mut apply: impl FnMut(&mut System, f64),
+    ) -> Result<(), StepError> {
+        let [mut step, largest, smallest] = SHARES;
+        let mut at = 0.0;
+        // how the wire moved in the last increment, and the share of the load that did it
+        let mut trend: (Vec<V3>, f64) = (Vec::new(), 1.0);
+        while at < 1.0 {
+            let to = if at + step > 1.0 - 1e-9 {
+                1.0
+            } else {
+                at + step
+            };
+            let before = sys.clone();
+            apply(sys, to);
+            match self.equilibrium(sys, &trend.0, (to - at) / trend.1) {
+                Ok(taken) => {
+                    let moved = sys.rod.x.iter().zip(&before.rod.x).map(|(x, b)| x - b);
+                    trend = (moved.collect(), to - at);
+                    at = to;
+                    if taken <= QUICK {
+                        step = (GROWTH * step).min(largest);
+                    }
+                }
+                Err(error) => {
+                    *sys = before;
+                    // an increment that led astray is no guide for the next one
+                    trend.0.clear();
+                    step *= SHRINK;
+                    if step < smallest {
+                        return Err(error);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Forces on the nodes at the present state as the method sees them, lab frame, N; held
+    /// coordinates count as free.
+    pub fn forces(&mut self, sys: &mut System) -> Vec<V3> {
+        self.out_of_balance(sys).0
+    }
+
+    /// The same, and the torques on the edges about themselves, N m; none where twist is off.
+    pub fn out_of_balance(&mut self, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
+        if sys.twist == Twist::Off {
+            forces_with(&mut self.work, sys)
+        } else {
+            forces_with(&mut self.twisted, sys)
+        }
+    }
+
+    /// Returns the solver's steps.
+    fn equilibrium(
+        &mut self,
+        sys: &mut System,
+        moved: &[V3],
+        share: f64,
+    ) -> Result<usize, StepError> {
+        if sys.twist == Twist::Off {
+            let mut work = std::mem::take(&mut self.work);
+            let taken = self.equilibrium_with(&mut work, sys, moved, share);
+            self.work = work;
+            return taken;
+        }
+        let mut work = std::mem::take(&mut self.twisted);
+        let taken = self.equilibrium_with(&mut work, sys, moved, share);
+        self.twisted = work;
+        taken
+    }
+
+    fn equilibrium_with<const D: usize>(
+        &mut self,
+        work: &mut Work<D>,
+        sys: &mut System,
+        moved: &[V3],
+        share: f64,
+    ) -> Result<usize, StepError> {
+        let step = still(sys);
+        let (spindle, support) = (sys.spindle, sys.support);
+        work.prepare(sys, &step, &spindle, &support, false);
+        let spin = Spin::new(spindle.angle);
+        let last = sys.rod.nodes() - 1;
+        for (i, d) in moved.iter().enumerate() {
+            let d = spin.to_core(d * share);
+            for a in 0..3 {
+                let held = i == 0 && support[0].hold[a] || i == last && support[1].hold[a];
+                if !held {
+                    work.guess[i][a] += d[a];
+                }
+            }
+        }
+        let reach = Reach {
+            // wire bent and twisted far from its free shape converges by a factor, not by squares: what the
+            // Hessian leaves out is not small there
+            steps: if Work::<D>::ROLLS { 200 } else { 40 },
+            longest: f64::INFINITY,
+            turn: 0.4,
+            far: f64::INFINITY,
+            line_search_halvings: 12,
+            damped: true,
+            chord: false,
+        };
+        let mut taken = 0;
+        for _ in 0..PASSES {
+            work.q.clone_from(&work.guess);
+            if !Work::<D>::ROLLS {
+                work.turn_plastic_curvature(sys, &spindle, &support, 0.0);
+            }
+            let mut model = model_at_rest(sys);
+            model.flat = self.flat;
+            let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, reach);
+            let steps = solved.map_err(|stuck| {
+                self.statistics.newton_failures += 1;
+                StepError::at(LONG, &stuck)
+            })?;
+            taken = taken.max(steps);
+            work.guess.clone_from(&work.q);
+        }
+        self.statistics.steps += 1;
+        self.statistics.evaluations += std::mem::take(&mut work.evaluations);
+        self.statistics.solves += std::mem::take(&mut work.solves);
+        self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
+        for (x, q) in sys.rod.x.iter_mut().zip(&work.q) {
+            *x = spin.to_lab(*q);
+        }
+        if Work::<D>::ROLLS {
+            sys.roll.clone_from(&work.rolls.angle);
+        }
+        sys.place_supports();
+        sys.settle_forces(f64::INFINITY, true);
+        sys.past.forget();
+        Ok(taken)
+    }
+}
+
+/// Brings everything to rest; the step that a static solve is.
+fn still(sys: &mut System) -> Step {
+    sys.rod.v.fill(V3::zeros());
+    sys.rod.spin.fill(0.0);
+    sys.past.forget();
+    sys.begin_past();
+    Step {
+        h: LONG,
+        gamma: LONG,
+        share: 1.0,
+        weight: [1.0, 0.0],
+        error: 0.0,
+        grown: 0.0,
+    }
+}
+
+fn forces_with<const D: usize>(work: &mut Work<D>, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
+    let step = still(sys);
+    let (spindle, support) = (sys.spindle, sys.support);
+    work.prepare(sys, &step, &spindle, &support, false);
+    let mut model = model_at_rest(sys);
+    model.held = [[false; 3]; 2];
+    newton::expect_nothing(&model, work);
+    // the tensions that are there are no surprise
+    for (j, e) in work.expected.iter_mut().enumerate() {
+        e.length = (work.q[j + 1] - work.q[j]).norm();
+    }
+    model.evaluate(work);
+    let spin = Spin::new(sys.spindle.angle);
+    let forces = work.gradient.iter().map(|g| -spin.to_lab(*g));
+    let rolls = work.rolls.angle.len();
+    let torques = work.rolls.gradient.iter().take(rolls).map(|g| -g);
+    (forces.collect(), torques.collect())
+}
+
+fn model_at_rest(sys: &mut System) -> Model<'_> {
+    let held = [sys.support[0].hold, sys.support[1].hold];
+    Model {
+        last: &sys.past.q[0],
+        rod: &sys.rod,
+        laws: &sys.laws,
+        line: sys.line.as_mut(),
+        loads: &sys.loads,
+        tension: &sys.load.tension,
+        nozzle: None,
+        grown: 0.0,
+        gamma: LONG,
+        elapsed: f64::INFINITY,
+        diameter: sys.section.diameter,
+        arc0: sys.arc0,
+        back: Spin::new(sys.spindle.angle),
+        held,
+        flat: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrate::Scheme;
+    use crate::lab::statics::{Limits, ramp};
+    use crate::math::frame_along;
+    use crate::rod::{Rod, Section};
+    use crate::system::Support;
+
+    /// A clamped wire that runs askew to all axes; it carries no twist.
+    fn cantilever() -> System {
+        let section = Section {
+            n_y: 38.5,
+            m_y: 5.72e-3,
+            ..Section::table1_elastic()
+        };
+        let along = V3::new(0.8, 0.36, 0.48);
+        let points: Vec<V3> = (0..=30).map(|i| along * (1e-3 * f64::from(i))).collect();
+        let mut sys = System::new(section, Rod::through(&points, None));
+        sys.support[0] = Support::clamped(points[0], frame_along(&along, None));
+        sys.twist = Twist::Off;
+        sys
+    }
+
+    fn load(sys: &mut System, share: f64) {
+        sys.loads.nodal = vec![(30, V3::new(-0.3, 0.5, 0.2) * share)];
+        sys.loads.gravity = V3::new(0.0, 0.0, -50.0 * share);
+    }
+
+    #[test]
+    fn agrees_with_equilibrium_of_the_joint_forces() {
+        let (mut a, mut b) = (cantilever(), cantilever());
+        let mut method = Implicit::new(Scheme::Bdf2, 1e-11, 1e-9, 1.0);
+        method.follow(&mut a, load).expect("an equilibrium");
+        ramp(&mut b, &Limits::default(), load).expect("an equilibrium");
+        let yielded = b.rod.bend.iter().filter(|k| k.curvature != [0.0; 2]);
+        assert!(yielded.count() > 3, "the load shall leave a bend behind");
+        let off = a.rod.x.iter().zip(&b.rod.x).map(|(x, y)| (x - y).norm());
+        assert!(off.fold(0.0, f64::max) < 1e-7);
+    }
+
+    #[test]
+    fn forces_are_those_of_the_joints() {
+        let mut sys = cantilever();
+        for (i, x) in sys.rod.x.iter_mut().enumerate().skip(1) {
+            let s = i as f64;
+            *x += V3::new(0.0, 1e-4 * libm::sin(s), 4e-6 * s * s);
+        }
+        load(&mut sys, 1.0);
+        sys.evaluate(Some(0.0));
+        let forces = Implicit::new(Scheme::Bdf2, 1e-11, 1e-9, 1.0).forces(&mut sys);
+        let largest = sys.load.force.iter().map(V3::norm).fold(0.0, f64::max);
+        for (a, b) in forces.iter().zip(&sys.load.force) {
+            assert!((a - b).norm() < 1e-6 * largest, "{a:?} {b:?}");
+        }
+    }
+}

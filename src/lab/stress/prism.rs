@@ -1,0 +1,119 @@
+//! A core from a mesh file: a regular prism with rounded edges, one flat side on +x.
+
+use crate::settings::SceneSettings;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+
+/// Chords of one rounded edge per right angle.
+const CHORDS: f64 = 8.0;
+
+/// A regular prism about y.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prism {
+    /// flat sides, 3 or more
+    pub sides: u32,
+    /// radius of its edges along y, m
+    pub corner_radius: f64,
+    /// width of a flat between two edges, m
+    pub flat: f64,
+    /// along y, m
+    pub length: f64,
+}
+
+impl Prism {
+    /// Distance of an edge's axis from y, m.
+    fn edge_axis(&self) -> f64 {
+        0.5 * self.flat / libm::sin(PI / f64::from(self.sides))
+    }
+
+    /// Largest distance from the axis, m.
+    pub fn turning_radius(&self) -> f64 {
+        self.edge_axis() + self.corner_radius
+    }
+
+    /// Way round it, m.
+    pub fn perimeter(&self) -> f64 {
+        f64::from(self.sides) * self.flat + TAU * self.corner_radius
+    }
+
+    /// The settings with a box of the same width, so that they can be checked without a file.
+    pub fn stand_in(&self, settings: &SceneSettings) -> SceneSettings {
+        let mut s = settings.clone();
+        let size = 2.0 * self.turning_radius();
+        s.core.shape = "rounded-box".to_owned();
+        (s.core.width_x, s.core.height_z) = (size, size);
+        s.core.corner_radius = 0.5 * size;
+        s
+    }
+
+    /// Points of the section, from +x towards +z, m.
+    fn section(&self) -> Vec<[f64; 2]> {
+        let turn = TAU / f64::from(self.sides);
+        let chords = (CHORDS * turn / (0.5 * PI)).ceil() as u32;
+        let mut points = Vec::new();
+        for side in 0..self.sides {
+            let to_edge = turn * (f64::from(side) + 0.5);
+            for k in 0..=chords {
+                let angle = to_edge + turn * (f64::from(k) / f64::from(chords) - 0.5);
+                points.push([
+                    self.edge_axis() * libm::cos(to_edge) + self.corner_radius * libm::cos(angle),
+                    self.edge_axis() * libm::sin(to_edge) + self.corner_radius * libm::sin(angle),
+                ]);
+            }
+        }
+        points
+    }
+
+    /// An ASCII STL file in mm.
+    pub fn stl(&self) -> String {
+        let section = self.section();
+        let half = 0.5 * self.length;
+        let mut text = "solid prism\n".to_owned();
+        let mut facet = |corners: [[f64; 3]; 3]| {
+            text += "facet normal 0 0 0\nouter loop\n";
+            for [x, y, z] in corners {
+                // as the file's reader will see them
+                let mm = [x, y, z].map(|c| (c * 1e3) as f32);
+                // writing to a text cannot fail
+                let _ = writeln!(text, "vertex {} {} {}", mm[0], mm[1], mm[2]);
+            }
+            text += "endloop\nendfacet\n";
+        };
+        for (k, &[x, z]) in section.iter().enumerate() {
+            let [u, w] = section[(k + 1) % section.len()];
+            facet([[x, -half, z], [x, half, z], [u, half, w]]);
+            facet([[x, -half, z], [u, half, w], [u, -half, w]]);
+            facet([[0.0, half, 0.0], [u, half, w], [x, half, z]]);
+            facet([[0.0, -half, 0.0], [x, -half, z], [u, -half, w]]);
+        }
+        text + "endsolid prism\n"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::stl;
+
+    #[test]
+    fn its_file_is_a_closed_convex_mesh_of_its_size() {
+        for sides in [3, 4, 5, 6, 8] {
+            let prism = Prism {
+                sides,
+                corner_radius: 1.3e-3,
+                flat: 7e-3,
+                length: 20e-3,
+            };
+            let bytes = prism.stl().into_bytes();
+            let mesh = stl::read(&mut std::io::Cursor::new(bytes), 1e-3).unwrap();
+            assert!(mesh.is_convex());
+            // polygon of the edges' axes, its sides thickened, a circle at the edges
+            let n = f64::from(sides);
+            let polygon = 0.25 * n * prism.flat.powi(2) / libm::tan(PI / n);
+            let r = prism.corner_radius;
+            let area = polygon + n * prism.flat * r + PI * r * r;
+            let off = mesh.volume() / (area * prism.length) - 1.0;
+            assert!(off < 0.0 && off > -2e-3, "{sides} sides: {off}");
+        }
+    }
+}

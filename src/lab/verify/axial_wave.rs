@@ -1,0 +1,117 @@
+//! Axial waves, modes and stretch of a straight wire.
+
+use super::equilibrium::{follow, no_answer};
+use super::modes::{Motion, lowest};
+use super::wire::{clamp_along_x, straight};
+use super::{Answer, Answers, Context, VerifyError};
+use crate::integrate::{Implicit, RK4_LIMIT, Scheme, VERLET_LIMIT, highest_frequency, rk4, verlet};
+use crate::math::V3;
+use crate::rod::Twist;
+use crate::scene::Integrator;
+use crate::system::{Support, System};
+
+/// Edges along the wire: for modes and stretch, and for the pulse.
+const EDGES: f64 = 200.0;
+const PULSE_EDGES: f64 = 400.0;
+/// Half width of the pulse over the wire's length.
+const PULSE_WIDTH: f64 = 0.05;
+/// Share of the longest stable step.
+const STEP_SHARE: f64 = 0.9;
+/// Newton's method stops at a tenth of this, m: the pulse moves the wire by tens of nanometres.
+const TOLERANCE: f64 = 1e-13;
+/// Steps after which a pulse is given up.
+const MOST_STEPS: usize = 200_000;
+/// Speed in the pulse, m/s: a strain far below any limit.
+const PULSE_SPEED: f64 = 1e-3;
+
+/// Wave speed, frequencies and the stretch under a force.
+pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
+    let (length, force) = (ctx.positive("L_m")?, ctx.number("P_N")?);
+    let n = ctx.edges(length, length / EDGES)?;
+    let mut sys = straight(ctx.elastic(), &vec![length / n as f64; n]);
+    sys.support[0] = clamp_along_x(V3::zeros());
+    let one = lowest(ctx, &mut sys, Motion::Along(0), 2)?;
+    sys.support[1] = clamp_along_x(V3::x() * length);
+    let both = lowest(ctx, &mut sys, Motion::Along(0), 1)?;
+
+    sys.support[1] = Support::free();
+    follow(ctx, &mut sys, |sys, share| {
+        sys.loads.nodal = vec![(n, V3::x() * (force * share))];
+    })?;
+    Ok(vec![
+        (
+            "wave_speed_m_per_s",
+            Answer::Number(wave_speed(ctx, length)?),
+        ),
+        ("fixed_free_f1_Hz", Answer::Number(one[0])),
+        ("fixed_free_f2_Hz", Answer::Number(one[1])),
+        ("fixed_fixed_f1_Hz", Answer::Number(both[0])),
+        (
+            "static_extension_m",
+            Answer::Number(sys.rod.x[n].x - length),
+        ),
+    ])
+}
+
+/// Speed of a pulse between two nodes of a free wire, m/s, stepped in time.
+fn wave_speed(ctx: &Context, length: f64) -> Result<f64, VerifyError> {
+    let n = ctx.edges(length, length / PULSE_EDGES)?;
+    let h = length / n as f64;
+    let mut sys = straight(ctx.elastic(), &vec![h; n]);
+    sys.twist = Twist::Off;
+    for i in 0..=n {
+        let z = (sys.rod.x[i].x / length - 0.3) / PULSE_WIDTH;
+        sys.rod.v[i].x = PULSE_SPEED * libm::exp(-0.5 * z * z);
+    }
+    let top = highest_frequency(&sys.section, h, 0.0, false);
+    let limit = match ctx.integrator {
+        Integrator::Rk4 => RK4_LIMIT,
+        // the midpoint rule has no limit, but it is to follow the pulse
+        Integrator::Verlet | Integrator::Implicit => VERLET_LIMIT,
+    };
+    let dt = STEP_SHARE * limit / top;
+    let mut method = Implicit::new(Scheme::Midpoint, TOLERANCE, dt, dt);
+    method.fixed = Some(dt);
+    let mut step = |sys: &mut System| -> Result<(), VerifyError> {
+        match ctx.integrator {
+            Integrator::Rk4 => rk4::step(sys, dt),
+            Integrator::Verlet => verlet::step(sys, dt),
+            Integrator::Implicit => {
+                method.step(sys, dt).map_err(no_answer)?;
+            }
+        }
+        Ok(())
+    };
+    sys.evaluate(Some(dt));
+    // half of the pulse runs right: when its crest passes two nodes
+    let stations = [n / 2, 3 * n / 4];
+    let mut crests = [Crest::default(), Crest::default()];
+    for _ in 0..MOST_STEPS {
+        step(&mut sys)?;
+        for (crest, node) in crests.iter_mut().zip(stations) {
+            crest.see(sys.rod.v[node].x, sys.time, dt);
+        }
+        if let [Some(first), Some(second)] = [crests[0].time, crests[1].time] {
+            let distance: f64 = sys.rod.rest[stations[0]..stations[1]].iter().sum();
+            return Ok(distance / (second - first));
+        }
+    }
+    Err(VerifyError::NoAnswer("the pulse never arrived".to_owned()))
+}
+
+/// The first maximum of a signal, by the parabola through three samples.
+#[derive(Clone, Copy, Debug, Default)]
+struct Crest {
+    last: [f64; 2],
+    time: Option<f64>,
+}
+
+impl Crest {
+    fn see(&mut self, value: f64, time: f64, dt: f64) {
+        let [a, b] = self.last;
+        if self.time.is_none() && b > 0.25 * PULSE_SPEED && b >= a && b > value {
+            self.time = Some(time - dt + 0.5 * dt * (a - value) / (a - 2.0 * b + value));
+        }
+        self.last = [b, value];
+    }
+}

@@ -1,0 +1,199 @@
+//! Elastic wire drawn round a cylinder: the ratio of its end forces while it slips.
+//!
+//! The wire lies in the x-z plane. A dead force holds one end; the other is drawn along +x and is
+//! free across it, so both far-field directions are exact whatever the legs do, and the wrap is
+//! the angle between them. Ends carry no moment; legs are several bending lengths long.
+
+use super::bench::{SmoothMean, Stepper, law, line_damping, mesh, stable_step};
+use super::{Answer, Answers, Context, VerifyError};
+use crate::contact::{Contacts, LineContact};
+use crate::geometry::Shape;
+use crate::geometry::generate::cylinder;
+use crate::integrate::verlet;
+use crate::math::V3;
+use crate::rod::Twist;
+use crate::rod::{Rod, Section};
+use crate::scene::Integrator;
+use crate::system::{Support, System};
+use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
+
+/// Edge length as a share of the bending length `sqrt(EI/F0)` and of the bend radius.
+const SPACING: [f64; 2] = [0.25, 0.1];
+
+/// Leg length in bending lengths of the slack side: end effects fall to e^-5.
+const LEG: f64 = 5.0;
+
+/// Depth under the slack side's load as a share of the radius; many sagittas of the facets.
+const DEPTH: f64 = 1e-5;
+
+/// Facets of the cylinder.
+const FACETS: usize = 4096;
+
+/// Local error of a step of the production method as a share of the bend radius, and the parts of a
+/// time that it is told to stop at.
+const TOLERANCE: f64 = 1e-6;
+const PARTS: usize = 200;
+
+/// Drawing speed as a share of the speed of transverse waves on the slack side.
+const SPEED: f64 = 1e-2;
+
+/// Way drawn before the mean is taken: shares of the bend radius and of the wire's stretch; and the
+/// edge lengths it is taken over (touches come and go once per edge).
+const RUN_IN: f64 = 0.08;
+const MEAN_EDGES: f64 = 3.0;
+
+/// Runs a case.
+pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
+    let (mu, wrap) = (ctx.number("mu")?, ctx.number("wrap_rad")?);
+    let (radius, hold) = (ctx.number("R_m")?, ctx.number("F0_N")?);
+    let section = ctx.elastic();
+    let mut capstan = Capstan::new(ctx, &section, mu, wrap, radius, hold)?;
+    capstan.settle()?;
+    let mut ratios = capstan.draw()?;
+    let (first, second) = (ratios.remove(0), ratios.remove(0));
+    let drift = (first / second - 1.0).abs();
+    if drift.is_nan() || drift >= 0.01 {
+        return Err(VerifyError::NoAnswer(format!(
+            "no steady slip: force ratios {first:.4} and {second:.4} one after the other"
+        )));
+    }
+    Ok(vec![(
+        "stiff_ratio",
+        Answer::Number(0.5 * (first + second)),
+    )])
+}
+
+struct Capstan {
+    sys: System,
+    step: Stepper,
+    dt: f64,
+    hold: f64,
+    bend: f64,
+    leg: f64,
+    edge: f64,
+    wave: f64,
+}
+
+impl Capstan {
+    /// Wire on the path of a string, stretched by the holding force.
+    fn new(
+        ctx: &Context,
+        section: &Section,
+        mu: f64,
+        wrap: f64,
+        radius: f64,
+        hold: f64,
+    ) -> Result<Self, VerifyError> {
+        let bend = radius + section.radius();
+        let bending = (section.ei / hold).sqrt();
+        let leg = LEG * bending;
+        let edge = (SPACING[0] * bending).min(SPACING[1] * bend);
+        let total = 2.0 * leg + wrap * bend;
+        let edges = (total / edge).ceil() as usize;
+        let h = total / edges as f64;
+        // node 0 at the held end; the arc runs from pi/2 + wrap down to pi/2
+        let point = |s: f64| {
+            let on = |a: f64| V3::new(libm::cos(a), 0.0, libm::sin(a)) * bend;
+            let start = FRAC_PI_2 + wrap;
+            let out = V3::new(-libm::sin(start), 0.0, libm::cos(start));
+            if s < leg {
+                on(start) + out * (leg - s)
+            } else if s < total - leg {
+                on(start - (s - leg) / bend)
+            } else {
+                on(FRAC_PI_2) + V3::x() * (s - total + leg)
+            }
+        };
+        let points: Vec<V3> = (0..=edges).map(|i| point(h * i as f64)).collect();
+        let stretch = 1.0 + hold / section.ea;
+        let rest = points
+            .windows(2)
+            .map(|p| (p[1] - p[0]).norm() / stretch)
+            .collect();
+        let mut sys = System::new(section.clone(), Rod::through(&points, Some(rest)));
+        // plane, so untwisted
+        sys.twist = Twist::Off;
+        let stiffness = hold / (bend * bend * DEPTH);
+        let law = law(stiffness, 1.0, mu);
+        let (count, r) = (points.len(), section.radius());
+        let wave = (hold / section.mass_per_length()).sqrt();
+        let step;
+        if ctx.integrator == Integrator::Implicit {
+            let core = Shape::Cylinder {
+                radius,
+                half_y: 10.0 * section.diameter,
+            };
+            let mut line = LineContact::new(core, law, r, count);
+            line.damping = line_damping(&law, section);
+            sys.line = Some(line);
+            step = Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave));
+        } else {
+            let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
+            sys.contacts = Some(Contacts::new(core, law, r, section.diameter, count));
+            step = Stepper::Explicit(verlet::step);
+        }
+        let start = FRAC_PI_2 + wrap;
+        let out = V3::new(-libm::sin(start), 0.0, libm::cos(start));
+        sys.loads.nodal = vec![(0, out * hold)];
+        sys.support[1] = Support {
+            hold: [true, false, false],
+            point: points[edges],
+            ..Support::free()
+        };
+        sys.refresh();
+        Ok(Self {
+            step,
+            dt: stable_step(section, h, stiffness, false),
+            wave,
+            sys,
+            hold,
+            bend,
+            leg,
+            edge: h,
+        })
+    }
+
+    /// Lets the legs find their shape under drag.
+    fn settle(&mut self) -> Result<(), VerifyError> {
+        let transit = self.leg / self.wave;
+        self.sys.loads.drag = 4.0 / transit;
+        self.step.through(&mut self.sys, 4.0 * transit, self.dt)
+    }
+
+    /// Draws the wire at constant speed; mean force ratios over two stretches one after the other.
+    fn draw(&mut self) -> Result<Vec<f64>, VerifyError> {
+        let speed = SPEED * self.wave;
+        let last = self.sys.rod.nodes() - 1;
+        let run_in = RUN_IN * self.bend / speed;
+        let (steps, dt) = self.parts(run_in);
+        for i in 0..steps {
+            // a sudden start would be a blow; drag fades out to where it takes nothing off
+            let s = (i as f64 + 1.0) / steps as f64;
+            self.sys.support[1].velocity.x = speed * (10.0 * s).min(1.0);
+            self.sys.loads.drag = (1.0 - s) * self.wave / self.leg;
+            self.step.through(&mut self.sys, dt, dt)?;
+        }
+        self.sys.loads.drag = 0.0;
+        let (steps, dt) = self.parts(MEAN_EDGES * self.edge / speed);
+        (0..2)
+            .map(|_| {
+                let mut mean = SmoothMean::over(steps);
+                for _ in 0..steps {
+                    self.step.through(&mut self.sys, dt, dt)?;
+                    mean.add(-self.sys.load.force[last].x / self.hold);
+                }
+                Ok(mean.value())
+            })
+            .collect()
+    }
+
+    /// Parts of a time after which loads change and readings are taken: explicit steps, or enough for
+    /// the production method to choose its own in between.
+    fn parts(&self, time: f64) -> (usize, f64) {
+        match self.step {
+            Stepper::Explicit(_) => ((time / self.dt) as usize, self.dt),
+            Stepper::Implicit(_) => (PARTS, time / PARTS as f64),
+        }
+    }
+}

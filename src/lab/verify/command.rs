@@ -1,0 +1,240 @@
+//! `coilwind verify`: which cases to run, and the run itself.
+
+use super::file::{CaseFile, Check};
+use super::report::{Outcome, Record, judge, unknown};
+use super::{Context, KINDS, VerifyError};
+use crate::scene::{Integrator, Preset};
+use crate::settings::SceneSettings;
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// Arguments of `coilwind verify`.
+#[derive(Clone, Debug, Default, clap::Args)]
+pub struct VerifyArgs {
+    /// Kinds to run; all if none is named
+    #[arg(value_name = "KIND")]
+    pub kinds: Vec<String>,
+    /// Case file to run; the packed reference cases if none is given
+    #[arg(long = "file", value_name = "CASES.json")]
+    pub files: Vec<PathBuf>,
+    /// Method: default (the implicit one that winding uses) or paper (explicit, RK4)
+    #[arg(long, value_name = "paper|default", default_value = "default", value_parser = ["paper", "default"])]
+    pub preset: String,
+    /// Solver setting: solver.spacing_near (finest node spacing, m) or solver.integrator
+    #[arg(long = "set", value_name = "NAME=VALUE")]
+    pub set: Vec<String>,
+    /// One line of JSON per number
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How the cases are computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Manner {
+    /// whose checks count
+    pub preset: Preset,
+    /// the method: implicit for statics as well, or explicit forces with steps of this kind
+    pub integrator: Integrator,
+    /// node spacing where it is finest, m; `None`: each kind's own
+    pub spacing: Option<f64>,
+}
+
+impl VerifyArgs {
+    /// The manner that preset and settings ask for.
+    pub fn manner(&self) -> Result<Manner, VerifyError> {
+        let preset = if self.preset == "paper" {
+            Preset::Paper
+        } else {
+            Preset::Default
+        };
+        let mut settings = SceneSettings::default();
+        let mut spacing = None;
+        for text in &self.set {
+            let bad = |problem: String| VerifyError::Setting {
+                text: text.clone(),
+                problem,
+            };
+            let (name, value) = text
+                .split_once('=')
+                .ok_or_else(|| bad("NAME=VALUE is wanted".to_owned()))?;
+            settings
+                .set_text(name, value)
+                .map_err(|e| bad(e.to_string()))?;
+            if name.starts_with("solver.spacing_near") {
+                let near = settings.solver.spacing_near;
+                if !(near.is_finite() && near > 0.0) {
+                    return Err(bad("a spacing above 0 is wanted".to_owned()));
+                }
+                spacing = Some(near);
+            } else if name != "solver.integrator" {
+                return Err(bad(
+                    "verify takes solver.spacing_near and solver.integrator".to_owned(),
+                ));
+            }
+        }
+        let integrator = match (settings.solver.integrator.as_str(), preset) {
+            ("rk4", _) | ("auto", Preset::Paper) => Integrator::Rk4,
+            ("verlet", _) => Integrator::Verlet,
+            ("implicit" | "auto", _) => Integrator::Implicit,
+            (other, _) => {
+                return Err(VerifyError::Setting {
+                    text: format!("solver.integrator={other}"),
+                    problem: "auto, implicit, verlet or rk4 is wanted".to_owned(),
+                });
+            }
+        };
+        Ok(Manner {
+            preset,
+            integrator,
+            spacing,
+        })
+    }
+
+    /// The case files to run.
+    pub fn case_files(&self) -> Result<Vec<CaseFile>, VerifyError> {
+        if self.files.is_empty() {
+            CaseFile::packed()
+        } else {
+            self.files.iter().map(|p| CaseFile::load(p)).collect()
+        }
+    }
+}
+
+/// Runs what `args` ask for, handing each line to `print`; whether every number was right.
+///
+/// An error is bad input (exit code 2); `Ok(false)` a number out of tolerance, a case without
+/// an answer or a kind that is not known (exit code 1).
+pub fn run(args: &VerifyArgs, mut print: impl FnMut(&str)) -> Result<bool, VerifyError> {
+    let manner = args.manner()?;
+    let files = args.case_files()?;
+    if !args.json {
+        print(&Record::heading());
+    }
+    let (mut right, mut all) = (0, 0);
+    let mut seconds = 0.0;
+    let mut count = |record: &Record| {
+        all += 1;
+        right += usize::from(record.ok == Some(true));
+        print(&if args.json {
+            record.json()
+        } else {
+            record.line()
+        });
+    };
+    for kind in &args.kinds {
+        if !files.iter().any(|f| f.kind == *kind) {
+            if KINDS.iter().any(|(known, _)| known == kind) {
+                return Err(VerifyError::NoCases { kind: kind.clone() });
+            }
+            count(&unknown(kind, None));
+        }
+    }
+    for file in &files {
+        if !args.kinds.is_empty() && !args.kinds.contains(&file.kind) {
+            continue;
+        }
+        run_file(file, &manner, |records, cpu| {
+            seconds += cpu;
+            records.iter().for_each(&mut count);
+        })?;
+    }
+    if !args.json {
+        print(&format!("{right} of {all} right, {seconds:.1} s"));
+    }
+    Ok(right == all)
+}
+
+/// Runs the cases of one file; `each` gets the records of a case and the seconds it took.
+pub fn run_file(
+    file: &CaseFile,
+    manner: &Manner,
+    mut each: impl FnMut(&[Record], f64),
+) -> Result<(), VerifyError> {
+    let solve = KINDS.iter().find(|(kind, _)| *kind == file.kind);
+    for case in &file.cases {
+        let context = Context {
+            section: &file.section,
+            inputs: &case.inputs,
+            folder: &file.folder,
+            integrator: manner.integrator,
+            spacing: manner.spacing,
+        };
+        let start = Instant::now();
+        let answers = solve.map(|(_, run)| run(&context));
+        let cpu = start.elapsed().as_secs_f64();
+        let outcome = match answers {
+            None => Outcome::Unknown,
+            Some(Ok(answers)) => Outcome::Answers(answers, cpu),
+            Some(Err(VerifyError::Input { name, problem })) => {
+                return Err(VerifyError::File {
+                    file: file.name.clone(),
+                    key: format!("case {}, inputs.{name}", case.id),
+                    problem,
+                });
+            }
+            Some(Err(error)) => Outcome::Failed(error.to_string(), cpu),
+        };
+        let counts = |c: &&(String, Check)| c.1.counts(manner.preset);
+        let mut records = judge(&file.kind, case, file.check.iter().filter(counts), &outcome);
+        if solve.is_none() && records.is_empty() {
+            records.push(unknown(&file.kind, Some(&case.id)));
+        }
+        each(&records, cpu);
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Program {
+        #[command(flatten)]
+        args: VerifyArgs,
+    }
+
+    fn parse(words: &[&str]) -> VerifyArgs {
+        Program::try_parse_from(std::iter::once(&"verify").chain(words))
+            .expect("the words are well formed")
+            .args
+    }
+
+    #[test]
+    fn settings_reach_the_manner() {
+        let manner = parse(&["--preset", "paper", "--set", "solver.spacing_near=0.0002"])
+            .manner()
+            .expect("known settings");
+        assert_eq!(manner.integrator, Integrator::Rk4);
+        assert_eq!(manner.spacing, Some(0.0002));
+        let manner = parse(&["--set", "solver.integrator=rk4"])
+            .manner()
+            .expect("known settings");
+        assert_eq!(
+            (manner.preset, manner.integrator),
+            (Preset::Default, Integrator::Rk4)
+        );
+        for bad in [
+            "solver.spacing_near",
+            "solver.spacing_near=wide",
+            "solver.spacing_near=-1",
+            "solver.spacing_naer=1",
+            "solver.integrator=euler",
+            "wire.diameter=0.001",
+        ] {
+            assert!(parse(&["--set", bad]).manner().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_kind_that_nobody_knows_is_neither_right_nor_wrong() {
+        let mut lines = Vec::new();
+        let all_right = run(&parse(&["perpetual_motion", "--json"]), |line| {
+            lines.push(line.to_owned());
+        });
+        assert_eq!(all_right, Ok(false));
+        assert_eq!(lines.len(), 1);
+        assert!(lines[0].contains(r#""ok":null"#), "{}", lines[0]);
+    }
+}

@@ -1,0 +1,85 @@
+//! A straight elastic wire held in a helix by an axial force and couple.
+//!
+//! One turn, its ends clamped in place, direction and roll as on the helix, the rest free to find
+//! its equilibrium; the wrench is what the clamp at the far end puts into the wire.
+
+use super::equilibrium::settle_with_twist;
+use super::{Answer, Answers, Context, VerifyError};
+use crate::math::{Quat, V3};
+use crate::rod::Rod;
+use crate::system::{Support, System};
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
+use std::f64::consts::TAU;
+
+/// Edges of the turn.
+const EDGES: f64 = 300.0;
+
+/// The helix about +z.
+struct Helix {
+    radius: f64,
+    pitch: f64,
+    /// what the section turns against the normal, per length
+    roll: f64,
+}
+
+impl Helix {
+    /// Length of wire per angle.
+    fn rate(&self) -> f64 {
+        let rise = self.pitch / TAU;
+        (self.radius * self.radius + rise * rise).sqrt()
+    }
+
+    fn point(&self, angle: f64) -> V3 {
+        let (s, c) = (libm::sin(angle), libm::cos(angle));
+        V3::new(self.radius * c, self.radius * s, self.pitch * angle / TAU)
+    }
+
+    /// Frame of the section: z along the wire, x the inward normal turned by the roll.
+    fn frame(&self, angle: f64) -> Quat {
+        let (s, c) = (libm::sin(angle), libm::cos(angle));
+        let tangent = V3::new(-self.radius * s, self.radius * c, self.pitch / TAU) / self.rate();
+        let normal = V3::new(-c, -s, 0.0);
+        let turn = self.roll * self.rate() * angle;
+        let (s, c) = (libm::sin(turn), libm::cos(turn));
+        let binormal = tangent.cross(&normal);
+        let x = normal * c + binormal * s;
+        let axes = Matrix3::from_columns(&[x, tangent.cross(&x), tangent]);
+        UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(axes)).into_inner()
+    }
+}
+
+/// Force and couple along the axis.
+pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
+    let (radius, pitch) = (ctx.positive("R_m")?, ctx.number("pitch_m")?);
+    let density = ctx.number("twist_density_1_per_m")?;
+    let mut helix = Helix {
+        radius,
+        pitch,
+        roll: 0.0,
+    };
+    // the normal itself turns about the wire by the helix's torsion
+    helix.roll = density - pitch / TAU / (helix.rate() * helix.rate());
+    let length = TAU * helix.rate();
+    // neither bend nor twist of a joint may come near half a turn
+    let n = ctx.edges(length, length / EDGES.max(density.abs() * length / 0.1))?;
+    let points: Vec<V3> = (0..=n)
+        .map(|i| helix.point(TAU * i as f64 / n as f64))
+        .collect();
+    let mut rod = Rod::through(&points, None);
+    for j in 0..n {
+        rod.frame[j] = helix.frame(TAU * (j as f64 + 0.5) / n as f64);
+    }
+    rod.realign();
+    let mut sys = System::new(ctx.elastic(), rod);
+    sys.support = [
+        Support::clamped(points[0], helix.frame(0.0)),
+        Support::clamped(points[n], helix.frame(TAU)),
+    ];
+    settle_with_twist(ctx, &mut sys)?;
+    let force = -sys.load.force[n];
+    let couple = sys.load.clamp_moment[1] + points[n].cross(&force);
+    Ok(vec![
+        ("axial_force_N", Answer::Number(force.z)),
+        ("axial_moment_Nm", Answer::Number(couple.z)),
+    ])
+}

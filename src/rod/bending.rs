@@ -1,0 +1,455 @@
+//! The rod in vector form, for the implicit solver: energy, gradient and Gauss-Newton Hessian.
+//!
+//! The same energy as [`super::forces`] without twist, written in edge vectors instead of frames:
+//! the curvature of a joint is the turning angle between its edges about their common normal, over
+//! the Voronoi length. Plastic curvature enters as a vector; the caller turns it along with the
+//! wire. The Hessian leaves out the second derivative of the angle (Gauss-Newton): what is left is
+//! positive semidefinite whatever the moment. Curvature binormal and its derivative after Bergou
+//! et al., *Discrete Elastic Rods*, 2008; the angle itself in place of twice its tangent.
+
+use super::plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
+use super::yield_branch::YieldBranch;
+use crate::math::V3;
+
+/// Smallest `1 + cos` of a turning angle: just short of a complete fold.
+pub(super) const FOLD: f64 = 1e-6;
+
+/// Below this square of the tangent of half an angle series stand for [`angle_over_tangent`], to 1e-16 ...
+pub(super) const SERIES: f64 = 0.012;
+/// ... its terms ...
+pub(super) const TERMS: [f64; 8] = [
+    1.0,
+    -1.0 / 3.0,
+    1.0 / 5.0,
+    -1.0 / 7.0,
+    1.0 / 9.0,
+    -1.0 / 11.0,
+    1.0 / 13.0,
+    -1.0 / 15.0,
+];
+/// ... and those of the derivative.
+pub(super) const SLOPE_TERMS: [f64; 7] = [
+    -1.0 / 12.0,
+    2.0 / 20.0,
+    -3.0 / 28.0,
+    4.0 / 36.0,
+    -5.0 / 44.0,
+    6.0 / 52.0,
+    -7.0 / 60.0,
+];
+
+/// An edge at a length.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Stretched {
+    /// tension, N
+    pub tension: f64,
+    /// its derivative with respect to the length, N/m
+    pub stiffness: f64,
+    /// energy whose derivative with respect to the length is the tension, J
+    pub energy: f64,
+}
+
+/// Tension of an edge of unstretched length `rest` that is `length` long. It yields if it does so at
+/// the length `expected`, which an iteration may know better than its iterate.
+#[inline]
+pub fn stretched(law: &Law, state: &Scalar, rest: f64, length: f64, expected: f64) -> Stretched {
+    let promised = law.modulus * (expected / rest - 1.0 - state.strain);
+    if promised.abs() <= law.limit + state.rise {
+        let tension = law.modulus * (length / rest - 1.0 - state.strain);
+        return Stretched {
+            tension,
+            stiffness: law.modulus / rest,
+            energy: 0.5 * tension * tension / law.modulus * rest,
+        };
+    }
+    let (tension, next, work) = respond_scalar(law, state, length / rest - 1.0);
+    let yields = work > 0.0;
+    let tangent = if yields {
+        law.tangent(next.rise)
+    } else {
+        law.modulus
+    };
+    Stretched {
+        tension,
+        stiffness: tangent / rest,
+        energy: (0.5 * tension * tension / law.modulus + work) * rest,
+    }
+}
+
+/// A joint between two edges: derivatives with respect to the edge vectors before and after it.
+#[derive(Clone, Copy, Debug)]
+pub struct Bent {
+    /// energy, J
+    pub energy: f64,
+    /// its gradient, N
+    pub before: V3,
+    /// its gradient, N
+    pub after: V3,
+    /// Gauss-Newton Hessian, N/m: before-before and after-after
+    pub own: [Symmetric; 2],
+    /// its rest: rows before, columns after
+    pub cross: Block,
+    /// set where the law may change its branch
+    pub yield_branch: Option<YieldBranch>,
+}
+
+/// Bending of a joint between edges of directions `t` and inverse lengths `il`.
+///
+/// `set` is the plastic curvature as a vector, 1/m; `rise` the rise of its yield moment.
+#[inline]
+pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) -> Bent {
+    let chi = (1.0 + t[0].dot(t[1])).max(FOLD);
+    let f = 2.0 / chi;
+    let kb = t[0].cross(t[1]) * f;
+    let (s, s1) = angle_over_tangent(kb.norm_squared());
+    let inv = 1.0 / lv;
+    let trial = (kb * (s * inv) - set) * law.modulus;
+    // moment and tangent, both of the angle
+    let (moment, energy, along, across, dir) = respond(law, trial, rise);
+    let near = dir != V3::zeros();
+    let stiffness = along * inv;
+    let (energy, c_across, c_along) = (energy * lv, across * inv, (along - across) * inv);
+    // in terms of the curvature binormal: angle = s(kb^2) kb
+    let kb2 = kb.norm_squared();
+    let turn = |a: &V3| a * s + kb * (2.0 * s1 * kb.dot(a));
+    let g = turn(&moment);
+    let t_sum = (t[0] + t[1]) * (0.5 * f);
+    let kg = t_sum * kb.dot(&g);
+    let before = (t[1].cross(&g) * f - kg) * il[0];
+    let after = (t[0].cross(&g) * -f - kg) * il[1];
+    // S (c I + (c' - c) d d^T) S with S = s I + 2 s' kb kb^T is c1 I + c2 kb kb^T + c3 (S d)(S d)^T
+    let c1 = s * s * c_across;
+    let c2 = 4.0 * s1 * (s + s1 * kb2) * c_across;
+    // gradients G = (+-f [t]x - kb ts^T) / l of the binormal, transposed, on kb and on S d
+    let a = [kb.cross(t[1]), kb.cross(t[0])];
+    let on = |v: &V3, cross: [V3; 2]| {
+        let kv = kb.dot(v);
+        [
+            (cross[0] * -f - t_sum * kv) * il[0],
+            (cross[1] * f - t_sum * kv) * il[1],
+        ]
+    };
+    let u = on(&kb, a);
+    let cf = c1 * f;
+    let cf2 = cf * f;
+    let ck = c1 * kb2;
+    let scale = [il[0] * il[0], il[0] * il[1], il[1] * il[1]];
+    let mut own = [[0.0; 6]; 2];
+    for (k, (other, sign)) in [(t[1], cf), (t[0], -cf)].into_iter().enumerate() {
+        let s = scale[2 * k];
+        let h = &mut own[k];
+        for d in [0, 2, 5] {
+            h[d] = cf2 * s;
+        }
+        add_square(h, other, -cf2 * s);
+        let w = (a[k] * sign + t_sum * (0.5 * ck)) * s;
+        add_pair(h, &w, &t_sum);
+        add_square(h, &u[k], c2);
+    }
+    let s = scale[1];
+    let mut cross = scaled_identity(-cf2 * t[0].dot(t[1]) * s);
+    add_outer(&mut cross, t[0], &(t[1] * (cf2 * s)));
+    add_outer(&mut cross, &((a[0] * cf + t_sum * ck) * s), &t_sum);
+    add_outer(&mut cross, &(t_sum * (-cf * s)), &a[1]);
+    add_outer(&mut cross, &(u[0] * c2), &u[1]);
+    let mut yield_branch = None;
+    if near {
+        let d = turn(&dir);
+        let w = on(&d, [d.cross(t[1]), d.cross(t[0])]);
+        yield_branch = Some(YieldBranch {
+            rows: w,
+            rolls: [0.0; 2],
+            trial: trial.dot(&dir),
+            length: lv,
+            rise,
+            moment: moment.dot(&dir),
+            stiffness,
+            branch: i8::from(along != law.modulus),
+        });
+        add_square(&mut own[0], &w[0], c_along);
+        add_square(&mut own[1], &w[1], c_along);
+        add_outer(&mut cross, &(w[0] * c_along), &w[1]);
+    }
+    Bent {
+        energy,
+        before,
+        after,
+        own,
+        cross,
+        yield_branch,
+    }
+}
+
+/// A block of the Hessian, row by row.
+pub type Block = [[f64; 3]; 3];
+
+#[inline]
+fn scaled_identity(c: f64) -> Block {
+    [[c, 0.0, 0.0], [0.0, c, 0.0], [0.0, 0.0, c]]
+}
+
+/// Adds `a b^T`.
+#[inline]
+pub fn add_outer(m: &mut Block, a: &V3, b: &V3) {
+    let (a, b) = ([a.x, a.y, a.z], [b.x, b.y, b.z]);
+    for (row, a) in m.iter_mut().zip(a) {
+        for (x, b) in row.iter_mut().zip(b) {
+            *x += a * b;
+        }
+    }
+}
+
+/// A symmetric block by its lower half, row by row.
+pub type Symmetric = [f64; 6];
+
+/// Adds `c a a^T`.
+#[inline]
+pub fn add_square(m: &mut Symmetric, a: &V3, c: f64) {
+    let b = a * c;
+    m[0] += b.x * a.x;
+    m[1] += b.y * a.x;
+    m[2] += b.y * a.y;
+    m[3] += b.z * a.x;
+    m[4] += b.z * a.y;
+    m[5] += b.z * a.z;
+}
+
+/// Adds `a b^T + b a^T`.
+#[inline]
+fn add_pair(m: &mut Symmetric, a: &V3, b: &V3) {
+    m[0] += 2.0 * a.x * b.x;
+    m[1] += a.y * b.x + b.y * a.x;
+    m[2] += 2.0 * a.y * b.y;
+    m[3] += a.z * b.x + b.z * a.x;
+    m[4] += a.z * b.y + b.z * a.y;
+    m[5] += 2.0 * a.z * b.z;
+}
+
+/// Moment, energy per length, stiffness along and across the moment, its direction (none where that does not
+/// matter).
+#[inline(always)]
+pub(super) fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3) {
+    let n2 = trial.norm_squared();
+    let limit = law.limit + rise;
+    if n2 <= limit * limit {
+        let e = 0.5 * n2 / law.modulus;
+        let n = n2.sqrt();
+        let dir = if YieldBranch::matters(law, n, rise) {
+            trial * (1.0 / n)
+        } else {
+            V3::zeros()
+        };
+        return (trial, e, law.modulus, law.modulus, dir);
+    }
+    let n = n2.sqrt();
+    let state = Bend {
+        curvature: [0.0; 2],
+        rise,
+    };
+    let (m, next, work) = respond_bend(law, &state, [n / law.modulus, 0.0]);
+    let dir = trial / n;
+    let along = law.tangent(next.rise);
+    (
+        dir * m[0],
+        0.5 * m[0] * m[0] / law.modulus + work,
+        along,
+        law.modulus * m[0] / n,
+        dir,
+    )
+}
+
+/// Turning angle as a vector of the curvature binormal's direction, from two unit directions.
+#[inline]
+pub fn turning(t: [&V3; 2]) -> V3 {
+    let chi = (1.0 + t[0].dot(t[1])).max(FOLD);
+    let kb = t[0].cross(t[1]) * (2.0 / chi);
+    kb * angle_over_tangent(kb.norm_squared()).0
+}
+
+/// Turning angle over `y = 2 tan(angle / 2)`, and the derivative of that ratio by `y^2`.
+#[inline]
+pub(super) fn angle_over_tangent(y2: f64) -> (f64, f64) {
+    let z2 = 0.25 * y2;
+    if z2 < SERIES {
+        let sum = |terms: &[f64]| terms.iter().rev().fold(0.0, |sum, c| sum * z2 + c);
+        (sum(&TERMS), sum(&SLOPE_TERMS))
+    } else {
+        let z = z2.sqrt();
+        let s = libm::atan(z) / z;
+        (s, 0.125 * (1.0 / (1.0 + z2) - s) / z2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn law(limit: f64) -> Law {
+        Law::new(3.06e-3, 1.13e-4, limit, f64::INFINITY)
+    }
+
+    fn at(l: &Law, set: &V3, rise: f64, lv: f64, e: [V3; 2]) -> Bent {
+        let (a, b) = (e[0].norm(), e[1].norm());
+        bent(
+            l,
+            set,
+            rise,
+            lv,
+            [&(e[0] / a), &(e[1] / b)],
+            [1.0 / a, 1.0 / b],
+        )
+    }
+
+    fn check(l: &Law, set: V3, rise: f64, e: [V3; 2]) {
+        let lv = 0.5e-3;
+        let b = at(l, &set, rise, lv, e);
+        let h = 1e-9;
+        for which in 0..2 {
+            for axis in [V3::x(), V3::y(), V3::z()] {
+                let energy = |s: f64| {
+                    let mut m = e;
+                    m[which] += axis * (s * h);
+                    at(l, &set, rise, lv, m).energy
+                };
+                let got = (energy(1.0) - energy(-1.0)) / (2.0 * h);
+                let want = [b.before, b.after][which].dot(&axis);
+                let scale = b.before.norm() + b.after.norm() + 1e-3;
+                assert!((got - want).abs() < 2e-5 * scale, "{got} {want} {e:?}");
+            }
+        }
+    }
+
+    /// Where the moment vanishes the neglected part of the Hessian does too.
+    fn check_hessian(e: [V3; 2]) {
+        let l = law(f64::INFINITY);
+        let lv = 0.5e-3;
+        let t = [e[0].normalize(), e[1].normalize()];
+        let set = turning([&t[0], &t[1]]) / lv;
+        let b = at(&l, &set, 0.0, lv, e);
+        let h = 1e-9;
+        let whole = |m: &Symmetric| {
+            crate::math::M3::new(m[0], m[1], m[3], m[1], m[2], m[4], m[3], m[4], m[5])
+        };
+        let h3 = [
+            whole(&b.own[0]),
+            crate::math::M3::from(b.cross).transpose(),
+            whole(&b.own[1]),
+        ];
+        let scale = h3.iter().map(|m| m.norm()).fold(0.0, f64::max);
+        for (which, axis) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2)] {
+            let gradient = |s: f64| {
+                let mut m = e;
+                m[which][axis] += s * h;
+                let b = at(&l, &set, 0.0, lv, m);
+                [b.before, b.after]
+            };
+            let (p, n) = (gradient(1.0), gradient(-1.0));
+            for row in 0..2 {
+                let got = (p[row] - n[row]) / (2.0 * h);
+                let want = match (row, which) {
+                    (0, 0) => h3[0].column(axis).into_owned(),
+                    (0, 1) => h3[1].column(axis).into_owned(),
+                    (1, 0) => h3[1].transpose().column(axis).into_owned(),
+                    _ => h3[2].column(axis).into_owned(),
+                };
+                assert!((got - want).norm() < 1e-5 * scale, "{got:?} {want:?}");
+            }
+        }
+    }
+
+    fn edge() -> impl Strategy<Value = V3> {
+        (0.2..1.0f64, -1.0..1.0f64, -1.0..1.0f64).prop_map(|(x, y, z)| V3::new(x, y, z) * 5e-4)
+    }
+
+    proptest! {
+        #[test]
+        fn gradient_of_the_energy(a in edge(), b in edge(), set in prop::array::uniform3(-100.0..100.0f64), rise in 0.0..0.1f64) {
+            check(&law(f64::INFINITY), V3::from(set), rise, [a, b]);
+            check(&law(5.72e-3), V3::from(set), rise, [a, b]);
+        }
+
+        #[test]
+        fn hessian_where_the_moment_vanishes(a in edge(), b in edge()) {
+            check_hessian([a, b]);
+        }
+
+        #[test]
+        fn angle_is_exact(angle in 1e-4..3.0f64) {
+            let t = V3::new(libm::cos(angle), libm::sin(angle), 0.0);
+            prop_assert!((turning([&V3::x(), &t]) - V3::z() * angle).norm() < 1e-11);
+        }
+
+        /// The tangent of the yielding law: derivative of the moment along and across it.
+        #[test]
+        fn algorithmic_tangent(a in 20.0..400.0f64, b in -100.0..100.0f64, rise in 0.0..2e-3f64) {
+            let l = law(5.72e-3);
+            let trial = V3::new(a, b, 0.0) * l.modulus;
+            let (_, _, along, across, dir) = respond(&l, trial, rise);
+            let h = 1e-4;
+            for axis in [V3::x(), V3::y(), V3::z()] {
+                let m = |s: f64| respond(&l, trial + axis * (s * h * l.modulus), rise).0;
+                let got = (m(1.0) - m(-1.0)) / (2.0 * h);
+                let want = axis * across + dir * ((along - across) * dir.dot(&axis));
+                prop_assert!((got - want).norm() < 1e-6 * l.modulus);
+            }
+        }
+    }
+
+    #[test]
+    fn straight_and_nearly_folded() {
+        let l = 5e-4;
+        check(
+            &law(f64::INFINITY),
+            V3::zeros(),
+            0.0,
+            [V3::x() * l, V3::x() * l],
+        );
+        check(
+            &law(5.72e-3),
+            V3::new(0.0, 0.0, 50.0),
+            0.0,
+            [V3::x() * l, V3::x() * l],
+        );
+        let a = 170f64.to_radians();
+        check(
+            &law(f64::INFINITY),
+            V3::zeros(),
+            0.0,
+            [V3::x() * l, V3::new(a.cos(), a.sin(), 0.0) * l],
+        );
+        let folded = at(
+            &law(f64::INFINITY),
+            &V3::zeros(),
+            0.0,
+            l,
+            [V3::x() * l, V3::x() * -l],
+        );
+        let all = folded
+            .own
+            .iter()
+            .flatten()
+            .chain(folded.cross.iter().flatten());
+        assert!(folded.energy.is_finite() && all.copied().all(f64::is_finite));
+    }
+
+    #[test]
+    fn stretch_is_the_derivative_of_its_energy() {
+        let l = Law::new(48900.0, 1100.0, 38.5, f64::INFINITY);
+        let state = Scalar::default();
+        for length in [0.99e-3, 1.0001e-3, 1.002e-3] {
+            let h = 1e-10;
+            let e = |x: f64| stretched(&l, &state, 1e-3, x, x);
+            let s = e(length);
+            assert!(
+                ((e(length + h).energy - e(length - h).energy) / (2.0 * h) - s.tension).abs()
+                    < 1e-4 * s.tension.abs()
+            );
+            assert!(
+                ((e(length + h).tension - e(length - h).tension) / (2.0 * h) / s.stiffness - 1.0)
+                    .abs()
+                    < 1e-5
+            );
+        }
+    }
+}

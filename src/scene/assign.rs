@@ -1,0 +1,177 @@
+//! How a leaf of the settings is set: by name, with a unit, checked against its row.
+
+use super::SceneError;
+use super::key::{Key, resolve};
+use crate::settings::{Place, SceneSettings};
+use crate::signals::Inputs;
+use crate::variables::{Access, Kind, Value, Variable, by_name, parse_scaled, scaled, table};
+
+impl SceneSettings {
+    /// Sets a leaf by name, with or without unit: `wire.diameter`, `wire.diameter_mm`.
+    /// Leaves everything as it was on an error.
+    pub fn set(&mut self, name: &str, value: Value) -> Result<(), SceneError> {
+        self.set_from(name, Given::Value(value), Place::Set)
+    }
+
+    /// The same from a text, as in `--set NAME=VALUE`.
+    pub fn set_text(&mut self, name: &str, text: &str) -> Result<(), SceneError> {
+        self.set_from(name, Given::Text(text), Place::Set)
+    }
+
+    /// The settings that result from parameters set one by one, in whatever order: defaults, then
+    /// the scene that `scene.file` names, then every other parameter.
+    pub fn from_parameters<'a>(
+        parameters: impl Iterator<Item = (&'a Variable, Value)> + Clone,
+    ) -> Result<Self, SceneError> {
+        let file = parameters.clone().find(|(v, _)| v.name == "scene.file");
+        let mut settings = match file {
+            Some((_, Value::String(file))) if !file.is_empty() => Self::load(&file)?,
+            _ => Self::default(),
+        };
+        for (variable, value) in parameters.filter(|(v, _)| v.name != "scene.file") {
+            settings.set(variable.name, value)?;
+        }
+        Ok(settings)
+    }
+
+    /// Inputs before the first step: core at rest, nozzle where the programme starts, set tension.
+    pub fn start_inputs(&self) -> Inputs {
+        Inputs {
+            spindle_speed: 0.0,
+            nozzle_position: self.nozzle.y_start + self.traverse.lead,
+            tension_setpoint: self.tensioner.tension,
+        }
+    }
+
+    /// Who set a leaf.
+    pub fn place(&self, name: &str) -> Place {
+        self.places.get(name).cloned().unwrap_or_default()
+    }
+
+    pub(super) fn set_from(
+        &mut self,
+        name: &str,
+        given: Given<'_>,
+        place: Place,
+    ) -> Result<(), SceneError> {
+        let Key { variable, scale } = resolve(name, &given.to_string(), &place)?;
+        if variable.name == "scene.file" {
+            return Err(SceneError::Impossible {
+                place,
+                key: name.into(),
+                value: given.to_string().into(),
+                reason: "a scene is loaded before single values are set".into(),
+                allowed: "name the scene instead of setting it".into(),
+            });
+        }
+        let wrong_type = |found: &str| SceneError::WrongType {
+            place: place.clone(),
+            key: name.into(),
+            value: given.to_string().into(),
+            found: found.into(),
+            allowed: variable.allowed().into(),
+        };
+        let value = match (&given, variable.kind) {
+            (Given::Value(Value::Real(x)), Kind::Real) => Value::Real(scaled(*x, scale)),
+            (Given::Value(Value::Integer(i)), Kind::Real) => {
+                Value::Real(scaled(f64::from(*i), scale))
+            }
+            (Given::Value(value), kind) if value.kind() == kind => value.clone(),
+            (Given::Value(value), _) => return Err(wrong_type(noun(value.kind()))),
+            (Given::Number(text), Kind::Real) => {
+                Value::Real(parse_scaled(text, scale).ok_or_else(|| wrong_type("no number"))?)
+            }
+            (Given::Number(_), _) => return Err(wrong_type("a number")),
+            (Given::Other(_, noun), _) => return Err(wrong_type(noun)),
+            (Given::Text(text), Kind::Real) => Value::Real(
+                parse_scaled(text.trim(), scale).ok_or_else(|| wrong_type("no number"))?,
+            ),
+            (Given::Text(text), Kind::Integer) => Value::Integer(
+                text.trim()
+                    .parse()
+                    .map_err(|_| wrong_type("no whole number"))?,
+            ),
+            (Given::Text(text), Kind::Boolean) => match text.trim() {
+                "true" => Value::Boolean(true),
+                "false" => Value::Boolean(false),
+                _ => return Err(wrong_type("neither true nor false")),
+            },
+            (Given::Text(text), Kind::String) => Value::String((*text).to_owned()),
+        };
+        if !variable.admits(&value) {
+            return Err(SceneError::OutOfRange {
+                place,
+                key: name.into(),
+                value: given.to_string().into(),
+                allowed: variable.allowed().into(),
+            });
+        }
+        if let Access::Parameter { set, .. } = variable.access {
+            set(self, value);
+            self.places.insert(variable.name, place);
+        }
+        Ok(())
+    }
+
+    /// A leaf's value in words, with its unit.
+    pub(super) fn shown(&self, name: &str) -> String {
+        match by_name(name).map(|v| (v, v.access)) {
+            Some((v, Access::Parameter { get, .. })) => {
+                let unit = if v.unit == "1" { "" } else { v.unit };
+                format!("{} {unit}", get(self)).trim_end().to_owned()
+            }
+            _ => String::new(),
+        }
+    }
+
+    /// Checks every leaf against its row, whoever wrote it.
+    pub(super) fn check_ranges(&self) -> Result<(), SceneError> {
+        for variable in table() {
+            let Access::Parameter { get, .. } = variable.access else {
+                continue;
+            };
+            let value = get(self);
+            if !variable.admits(&value) {
+                return Err(SceneError::OutOfRange {
+                    place: self.place(variable.name),
+                    key: variable.name.into(),
+                    value: value.to_string().into(),
+                    allowed: variable.allowed().into(),
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A value on its way in.
+#[derive(Clone, Debug)]
+pub(super) enum Given<'a> {
+    /// typed
+    Value(Value),
+    /// a text that stands for any kind
+    Text(&'a str),
+    /// a number as a file spells it
+    Number(String),
+    /// what no leaf takes, and its noun
+    Other(String, &'static str),
+}
+
+impl std::fmt::Display for Given<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Value(Value::String(text)) => write!(f, "{text:?}"),
+            Self::Value(value) => write!(f, "{value}"),
+            Self::Text(text) => f.write_str(text),
+            Self::Number(text) | Self::Other(text, _) => f.write_str(text),
+        }
+    }
+}
+
+fn noun(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Real | Kind::Integer => "a number",
+        Kind::Boolean => "a boolean",
+        Kind::String => "a text",
+    }
+}

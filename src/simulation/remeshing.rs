@@ -1,0 +1,488 @@
+//! Keeping house between steps: insert, refine, freeze, watch for trouble.
+
+use super::{REMESH_STEPS, SimError, Simulation};
+use crate::geometry::FrozenNode;
+use crate::math::turn_about_y;
+use crate::math::{Spin, V3};
+use crate::math::{polar_angle, wrap_to_pi};
+use crate::scene::LiveContact;
+use crate::signals::EventKind;
+use std::f64::consts::{PI, TAU};
+
+/// The live wire never gets shorter than this many nodes: clamp, nozzle and two between.
+const FEWEST_NODES: usize = 4;
+/// Cosine of the angle between edges that may be joined: 10 mrad, at which the chord of two equal edges is
+/// 1.3e-5 shorter than they are.
+const STRAIGHT: f64 = 0.99995;
+
+/// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
+/// turn back.
+const WHOLE: f64 = 0.85;
+
+/// Turning angle of a node from which on its direction is not to be trusted, rad.
+const HALF_TURN: f64 = 0.9 * PI;
+
+/// Wire that has passed the nozzle over what core and way can have taken up at most, from which on it runs away.
+const RUNAWAY: f64 = 2.0;
+
+impl Simulation {
+    pub(super) fn remesh(&mut self, dt: f64) -> Result<(), SimError> {
+        let look = self.implicit.is_some() || self.steps.is_multiple_of(REMESH_STEPS);
+        if look {
+            self.check_health()?;
+        }
+        if self.implicit.is_some() {
+            self.take_back();
+        }
+        let insert = self.nozzle_edge_is_long();
+        let refine = if look {
+            self.edges_to_refine()
+        } else {
+            Vec::new()
+        };
+        let s = self.sys.spindle;
+        let due = self
+            .watch
+            .due(&self.policy, s.angle, s.speed, self.sys.time);
+        let freeze = if due { self.nodes_to_freeze() } else { 0 };
+        let coarsen = if due && self.scene.solver.features.coarse_settled {
+            self.nodes_to_coarsen()
+        } else {
+            Vec::new()
+        };
+        if !insert && refine.is_empty() && freeze == 0 && coarsen.is_empty() {
+            return Ok(());
+        }
+        self.shift_velocities(0.5 * dt);
+        let unexplained = self.sys.energy_residual(None);
+        if insert {
+            let last = self.sys.rod.edges() - 1;
+            self.split(last);
+        }
+        // from the nozzle down, so that the numbers of the others stay
+        for j in refine.into_iter().rev() {
+            self.split(j);
+        }
+        for i in coarsen.into_iter().rev() {
+            if i > freeze + 1 {
+                self.join(i);
+            }
+        }
+        if freeze > 0 {
+            self.freeze(freeze);
+        }
+        // bring the forces in line with the new arrays; what the change itself cost is the method's
+        self.sys.refresh();
+        self.sys.balance.numerical += self.sys.energy_residual(None) - unexplained;
+        self.shift_velocities(-0.5 * dt);
+        Ok(())
+    }
+
+    /// With the staggered step, brings velocities to the time of the positions and back.
+    fn shift_velocities(&mut self, half: f64) {
+        if self.staggered() {
+            crate::integrate::verlet::shift_velocities(&mut self.sys, half);
+        }
+    }
+
+    fn split(&mut self, edge: usize) {
+        self.sys.split(edge);
+        self.watch.insert(edge + 1);
+    }
+
+    /// The last edge has grown to two spacings: time for a new node halfway.
+    fn nozzle_edge_is_long(&self) -> bool {
+        let last = self.sys.rod.edges() - 1;
+        self.sys.rod.rest[last] >= 2.0 * self.scene.solver.spacing_free
+    }
+
+    /// Edges of the free span that came near the core and are too long for it, ascending.
+    fn edges_to_refine(&self) -> Vec<usize> {
+        let solver = self.scene.solver;
+        if solver.spacing_free < 1.5 * solver.spacing_near {
+            return Vec::new();
+        }
+        let spin = Spin::new(self.sys.spindle.angle);
+        let reach = solver.refine_distance + self.scene.wire.radius();
+        let rod = &self.sys.rod;
+        // the edge at the nozzle keeps its length for the feed
+        let first = if self.implicit.is_some() {
+            self.first_fine_edge()
+        } else {
+            0
+        };
+        (first..rod.edges() - 1)
+            .filter(|&j| {
+                rod.rest[j] > 1.5 * solver.spacing_near
+                    && self.distance_to_coil(spin.to_core(rod.x[j])) < reach
+            })
+            .collect()
+    }
+
+    fn distance_to_coil(&self, p: V3) -> f64 {
+        self.sys.distance_to_core(p)
+    }
+
+    /// How many nodes from the clamp are at rest, settled long enough and in place (eq. 8, 9).
+    fn nodes_to_freeze(&mut self) -> usize {
+        let angle = self.sys.spindle.angle;
+        let spin = Spin::new(angle);
+        let lift = self.lift_off();
+        self.behind.clear();
+        self.behind.resize(lift + 1, 0.0);
+        let x = &self.sys.rod.x;
+        let mut last = polar_angle(spin.to_core(x[lift]));
+        for i in (0..lift).rev() {
+            let polar = polar_angle(spin.to_core(x[i]));
+            self.behind[i] = self.behind[i + 1] + wrap_to_pi(last - polar).abs();
+            last = polar;
+        }
+        let still = self.watch.look(
+            &self.policy,
+            angle,
+            self.sys.time,
+            |i| spin.to_core(x[i]),
+            |i| self.behind.get(i).copied().unwrap_or(0.0),
+        );
+        self.watch_live_wire();
+        if !self.scene.freeze.enabled {
+            return 0;
+        }
+        // the last one that is at rest becomes the clamp
+        let count = still.saturating_sub(1).min(self.behind_lift_off());
+        let reach = 2.0 * self.scene.wire.radius() + self.policy.margin;
+        (0..count)
+            .find(|&i| self.distance_to_coil(spin.to_core(self.sys.rod.x[i + 1])) > reach)
+            .unwrap_or(count)
+    }
+
+    /// Live wire meets live wire where lift-off comes round before the wire there is at rest. A whole
+    /// flat can land at once, so the pairs are watched from half a turn on.
+    fn watch_live_wire(&mut self) {
+        // wire too stiff for its tension stands off and touches nothing: there all of a turn counts
+        let turn = TAU;
+        let whole = self.sys.rod.nodes() - 1;
+        let watched = match self.scene.solver.features.live_contact {
+            LiveContact::Always => true,
+            LiveContact::WhenHalfATurnIsLive => {
+                self.angle_of_wire(self.lift_off()) > 0.5 * turn
+                    || self.angle_of_wire(whole) > WHOLE * turn
+            }
+            LiveContact::Never => false,
+        };
+        if watched {
+            match &mut self.sys.line {
+                Some(line) => {
+                    line.watch_live_wire();
+                }
+                None => {
+                    self.sys.live.get_or_insert_default();
+                }
+            }
+        }
+    }
+
+    /// Polar angle that the live wire covers from the clamp to a node, rad.
+    fn angle_of_wire(&self, end: usize) -> f64 {
+        let spin = Spin::new(self.sys.spindle.angle);
+        let x = &self.sys.rod.x;
+        let mut last = (0.0, polar_angle(spin.to_core(x[0])));
+        for x in &x[..=end] {
+            let polar = polar_angle(spin.to_core(*x));
+            last = (last.0 + wrap_to_pi(polar - last.1), polar);
+        }
+        last.0.abs()
+    }
+
+    /// The first `count` nodes become fixed geometry.
+    fn freeze(&mut self, count: usize) {
+        let angle = self.sys.spindle.angle;
+        let spin = Spin::new(angle);
+        let back = turn_about_y(-angle);
+        let mut arc = self.sys.arc0;
+        if let Some(l) = &mut self.sys.line {
+            l.go_on(None);
+        }
+        for i in 0..count {
+            let node = FrozenNode {
+                point: spin.to_core(self.sys.rod.x[i]),
+                frame: back * self.sys.rod.frame[i],
+                arc,
+                tension: self.sys.load.tension[i],
+                plastic_strain: self.sys.rod.stretch[i].strain,
+            };
+            let centre = spin.to_core(self.sys.centre(i));
+            let settled = self.settled(centre, arc, node.plastic_strain);
+            if i > 0 {
+                self.rest_depth = self.rest_depth.max(self.sys.depth(i));
+            }
+            if let Some(l) = &mut self.sys.line {
+                l.lay(node.point, node.arc);
+            }
+            if let Some(c) = &mut self.sys.contacts {
+                c.tube.push(node);
+            }
+            let (turns, defects) = (self.coil.turns_settled(), self.coil.defect_count());
+            self.coil.settle(settled);
+            self.tell(turns, defects);
+            arc += self.sys.rod.rest[i];
+        }
+        self.sys.freeze_front(count);
+        self.watch.remove_front(count);
+        if let Some(c) = &mut self.sys.contacts {
+            c.forget_surroundings();
+        }
+        self.join_frozen_to_live();
+        if let Some(l) = &mut self.sys.line {
+            l.forget_near(l.tube.len() - count);
+        }
+    }
+
+    /// Wire that comes off the core again: frozen wire thaws near lift-off, and what goes back into the
+    /// nozzle takes its nodes along.
+    fn take_back(&mut self) {
+        let thaw = self.nodes_to_thaw();
+        let returning = self.sys.feed.is_some_and(|(_, f)| f.rate < 0.0);
+        let join = if returning {
+            self.nodes_to_join()
+        } else {
+            Vec::new()
+        };
+        let short = self.nozzle_edge_is_short();
+        if thaw == 0 && join.is_empty() && !short {
+            return;
+        }
+        let unexplained = self.sys.energy_residual(None);
+        for i in join.into_iter().rev() {
+            self.join(i);
+        }
+        while self.nozzle_edge_is_short() {
+            self.join(self.sys.rod.nodes() - 2);
+        }
+        if thaw > 0 {
+            self.thaw(thaw);
+        }
+        self.sys.refresh();
+        self.sys.balance.numerical += self.sys.energy_residual(None) - unexplained;
+    }
+
+    fn join(&mut self, node: usize) {
+        self.sys.merge(node);
+        self.watch.remove(node);
+    }
+
+    /// The edge at the nozzle has shrunk below half a spacing, and there is wire to join it to.
+    fn nozzle_edge_is_short(&self) -> bool {
+        let rod = &self.sys.rod;
+        rod.nodes() > FEWEST_NODES
+            && rod.rest[rod.edges() - 1] < 0.5 * self.scene.solver.spacing_free
+    }
+
+    /// Nodes of the free span that lie close together far from the core, no two of them neighbours.
+    fn nodes_to_join(&self) -> Vec<usize> {
+        let solver = self.scene.solver;
+        let spin = Spin::new(self.sys.spindle.angle);
+        // twice the distance at which edges are split, or it would go to and fro
+        let reach = 2.0 * solver.refine_distance + self.scene.wire.radius();
+        let rod = &self.sys.rod;
+        let mut nodes = Vec::new();
+        let mut i = self.lift_off() + 2;
+        while i + 2 < rod.nodes() && rod.nodes() - nodes.len() > FEWEST_NODES {
+            let both = rod.rest[i - 1] + rod.rest[i];
+            // a kink stays: the joined edge would hide it
+            if both < 1.2 * solver.spacing_free
+                && rod.tangent(i - 1).dot(&rod.tangent(i)) > STRAIGHT
+                && self.distance_to_coil(spin.to_core(rod.x[i])) > reach
+            {
+                nodes.push(i);
+                i += 1;
+            }
+            i += 1;
+        }
+        nodes
+    }
+
+    /// How many frozen nodes come back: once less than half of the keep length is left live behind
+    /// lift-off, as many as restore it. Half, so that wire does not freeze and thaw in turns.
+    fn nodes_to_thaw(&self) -> usize {
+        let left: f64 = self.sys.rod.rest[..self.lift_off()].iter().sum();
+        if left >= 0.5 * self.policy.keep_length {
+            return 0;
+        }
+        let mut missing = self.policy.keep_length - left;
+        self.sys
+            .frozen_lengths()
+            .take_while(|length| {
+                let more = missing > 0.0;
+                missing -= length;
+                more
+            })
+            .count()
+    }
+
+    /// The curve of frozen wire runs on to the middle of the first live edge, where that of live wire begins.
+    fn join_frozen_to_live(&mut self) {
+        let spin = Spin::new(self.sys.spindle.angle);
+        let (rod, arc) = (&self.sys.rod, self.sys.arc0);
+        let ahead = [
+            (spin.to_core(rod.x[0]), arc),
+            (spin.to_core(rod.x[1]), arc + rod.rest[0]),
+        ];
+        if let Some(l) = &mut self.sys.line {
+            l.go_on(Some(ahead));
+        }
+    }
+
+    /// The last `count` frozen nodes come back to life.
+    fn thaw(&mut self, count: usize) {
+        if let Some(l) = &mut self.sys.line {
+            l.go_on(None);
+        }
+        let count = self.sys.thaw_front(count);
+        for _ in 0..count {
+            if let Some(l) = &mut self.sys.line {
+                l.tube.pop();
+            }
+            if let Some(c) = &mut self.sys.contacts {
+                c.tube.pop();
+            }
+        }
+        self.join_frozen_to_live();
+        self.coil.unsettle(count);
+        self.watch.insert_front(count);
+        if let Some(l) = &mut self.sys.line {
+            l.forget_surroundings();
+        }
+    }
+
+    fn tell(&mut self, turns: f64, defects: u32) {
+        let now = self.coil.turns_settled();
+        if now.floor() > turns.floor() {
+            self.report(
+                EventKind::Turn,
+                format!("turn {} has come to rest", now.floor()),
+            );
+        }
+        if self.coil.defect_count() > defects
+            && let Some(d) = self.coil.last_defect()
+        {
+            let f = self.coil.flags();
+            let names: Vec<&str> = [(f.bulge, "bulge"), (f.gap, "gap"), (f.overlap, "overlap")]
+                .iter()
+                .filter(|(on, _)| *on)
+                .map(|(_, name)| *name)
+                .collect();
+            self.report(
+                EventKind::Defect,
+                format!(
+                    "defect in turn {} at {:.0} deg ({})",
+                    d.turn,
+                    d.angle.to_degrees(),
+                    names.join(", ")
+                ),
+            );
+        }
+    }
+
+    /// How many nodes from the clamp lie at least the keep length behind lift-off.
+    fn behind_lift_off(&self) -> usize {
+        let mut left = self.policy.keep_length;
+        let mut i = self.lift_off();
+        while i > 0 && left > 0.0 {
+            i -= 1;
+            left -= self.sys.rod.rest[i];
+        }
+        if left > 0.0 { 0 } else { i }
+    }
+
+    /// Values must be finite, the wire below its strength and where it was sent.
+    fn check_health(&mut self) -> Result<(), SimError> {
+        for (i, (x, v)) in self.sys.rod.x.iter().zip(&self.sys.rod.v).enumerate() {
+            if !(x.sum() + v.sum()).is_finite() {
+                return Err(SimError {
+                    time: self.sys.time,
+                    node: Some(i),
+                    reason: format!(
+                        "a node's position or velocity is not finite after {} steps; the step {:.3e} s is likely too long for the contact stiffness",
+                        self.steps, self.last_step
+                    ),
+                });
+            }
+        }
+        self.check_feed()?;
+        let strength = self.scene.wire.strength;
+        if let Some((j, t)) = self
+            .sys
+            .load
+            .tension
+            .iter()
+            .enumerate()
+            .find(|(_, t)| **t > strength)
+        {
+            let text = format!(
+                "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N"
+            );
+            self.broken = true;
+            self.report(EventKind::Break, text);
+        } else if let Some((i, radius)) = self.kink() {
+            let text = format!(
+                "the wire broke: it is kinked at live node {i}, bent to a radius of {:.3} mm and itself {:.3} mm thick",
+                1e3 * radius,
+                1e3 * self.scene.wire.diameter
+            );
+            self.broken = true;
+            self.report(EventKind::Break, text);
+        }
+        Ok(())
+    }
+
+    /// The wire must not run away from the nozzle.
+    ///
+    /// Wire on its way through the nozzle goes on by itself, for the line behind it has neither inertia nor an end: once
+    /// something has made it faster than its tension stops it, such as a coil of springy wire that opens or a loop
+    /// whirling round without tension, metres come in, on the way to nowhere and ever dearer to compute.
+    fn check_feed(&mut self) -> Result<(), SimError> {
+        let Some((_, feed)) = &self.sys.feed else {
+            return Ok(());
+        };
+        let angle = (self.sys.spindle.angle - self.angle0).abs();
+        self.farthest = self.farthest.max(angle);
+        let rod = &self.sys.rod;
+        let way = (self.sys.support[1].point - rod.x[0]).norm();
+        // a core cannot be larger than the nozzle's circle
+        let most = way + (self.farthest + TAU) * self.scene.nozzle.distance;
+        if feed.fed <= RUNAWAY * most {
+            return Ok(());
+        }
+        Err(SimError {
+            time: self.sys.time,
+            node: Some(rod.nodes() - 1),
+            reason: format!(
+                "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up",
+                feed.rate, self.sys.set_tension, feed.fed
+            ),
+        })
+    }
+
+    /// The first live node at which the wire is kinked, and the radius of its centreline there, m.
+    ///
+    /// No wire bends tighter than folded flat on itself, to its own radius. Nodes may gather the bend of
+    /// their neighbours, so half of that is allowed. At half a turn the bend of a node has no direction any more and
+    /// changes sides, with the work of a whole turn.
+    fn kink(&self) -> Option<(usize, f64)> {
+        let (rod, radius) = (&self.sys.rod, 0.5 * self.scene.wire.diameter);
+        (1..rod.edges()).find_map(|i| {
+            let (a, b) = (rod.x[i] - rod.x[i - 1], rod.x[i + 1] - rod.x[i]);
+            let own = rod.voronoi(i);
+            let most = (2.0 * own / radius).min(HALF_TURN);
+            let square = most * most;
+            // above the cosine of that angle, whatever it is
+            let cosine = 1.0 - square * (0.5 - square / 24.0);
+            if a.dot(&b) > cosine * a.norm() * b.norm() {
+                return None;
+            }
+            let angle = a.angle(&b);
+            (angle > most).then(|| (i, own / angle))
+        })
+    }
+}

@@ -1,0 +1,141 @@
+//! Where energy comes from and where it goes.
+
+use super::{Mass, System};
+use crate::rod::stored_energy;
+
+/// Where energy came from and went, J, since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct EnergyBalance {
+    /// work of the spindle on the wire
+    pub spindle: f64,
+    /// work of the feed on the wire (negative: the wire pulls against the tensioner)
+    pub nozzle: f64,
+    /// motion energy of wire that came in
+    pub inflow: f64,
+    /// plastic work: bending, twist, stretch
+    pub plastic: [f64; 3],
+    /// slip against friction
+    pub friction: f64,
+    /// contact dashpots
+    pub damping: f64,
+    /// losses of the method itself: splitting and freezing
+    pub numerical: f64,
+    /// elastic energy locked into frozen wire
+    pub frozen_stored: f64,
+    /// motion energy handed to the core with frozen wire
+    pub frozen_kinetic: f64,
+    /// stored and motion energy at the start
+    pub initial: f64,
+}
+
+impl System {
+    /// Elastic energy of the live wire and its touches, J.
+    pub fn stored(&self) -> f64 {
+        let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
+        let rod = stored_energy(&self.rod, &self.laws, &clamp, self.twist.is_carried());
+        self.stored_with(rod.iter().sum())
+    }
+
+    /// The same with the energy of the `rod` known.
+    fn stored_with(&self, rod: f64) -> f64 {
+        let touch: f64 = match &self.contacts {
+            Some(c) => self
+                .free_nodes()
+                .map(|i| c.stored(i, self.rod.voronoi(i)))
+                .sum(),
+            None => 0.0,
+        };
+        let between = match (&self.live, &self.contacts) {
+            (Some(l), Some(c)) => l.stored(&c.law, &self.wire.length),
+            _ => 0.0,
+        };
+        if let Some(line) = &self.line {
+            return rod + self.stored_in_points(line);
+        }
+        rod + touch + between
+    }
+
+    fn stored_in_points(&self, line: &crate::contact::LineContact) -> f64 {
+        let rod = &self.rod;
+        (0..rod.edges())
+            .map(|j| {
+                let node = if j > 0 {
+                    line.stored(2 * j, 0.5 * rod.voronoi(j))
+                } else {
+                    0.0
+                };
+                node + line.stored(2 * j + 1, 0.5 * rod.rest[j])
+            })
+            .sum::<f64>()
+            + line.between.as_ref().map_or(0.0, |b| {
+                b.stored(&line.law, line.onset, |p| {
+                    crate::contact::point_length(rod, p)
+                })
+            })
+    }
+
+    /// Motion energy of the free nodes and spinning edges, J.
+    pub fn kinetic(&self) -> f64 {
+        let free = self.free_nodes();
+        let spin: f64 = (0..self.rod.edges())
+            .map(|j| {
+                0.5 * self.section.spin_inertia_per_length()
+                    * self.rod.rest[j]
+                    * self.rod.spin[j].powi(2)
+            })
+            .sum();
+        free.map(|i| 0.5 * self.rod.mass(&self.section, i) * self.rod.v[i].norm_squared())
+            .sum::<f64>()
+            + spin
+            - self.kinetic_between()
+    }
+
+    /// What lumped mass has too much of motion energy where it is not lumped, J.
+    fn kinetic_between(&self) -> f64 {
+        if self.mass == Mass::Lumped {
+            return 0.0;
+        }
+        let v = &self.rod.v;
+        (0..self.rod.edges())
+            .map(|j| 0.5 * self.mass_between(j) * (v[j + 1] - v[j]).norm_squared())
+            .sum()
+    }
+
+    /// Mass that couples the two ends of edge `j` where it is not lumped, kg.
+    pub(crate) fn mass_between(&self, j: usize) -> f64 {
+        self.section.mass_per_length() * self.rod.rest[j] / 6.0
+    }
+
+    /// Energy that the books cannot explain, J: what should be there minus what is.
+    ///
+    /// With a staggered step of `dt` the motion energy is the product of the velocities before and
+    /// after this instant, which is the quantity the scheme conserves; `None` where velocities
+    /// belong to the present time.
+    pub fn energy_residual(&self, staggered: Option<f64>) -> f64 {
+        let b = self.balance;
+        let supply = b.initial + b.spindle + b.nozzle + b.inflow;
+        let lost = b.plastic.iter().sum::<f64>() + b.friction + b.damping + b.numerical;
+        // (the forces are those of this instant)
+        let stored = self.stored_with(self.load.stored);
+        let kinetic = match staggered {
+            Some(dt) => self.staggered_kinetic(dt),
+            None => self.kinetic(),
+        };
+        supply - lost - b.frozen_stored - b.frozen_kinetic - stored - kinetic
+    }
+
+    fn staggered_kinetic(&self, dt: f64) -> f64 {
+        let mut e = 0.0;
+        for i in self.free_nodes() {
+            let m = self.rod.mass(&self.section, i);
+            let v = self.rod.v[i];
+            e += 0.5 * m * v.dot(&(v + self.load.force[i] * (dt / m)));
+        }
+        let inertia = self.section.spin_inertia_per_length();
+        for j in 0..self.rod.edges() {
+            let i = inertia * self.rod.rest[j];
+            e += 0.5 * i * self.rod.spin[j] * (self.rod.spin[j] + self.load.torque[j] * (dt / i));
+        }
+        e
+    }
+}

@@ -1,0 +1,401 @@
+//! The one table of variables: inputs, outputs, diagnostics and every leaf of a scene.
+//!
+//! One row holds reference, name, kind, unit, range, description and accessors. The FMU's XML and
+//! its getters and setters, the header of `history.csv`, `coilwind variables`, the scene file's
+//! keys and `--set` all derive from it; start values come from the default scene. References are
+//! explicit, unique over all kinds and never reused:
+//!
+//! | from | what |
+//! |---|---|
+//! | 0 | inputs |
+//! | 100 | outputs |
+//! | 200 | diagnostics (local) |
+//! | 1000 | parameters, a hundred per section of the scene file |
+
+mod rows;
+mod unit;
+
+pub(crate) use unit::{Scale, parse_scaled, scaled, split_suffix, suffixes_of};
+pub use unit::{Unit, units};
+
+use crate::settings::SceneSettings;
+use crate::signals::{Inputs, Outputs};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// A value of any variable, in the unit of its row.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Value {
+    /// a number in SI units
+    Real(f64),
+    /// a whole number
+    Integer(i32),
+    /// yes or no
+    Boolean(bool),
+    /// text
+    String(String),
+}
+
+impl Value {
+    /// The kind of variable that takes this value.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Real(_) => Kind::Real,
+            Self::Integer(_) => Kind::Integer,
+            Self::Boolean(_) => Kind::Boolean,
+            Self::String(_) => Kind::String,
+        }
+    }
+}
+
+/// Numbers in the shortest form that reads back to the same bits.
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Real(x) if *x == 0.0 || (1e-4..1e6).contains(&x.abs()) => write!(f, "{x}"),
+            Self::Real(x) if x.is_finite() => write!(f, "{x:e}"),
+            Self::Real(x) => write!(f, "{x}"),
+            Self::Integer(i) => write!(f, "{i}"),
+            Self::Boolean(b) => write!(f, "{b}"),
+            Self::String(s) => f.write_str(s),
+        }
+    }
+}
+
+/// Type of a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// `f64`
+    Real,
+    /// `i32`
+    Integer,
+    /// `bool`
+    Boolean,
+    /// `String`
+    String,
+}
+
+impl Kind {
+    /// Name as FMI spells it.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Real => "Real",
+            Self::Integer => "Integer",
+            Self::Boolean => "Boolean",
+            Self::String => "String",
+        }
+    }
+}
+
+/// Who writes a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Causality {
+    /// the machine, at every communication point
+    Input,
+    /// the simulator
+    Output,
+    /// the user, before the run (or between steps where tunable)
+    Parameter,
+    /// the simulator, for diagnosis
+    Local,
+}
+
+impl Causality {
+    /// Name as FMI spells it.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Input => "input",
+            Self::Output => "output",
+            Self::Parameter => "parameter",
+            Self::Local => "local",
+        }
+    }
+}
+
+/// When a variable changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Variability {
+    /// any time
+    Continuous,
+    /// at communication points
+    Discrete,
+    /// never after initialisation
+    Fixed,
+    /// between communication steps
+    Tunable,
+}
+
+impl Variability {
+    /// Name as FMI spells it.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Continuous => "continuous",
+            Self::Discrete => "discrete",
+            Self::Fixed => "fixed",
+            Self::Tunable => "tunable",
+        }
+    }
+}
+
+/// Where a variable lives.
+///
+/// The setters store without looking at ranges, and ignore a value of another kind;
+/// [`SceneSettings::set`] is the checked way in.
+#[derive(Clone, Copy, Debug)]
+pub enum Access {
+    /// a field of [`Inputs`]
+    Input {
+        /// reads the field
+        get: fn(&Inputs) -> f64,
+        /// writes the field
+        set: fn(&mut Inputs, f64),
+    },
+    /// a field of [`Outputs`]
+    Output(fn(&Outputs) -> Value),
+    /// a leaf of [`SceneSettings`]
+    Parameter {
+        /// reads the leaf
+        get: fn(&SceneSettings) -> Value,
+        /// writes the leaf
+        set: fn(&mut SceneSettings, Value),
+    },
+}
+
+/// One row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Variable {
+    /// value reference, unique over all kinds
+    pub reference: u32,
+    /// structured name
+    pub name: &'static str,
+    /// type
+    pub kind: Kind,
+    /// who writes it
+    pub causality: Causality,
+    /// when it changes
+    pub variability: Variability,
+    /// unit of a Real, a name listed by [`units`]; empty for other kinds
+    pub unit: &'static str,
+    /// unit people use, a display unit of `unit`; empty: the unit itself
+    pub display_unit: &'static str,
+    /// smallest value allowed or possible
+    pub min: Option<f64>,
+    /// largest value allowed or possible
+    pub max: Option<f64>,
+    /// typical size
+    pub nominal: Option<f64>,
+    /// the texts allowed; empty: any
+    pub choices: &'static [&'static str],
+    /// serves `coilwind run` only; the FMU has inputs or the importer instead
+    pub native_only: bool,
+    /// what it means
+    pub description: &'static str,
+    /// where it lives
+    pub access: Access,
+}
+
+impl Variable {
+    /// The value this parameter or input has before a run of a scene; `None` for what the
+    /// simulator computes.
+    pub fn start(&self, settings: &SceneSettings) -> Option<Value> {
+        match self.access {
+            Access::Input { get, .. } => Some(Value::Real(get(&settings.start_inputs()))),
+            Access::Output(_) => None,
+            Access::Parameter { get, .. } => Some(get(settings)),
+        }
+    }
+
+    /// Whether a value is of the row's kind, finite and inside its range or among its choices.
+    pub fn admits(&self, value: &Value) -> bool {
+        match value {
+            _ if value.kind() != self.kind => false,
+            Value::Real(x) => {
+                x.is_finite()
+                    && self.min.is_none_or(|min| *x >= min)
+                    && self.max.is_none_or(|max| *x <= max)
+            }
+            Value::Integer(_) | Value::Boolean(_) => true,
+            Value::String(s) => self.choices.is_empty() || self.choices.contains(&s.as_str()),
+        }
+    }
+
+    /// What the row allows, in words: `0.00002 to 0.005 m`.
+    pub fn allowed(&self) -> String {
+        let unit = if self.unit == "1" { "" } else { self.unit };
+        let number = |x: f64| Value::Real(x).to_string();
+        match (self.kind, self.min, self.max) {
+            (Kind::Real, Some(min), Some(max)) => {
+                format!("{} to {} {unit}", number(min), number(max))
+                    .trim_end()
+                    .to_owned()
+            }
+            (Kind::Real, Some(min), None) => format!("at least {} {unit}", number(min))
+                .trim_end()
+                .to_owned(),
+            (Kind::Real, None, Some(max)) => format!("at most {} {unit}", number(max))
+                .trim_end()
+                .to_owned(),
+            (Kind::Real, None, None) => "a finite number".to_owned(),
+            (Kind::Integer, ..) => "a whole number".to_owned(),
+            (Kind::Boolean, ..) => "true or false".to_owned(),
+            (Kind::String, ..) if self.choices.is_empty() => "a text".to_owned(),
+            (Kind::String, ..) => self.choices.join(", "),
+        }
+    }
+}
+
+/// Every variable, by rising reference within inputs, outputs, locals, parameters.
+pub fn table() -> &'static [Variable] {
+    rows::TABLE
+}
+
+/// The row of a name, spelled exactly.
+pub fn by_name(name: &str) -> Option<&'static Variable> {
+    table().iter().find(|v| v.name == name)
+}
+
+/// The row of a reference.
+pub fn by_reference(reference: u32) -> Option<&'static Variable> {
+    let rows = table();
+    rows.binary_search_by_key(&reference, |v| v.reference)
+        .ok()
+        .map(|row| &rows[row])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn references_rise_and_names_are_unique() {
+        let rows = table();
+        assert!(rows.windows(2).all(|w| w[0].reference < w[1].reference));
+        let names: BTreeSet<_> = rows.iter().map(|v| v.name).collect();
+        assert_eq!(names.len(), rows.len());
+        for v in rows {
+            assert_eq!(by_reference(v.reference).map(|w| w.name), Some(v.name));
+            assert_eq!(by_name(v.name).map(|w| w.reference), Some(v.reference));
+            let group = match v.causality {
+                Causality::Input => 0..100,
+                Causality::Output => 100..200,
+                Causality::Local => 200..300,
+                Causality::Parameter => 1000..9999,
+            };
+            assert!(group.contains(&v.reference), "{}", v.name);
+        }
+    }
+
+    #[test]
+    fn reals_carry_a_known_unit_a_range_and_a_nominal() {
+        for v in table() {
+            assert!(!v.description.is_empty(), "{}", v.name);
+            if v.kind != Kind::Real {
+                assert!(v.unit.is_empty() && v.nominal.is_none(), "{}", v.name);
+                continue;
+            }
+            let unit = units().iter().find(|u| u.name == v.unit);
+            let unit = unit.unwrap_or_else(|| panic!("{}: unit {}", v.name, v.unit));
+            assert!(
+                v.display_unit.is_empty() || unit.display.iter().any(|d| d.0 == v.display_unit),
+                "{}: {}",
+                v.name,
+                v.display_unit
+            );
+            assert!(v.nominal.is_some_and(|n| n > 0.0), "{}", v.name);
+            assert!(v.min < v.max && v.min.is_some(), "{}", v.name);
+        }
+    }
+
+    #[test]
+    fn defaults_are_admitted_and_setters_reach_their_own_leaf() {
+        let default = SceneSettings::default();
+        for v in table() {
+            let Access::Parameter { get, set } = v.access else {
+                continue;
+            };
+            assert!(v.admits(&get(&default)), "{} = {}", v.name, get(&default));
+            let mut changed = default.clone();
+            let other = match get(&default) {
+                Value::Real(x) => Value::Real(x + 0.125),
+                Value::Integer(i) => Value::Integer(i + 1),
+                Value::Boolean(b) => Value::Boolean(!b),
+                Value::String(s) => Value::String(s + "x"),
+            };
+            set(&mut changed, other.clone());
+            for w in table() {
+                let Access::Parameter { get, .. } = w.access else {
+                    continue;
+                };
+                let expected = if w.name == v.name {
+                    other.clone()
+                } else {
+                    get(&default)
+                };
+                assert_eq!(get(&changed), expected, "{} after {}", w.name, v.name);
+            }
+        }
+    }
+
+    #[test]
+    fn outputs_read_the_field_of_their_name() {
+        let zero = serde_json::to_value(Outputs::default()).unwrap();
+        let names: BTreeSet<_> = table()
+            .iter()
+            .filter(|v| matches!(v.access, Access::Output(_)))
+            .map(|v| v.name.to_owned())
+            .collect();
+        let fields: BTreeSet<_> = zero.as_object().unwrap().keys().cloned().collect();
+        assert_eq!(names, fields);
+
+        let outputs = Outputs {
+            wire_tension: 3.0,
+            layer: 2,
+            defect_gap: true,
+            ..zero_outputs()
+        };
+        for v in table() {
+            let Access::Output(get) = v.access else {
+                continue;
+            };
+            let expected = match v.name {
+                "wire_tension" => Value::Real(3.0),
+                "layer" => Value::Integer(2),
+                "defect_gap" => Value::Boolean(true),
+                _ => get(&zero_outputs()),
+            };
+            assert_eq!(get(&outputs), expected, "{}", v.name);
+            assert_eq!(get(&outputs).kind(), v.kind, "{}", v.name);
+        }
+    }
+
+    fn zero_outputs() -> Outputs {
+        Outputs::default()
+    }
+
+    #[test]
+    fn values_print_shortest_and_read_back() {
+        for x in [
+            0.0,
+            0.0007,
+            1e10,
+            -2e-6,
+            1.0 / 3.0,
+            523.598_775_598_298_9,
+            f64::MIN_POSITIVE,
+        ] {
+            let text = Value::Real(x).to_string();
+            assert_eq!(text.parse::<f64>().unwrap(), x);
+            assert!(text.len() < 25, "{text}");
+        }
+    }
+
+    #[test]
+    fn not_a_number_is_never_admitted() {
+        let v = by_name("wire.diameter").unwrap();
+        assert!(!v.admits(&Value::Real(f64::NAN)));
+        assert!(!v.admits(&Value::Real(f64::INFINITY)));
+        assert!(!v.admits(&Value::Integer(1)));
+        assert_eq!(v.allowed(), "2e-5 to 0.005 m");
+    }
+}
