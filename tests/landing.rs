@@ -183,7 +183,7 @@ fn the_books_know_the_blow() {
         let balance = sys.balance;
         assert!(
             balance.damping > 0.1 * motion && balance.damping + balance.numerical < motion,
-            "steps of {fixed} s: {books:?}"
+            "steps of {fixed} s: {balance:?}"
         );
     }
 }

@@ -1,8 +1,8 @@
 //! Scenes that once failed, replayed; and a random draw judged like `coilwind stress` does.
 
+use coilwind::lab::stress::case_files;
 use coilwind::lab::stress::case_files::Files;
 use coilwind::lab::stress::invariants::judge;
-use coilwind::lab::stress::keep;
 use coilwind::lab::stress::{Invariant, Outcome, draw};
 use std::path::{Path, PathBuf};
 
@@ -23,7 +23,7 @@ fn what_once_failed_holds_now() {
     let scenes = kept();
     assert!(scenes.len() >= 3, "only {} kept", scenes.len());
     for scene in scenes {
-        let case = keep::read(&scene).unwrap();
+        let case = case_files::read(&scene).unwrap();
         let verdict = judge(&case);
         let name = scene.file_name().unwrap().to_string_lossy().into_owned();
         assert!(!verdict.outcome.is_trouble(), "{name}: {}", verdict.outcome);
@@ -44,7 +44,7 @@ fn a_kept_case_runs_as_it_was_drawn() {
         let files = Files::new(folder.path(), &format!("case{number}"));
         files.write_mesh(&mut case).unwrap();
         files.write(&case, "two\nlines").unwrap();
-        let again = keep::read(&files.scene).unwrap();
+        let again = case_files::read(&files.scene).unwrap();
         assert_eq!(again.inputs, case.inputs);
         assert_eq!(again.step.to_bits(), case.step.to_bits());
         assert_eq!(judge(&again), judge(&case));

@@ -272,7 +272,7 @@ mod tests {
     }
 
     fn frame_for(t: V3) -> Quat {
-        super::super::joint::frame_along(&t.normalize(), None)
+        crate::math::frame_along(&t.normalize(), None)
     }
 
     /// Energy after moving node `i` by `d`, frames carried along by parallel transport.

@@ -144,7 +144,7 @@ fn series<const N: usize>(terms: &[f64; N], x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{align, frame_along, relative, rotate, rotate_back, turn_about_y};
+    use crate::math::{align, frame_along, relative, rotate};
     use proptest::prelude::*;
 
     fn quat(a: [f64; 4]) -> Quat {

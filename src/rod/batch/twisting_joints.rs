@@ -1,4 +1,4 @@
-//! Joints of a rod with twist: what [`twisted`](crate::rod::twisting()) does for one.
+//! Joints of a rod with twist: what [`twisted`](crate::rod::twisted()) does for one.
 
 use super::{
     CROSS, GRADIENT, JOINT, Joints, LEAD, LEAD_ROLL, OWN, ROLL_OWN, ROLL_WITH, TORQUE, put_places,
@@ -182,7 +182,7 @@ impl TwistingJoints {
         self.edge.get(INVERSE, j)
     }
 
-    /// Edge `j` as [`twisted`](crate::rod::twisting()) takes it.
+    /// Edge `j` as [`twisted`](crate::rod::twisted()) takes it.
     pub fn turned(&self, j: usize) -> Turned {
         let detour = self.edge.vector(DETOUR, j);
         Turned::known(self.frame(j), self.along(j), self.inverse(j), detour)
@@ -753,7 +753,7 @@ mod tests {
     use super::*;
     use crate::math::simd::{Width, at_most, width};
     use crate::math::{frame_along, relative};
-    use crate::rod::{Section, twisting};
+    use crate::rod::{Section, twisted};
     use rand_chacha::ChaCha8Rng;
     use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -939,7 +939,7 @@ mod tests {
                 let sign = own.signum();
                 assert!(
                     (yield_branch.moment - own.abs()).abs() < 1e-12,
-                    "{j}: {knee:?}"
+                    "{j}: {yield_branch:?}"
                 );
                 let stiffness = (far - own) * 1e7;
                 let off = (yield_branch.stiffness - stiffness).abs();
