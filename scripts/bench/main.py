@@ -61,7 +61,7 @@ def main():
     for line in failed:
         print(f"no answer: {json.dumps(line)}", flush=True)
     if args.quick:
-        performance.write(found, pictures, args.out)
+        performance.write(found, pictures, args.out, "scripts/bench.sh --quick")
         # the quick settings are known to work with each peer
         sys.exit(1 if failed or not found["fmu"]["same_fed_length"] else 0)
     performance.write(found, pictures, tables.VALIDATION)

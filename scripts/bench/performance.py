@@ -10,7 +10,6 @@ import plots
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import tables  # noqa: E402
 
-COMMAND = "scripts/bench.sh"
 # errors that the tables ask for
 TARGETS = {
     "P1": (1e-2, 1e-3, 1e-4, 1e-5),
@@ -28,35 +27,35 @@ NAMES = {
 }
 
 
-def write(found, pictures, folder):
+def write(found, pictures, folder, command="scripts/bench.sh"):
     """Writes the tables into `tables` below a folder, and copies of the pictures into `performance` below it."""
     shown = folder / "performance"
     shown.mkdir(parents=True, exist_ok=True)
     for picture in pictures:
         shutil.copy(picture, shown)
     lines, where = found["precision"], machine(found["versions"])
+
+    def put(name, title, *parts):
+        tables.write(folder / "tables", name, command, title, where, *parts)
+
     for problem in plots.ERRORS:
         if any(line["problem"] == problem for line in lines):
             name = f"performance-{problem.lower()}"
             title = f"{problem}, {NAMES[problem]}"
             told = "CPU seconds of the cheapest setting that reached an error, one thread, medians of up to five runs."
-            put(folder, name, f"{title}: time to reach an error", where, told, reached(lines, problem))
+            put(name, f"{title}: time to reach an error", told, reached(lines, problem))
             told = "Error and CPU time of every setting, one thread, medians of up to five runs."
-            put(folder, f"{name}-settings", f"{title}: every setting", where, told, points(lines, problem))
+            put(f"{name}-settings", f"{title}: every setting", told, points(lines, problem))
     told = "Free wire by the implicit method without contact (`coilwind bench P5 --n EDGES`)."
-    put(folder, "performance-nodes", "Time by number of nodes", where, told, nodes(found["nodes"]))
+    put("performance-nodes", "Time by number of nodes", told, nodes(found["nodes"]))
     told = (
         "A helix on a cylinder of 20 mm at 300 rad/s"
         " (`coilwind bench W --scene scripts/bench/helix.toml --set spindle.turns=TURNS`)."
     )
-    put(folder, "performance-turns", "Time by number of turns", where, told, turns(found["turns"]))
-    put(folder, "performance-fmu", "FMU against native", where, *fmu(found["fmu"]))
+    put("performance-turns", "Time by number of turns", told, turns(found["turns"]))
+    put("performance-fmu", "FMU against native", *fmu(found["fmu"]))
     told = "`fig8` with one switch after the other set against what `auto` takes. Errors are those of turn 2 against the converged run."
-    put(folder, "performance-skips", "What each skip saves", where, told, found["skips"].strip())
-
-
-def put(folder, name, title, where, *parts):
-    tables.write(folder / "tables", name, COMMAND, title, where, *parts)
+    put("performance-skips", "What each skip saves", told, found["skips"].strip())
 
 
 def machine(versions):
