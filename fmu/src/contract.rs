@@ -10,8 +10,10 @@ use crate::lifecycle::{Function, State};
 use crate::logger::Host;
 use crate::pointers;
 use coilwind_model_description::guid;
-use std::ffi::{CStr, c_void};
+use libc::{c_void, size_t};
+use std::ffi::CStr;
 use std::ptr::{null, null_mut};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Messages of one instance.
 type Log = Vec<(fmi2Status, String, String)>;
@@ -33,6 +35,25 @@ unsafe extern "C" fn record(
     }
 }
 
+/// Calls of the callbacks that `modelDescription.xml` promises not to use.
+static UNWANTED: AtomicUsize = AtomicUsize::new(0);
+
+unsafe extern "C" fn counted_calloc(number: size_t, size: size_t) -> *mut c_void {
+    UNWANTED.fetch_add(1, Ordering::Relaxed);
+    // SAFETY: any number and size are allowed.
+    unsafe { libc::calloc(number, size) }
+}
+
+unsafe extern "C" fn counted_free(data: *mut c_void) {
+    UNWANTED.fetch_add(1, Ordering::Relaxed);
+    // SAFETY: NULL or from `counted_calloc`, as FMI demands of the FMU.
+    unsafe { libc::free(data) }
+}
+
+unsafe extern "C" fn counted_step(_: fmi2ComponentEnvironment, _: fmi2Status) {
+    UNWANTED.fetch_add(1, Ordering::Relaxed);
+}
+
 fn callbacks(log: &mut Log) -> fmi2CallbackFunctions {
     let record: unsafe extern "C" fn(_, _, _, _, _, _) = record;
     // SAFETY: on x86-64 and AArch64 Linux and on Windows x86-64, pointers and ints are passed to a
@@ -52,10 +73,10 @@ fn callbacks(log: &mut Log) -> fmi2CallbackFunctions {
     };
     fmi2CallbackFunctions {
         logger: Some(logger),
-        allocateMemory: null(),
-        freeMemory: null(),
-        stepFinished: null(),
-        componentEnvironment: std::ptr::from_mut(log).cast::<c_void>(),
+        allocateMemory: Some(counted_calloc),
+        freeMemory: Some(counted_free),
+        stepFinished: Some(counted_step),
+        componentEnvironment: std::ptr::from_mut(log).cast(),
     }
 }
 
@@ -168,6 +189,7 @@ fn every_function_in_every_state() {
             }
         }
     }
+    assert_eq!(UNWANTED.load(Ordering::Relaxed), 0);
 }
 
 #[test]

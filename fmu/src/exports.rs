@@ -18,6 +18,7 @@ use crate::instance::Instance;
 use crate::lifecycle::Function;
 use crate::pointers;
 use crate::refusal::Refusal;
+use libc::size_t;
 
 /// Refuses a function that needs a capability the FMU does not declare.
 ///
@@ -61,7 +62,7 @@ pub extern "C" fn fmi2GetVersion() -> fmi2String {
 pub unsafe extern "C" fn fmi2SetDebugLogging(
     c: fmi2Component,
     loggingOn: fmi2Boolean,
-    nCategories: usize,
+    nCategories: size_t,
     categories: *const fmi2String,
 ) -> fmi2Status {
     // SAFETY: the importer hands over `nCategories` strings.
@@ -165,7 +166,7 @@ pub unsafe extern "C" fn fmi2Reset(c: fmi2Component) -> fmi2Status {
 pub unsafe extern "C" fn fmi2GetReal(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     value: *mut fmi2Real,
 ) -> fmi2Status {
     // SAFETY: both arrays hold `nvr` values.
@@ -186,7 +187,7 @@ pub unsafe extern "C" fn fmi2GetReal(
 pub unsafe extern "C" fn fmi2GetInteger(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     value: *mut fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: both arrays hold `nvr` values.
@@ -207,7 +208,7 @@ pub unsafe extern "C" fn fmi2GetInteger(
 pub unsafe extern "C" fn fmi2GetBoolean(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     value: *mut fmi2Boolean,
 ) -> fmi2Status {
     // SAFETY: both arrays hold `nvr` values.
@@ -232,7 +233,7 @@ pub unsafe extern "C" fn fmi2GetBoolean(
 pub unsafe extern "C" fn fmi2GetString(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     value: *mut fmi2String,
 ) -> fmi2Status {
     // SAFETY: both arrays hold `nvr` values.
@@ -253,7 +254,7 @@ pub unsafe extern "C" fn fmi2GetString(
 pub unsafe extern "C" fn fmi2SetReal(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     value: *const fmi2Real,
 ) -> fmi2Status {
     // SAFETY: both arrays hold `nvr` values.
@@ -273,7 +274,7 @@ pub unsafe extern "C" fn fmi2SetReal(
 pub unsafe extern "C" fn fmi2SetInteger(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     value: *const fmi2Integer,
 ) -> fmi2Status {
     // SAFETY: both arrays hold `nvr` values.
@@ -293,7 +294,7 @@ pub unsafe extern "C" fn fmi2SetInteger(
 pub unsafe extern "C" fn fmi2SetBoolean(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     value: *const fmi2Boolean,
 ) -> fmi2Status {
     // SAFETY: both arrays hold `nvr` values.
@@ -313,7 +314,7 @@ pub unsafe extern "C" fn fmi2SetBoolean(
 pub unsafe extern "C" fn fmi2SetString(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     value: *const fmi2String,
 ) -> fmi2Status {
     // SAFETY: both arrays hold `nvr` values, the strings end with a NUL.
@@ -381,7 +382,7 @@ pub unsafe extern "C" fn fmi2FreeFMUstate(
 pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
     c: fmi2Component,
     FMUstate: fmi2FMUstate,
-    size: *mut usize,
+    size: *mut size_t,
 ) -> fmi2Status {
     // SAFETY: the importer's state is NULL or one of this library, its pointer NULL or with room.
     unsafe {
@@ -401,7 +402,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
     c: fmi2Component,
     FMUstate: fmi2FMUstate,
     serializedState: *mut fmi2Byte,
-    size: usize,
+    size: size_t,
 ) -> fmi2Status {
     // SAFETY: the importer's state is NULL or one of this library, its array holds `size` bytes.
     unsafe {
@@ -428,7 +429,7 @@ pub unsafe extern "C" fn fmi2SerializeFMUstate(
 pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
     c: fmi2Component,
     serializedState: *const fmi2Byte,
-    size: usize,
+    size: size_t,
     FMUstate: *mut fmi2FMUstate,
 ) -> fmi2Status {
     // SAFETY: the importer's array holds `size` bytes, its pointer is NULL or points to NULL or a state.
@@ -447,9 +448,9 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,
     vUnknown_ref: *const fmi2ValueReference,
-    nUnknown: usize,
+    nUnknown: size_t,
     vKnown_ref: *const fmi2ValueReference,
-    nKnown: usize,
+    nKnown: size_t,
     dvKnown: *const fmi2Real,
     dvUnknown: *mut fmi2Real,
 ) -> fmi2Status {
@@ -473,7 +474,7 @@ pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     order: *const fmi2Integer,
     value: *const fmi2Real,
 ) -> fmi2Status {
@@ -495,7 +496,7 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
     vr: *const fmi2ValueReference,
-    nvr: usize,
+    nvr: size_t,
     order: *const fmi2Integer,
     value: *mut fmi2Real,
 ) -> fmi2Status {

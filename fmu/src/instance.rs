@@ -4,7 +4,7 @@ mod derivatives;
 mod restore;
 
 use crate::clock::Clock;
-use crate::ffi::{self, Status};
+use crate::ffi::{self, Status, fmi2String};
 use crate::lifecycle::State;
 use crate::logger::{Filter, Message, c_string};
 use crate::parameters::Parameters;
@@ -18,7 +18,7 @@ use coilwind::simulation::{Event, EventKind, Inputs, SimError, Simulation};
 use coilwind::variables::{Access, Causality, Value, Variability, Variable, by_reference};
 use coilwind_model_description::{Category, guid};
 use std::collections::BTreeMap;
-use std::ffi::{CString, c_char};
+use std::ffi::CString;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -228,7 +228,7 @@ impl Instance {
     pub(crate) fn get_strings(
         &mut self,
         references: &[u32],
-    ) -> Result<Vec<*const c_char>, Refusal> {
+    ) -> Result<Vec<fmi2String>, Refusal> {
         let texts: Vec<String> = self.get(references)?;
         self.strings = texts.iter().map(|text| c_string(text)).collect();
         Ok(self.strings.iter().map(|text| text.as_ptr()).collect())

@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn strings_are_copied_and_checked() {
-        let bad = [b'a' as i8, -1_i8, 0].map(|byte| byte as std::ffi::c_char);
+        let bad = [b'a' as i8, -1_i8, 0].map(|byte| byte as libc::c_char);
         let good = c"Wicklung \xc3\xbc";
         let list = [good.as_ptr(), c"".as_ptr()];
         // SAFETY: all of them end with a NUL or are NULL.
