@@ -1,4 +1,4 @@
-//! The C functions as an importer sees them in every state of an instance.
+//! Tests of the C functions as an importer sees them in every state of an instance.
 //!
 //! States are planted, so that a failed step and a lost instance need no failing solver.
 
@@ -145,7 +145,7 @@ unsafe fn call(function: Function, c: fmi2Component) -> fmi2Status {
     }
 }
 
-/// Served where allowed; `fmi2Discard` and "not supported" are answers, too.
+/// Returns the status of a call that the state allows.
 fn expected(function: Function) -> fmi2Status {
     use Function as F;
     match function {

@@ -1,10 +1,10 @@
-//! Saved states at the instance: continuation to the bit, refusals, files.
+//! Tests of saved states: continuation to the bit, bytes that are refused, files.
 
+use crate::error::{BytesError, Error};
 use crate::ffi::{self, Status};
 use crate::instance::Instance;
 use crate::lifecycle::State;
-use crate::refusal::Refusal;
-use crate::state::{BytesError, Snapshot};
+use crate::state::Snapshot;
 use coilwind::variables::by_name;
 use coilwind_model_description::guid;
 
@@ -49,7 +49,7 @@ fn bytes(snapshot: &Snapshot) -> Vec<u8> {
         .expect("bytes")
 }
 
-fn read(data: &[u8]) -> Result<Snapshot, Refusal> {
+fn read(data: &[u8]) -> Result<Snapshot, Error> {
     Snapshot::from_bytes(data, guid().expect("a description"))
 }
 
@@ -114,7 +114,7 @@ fn other_bytes_are_refused_with_the_reason() {
     wind(&mut instance, 0, 3);
     let good = bytes(&instance.snapshot());
     let refused = |data: &[u8]| match read(data) {
-        Err(Refusal::Bytes(error)) => error,
+        Err(Error::Bytes(error)) => error,
         other => panic!("{other:?}"),
     };
     assert!(matches!(refused(b""), BytesError::Foreign { size: 0 }));
@@ -125,7 +125,13 @@ fn other_bytes_are_refused_with_the_reason() {
         refused(&data)
     };
     assert!(matches!(changed(0), BytesError::Foreign { .. }));
-    assert!(matches!(changed(8), BytesError::Version { found: 0 }));
+    assert!(matches!(
+        changed(8),
+        BytesError::Version {
+            found: 0,
+            expected: 1
+        }
+    ));
     assert!(matches!(changed(20), BytesError::Guid { .. }));
     assert!(matches!(changed(good.len() - 1), BytesError::Damaged));
     assert!(matches!(changed(200), BytesError::Damaged));
@@ -164,7 +170,7 @@ fn derivatives_are_checked_before_anything_changes() {
         .set_input_derivatives(&[setpoint], &[1], &[-1e6])
         .expect("finite");
     let error = instance.do_step(1.0, STEP).expect_err("negative tension");
-    assert!(matches!(error, Refusal::LeavesRange { .. }), "{error}");
+    assert!(matches!(error, Error::LeavesRange { .. }), "{error}");
     assert_eq!(instance.state(), State::StepComplete);
     instance
         .set_input_derivatives(&[setpoint], &[1], &[0.0])
@@ -194,7 +200,7 @@ fn inputs_follow_their_derivatives_for_one_step() {
     assert_eq!(instance.get::<f64>(&inputs).expect("inputs"), now);
 }
 
-/// History, rows before and after: the file is as if the way taken back had never been gone.
+/// The history of a run that went back to a saved state is that of a run that never left it.
 #[test]
 fn the_history_is_cut_back() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -247,8 +253,8 @@ fn the_history_is_cut_back() {
     assert!(messages[0].text.contains("begins anew"), "{messages:?}");
 }
 
-/// A step longer than any solver could take, and no shorter one allowed: `fmi2Discard`, outputs and clock of what
-/// was reached, and a saved state to go on from.
+/// A step that the solver cannot take gives `fmi2Discard`. Outputs and clock are those of what was
+/// reached, and a saved state can be gone on from.
 #[test]
 fn a_failed_step_can_be_taken_back() {
     let mut instance = Instance::for_tests();
