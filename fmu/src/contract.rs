@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Messages of one instance.
 type Log = Vec<(fmi2Status, String, String)>;
 
-/// The fixed-arity twin of the variadic logger.
+/// The logger with its one argument written out, since Rust cannot define variadic functions.
 unsafe extern "C" fn record(
     environment: fmi2ComponentEnvironment,
     _name: fmi2String,
@@ -35,7 +35,7 @@ unsafe extern "C" fn record(
     }
 }
 
-/// Calls of the callbacks that `modelDescription.xml` promises not to use.
+/// Number of calls of the callbacks that `modelDescription.xml` promises not to use.
 static UNWANTED: AtomicUsize = AtomicUsize::new(0);
 
 unsafe extern "C" fn counted_calloc(number: size_t, size: size_t) -> *mut c_void {

@@ -18,7 +18,7 @@ fn set(instance: &mut Instance, name: &str, value: f64) {
     instance.set(&[reference(name)], [value]).expect("set");
 }
 
-/// An instance at its first communication point, with something of everything set.
+/// Returns an instance at its first communication point, with parameters and inputs set.
 fn started() -> Instance {
     let mut instance = Instance::for_tests();
     instance.setup_experiment(1.0, None).expect("an experiment");
@@ -61,17 +61,17 @@ fn an_instance_goes_on_from_a_copy_from_bytes_and_after_a_reset() {
     let data = bytes(&saved);
     wind(&mut instance, 150, 250);
     let end = bytes(&instance.snapshot());
-    // back and forth again
+    // Back to the saved state, and forth again.
     instance.restore(&saved);
     assert!(bytes(&instance.snapshot()) == data);
     wind(&mut instance, 150, 250);
     assert!(bytes(&instance.snapshot()) == end);
-    // after a reset, from bytes
+    // After a reset, from bytes.
     instance.reset().expect("resets");
     instance.restore(&read(&data).expect("a state"));
     wind(&mut instance, 150, 250);
     assert!(bytes(&instance.snapshot()) == end);
-    // in an instance that never started
+    // In an instance that never started.
     let mut other = Instance::for_tests();
     other.restore(&read(&data).expect("a state"));
     wind(&mut other, 150, 250);
@@ -143,7 +143,7 @@ fn other_bytes_are_refused_with_the_reason() {
         );
         assert!(short, "{size}: {error}");
     }
-    // what an importer's buffer holds beyond the state does not matter
+    // What an importer's buffer holds beyond the state does not matter.
     let mut long = good.clone();
     long.extend([9; 10]);
     assert!(read(&long).is_ok());
@@ -164,7 +164,7 @@ fn derivatives_are_checked_before_anything_changes() {
         assert!(both.is_err());
     }
     assert!(bytes(&instance.snapshot()) == before);
-    // a ramp that would end outside of the range is refused by the step, which changes nothing
+    // A ramp that would end outside of the range is refused by the step, which changes nothing.
     let setpoint = reference("tension_setpoint");
     instance
         .set_input_derivatives(&[setpoint], &[1], &[-1e6])
@@ -195,7 +195,7 @@ fn inputs_follow_their_derivatives_for_one_step() {
         .output_derivatives(&[angle], &[1])
         .expect("order 1");
     assert_eq!(slope, [1.0]);
-    // held from now on
+    // The inputs are held from now on.
     instance.do_step(1.001, 1e-3).expect("a step");
     assert_eq!(instance.get::<f64>(&inputs).expect("inputs"), now);
 }
@@ -215,7 +215,7 @@ fn the_history_is_cut_back() {
         instance.enter_initialization_mode().expect("enters");
         instance.exit_initialization_mode().expect("exits");
         work(&mut instance);
-        // puts the history on disk; without an end no pictures are drawn
+        // A snapshot puts the history on disk. Without an end no pictures are drawn.
         instance.snapshot();
         let messages = instance.end_call();
         let text = std::fs::read(directory.join("history.csv")).expect("a history");
@@ -239,7 +239,7 @@ fn the_history_is_cut_back() {
         wind(i, 8, 20);
     });
     assert!(plain == other && messages.is_empty(), "{messages:?}");
-    // another file is in its place: a new one begins, and the importer is told
+    // Another file is in its place: a new one begins, and the importer is told.
     let (anew, messages) = record("anew", &|i| {
         wind(i, 0, 8);
         let data = bytes(&i.snapshot());
@@ -265,7 +265,7 @@ fn a_failed_step_can_be_taken_back() {
     instance.do_step(1.0, 0.02).expect("standing is easy");
     let saved = instance.snapshot();
     set(&mut instance, "spindle_speed", 300.0);
-    // half a turn a step cannot go on
+    // Half a turn a step cannot go on.
     let (mut time, size) = (1.02, 0.013);
     let error = loop {
         match instance.do_step(time, size) {
@@ -293,7 +293,7 @@ fn a_failed_step_can_be_taken_back() {
         "{angle} at {reached}"
     );
     assert_eq!(instance.boolean_status(ffi::TERMINATED).ok(), Some(true));
-    // back, and another way
+    // Back to the saved state, and another way.
     instance.restore(&saved);
     assert_eq!(instance.state(), State::StepComplete);
     assert_eq!(

@@ -30,8 +30,8 @@ pub fn document() -> Result<String, DescriptionError> {
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n\
          <meta charset=\"utf-8\"/>\n<title>CoilWinding</title>\n<style>{STYLE}</style>\n</head>\n\
          <body>\n<h1>CoilWinding</h1>\n{INTRODUCTION}\n<h2>Variables</h2>\n\
-         <p>Values are in the unit given; people usually read them in the one in brackets. Numbers \
-         in brackets after a name are value references.</p>\n"
+         <p>All values are in the first unit of a row, the SI unit. The unit in brackets is the \
+         display unit. The number in brackets after a name is the value reference.</p>\n"
     );
     for (title, causality) in [
         ("Inputs", Causality::Input),
@@ -50,8 +50,8 @@ pub fn document() -> Result<String, DescriptionError> {
     let _ = write!(
         page,
         "<h2>This FMU</h2>\n<p>coilwind {}, FMI 2.0 for co-simulation, GUID {}. Licences: \
-         <a href=\"licenses/license.txt\">coilwind</a>, <a href=\"licenses/third-party.txt\">what it \
-         is linked with</a>.</p>\n</body>\n</html>\n",
+         <a href=\"licenses/license.txt\">coilwind</a>, <a href=\"licenses/third-party.txt\">linked \
+         software</a>.</p>\n</body>\n</html>\n",
         env!("CARGO_PKG_VERSION"),
         escaped(guid()?)
     );

@@ -225,8 +225,9 @@ fn texts_of(package: &Package, all: &[Package]) -> Result<Vec<String>, LicenseEr
 mod tests {
     use super::*;
 
-    /// A workspace crate `ours` that links `near` and, through it, `far`; `tool` only builds it,
-    /// `derive` runs in the compiler, and what that needs is not linked.
+    /// Returns metadata of a workspace crate `ours` that links `near` and, through it, `far`.
+    /// `tool` is only needed to build it. `derive` runs in the compiler, so that neither it nor its
+    /// dependency is linked.
     fn sample(directory: &Path) -> String {
         let package = |name: &str, source: &str, kind: &str| {
             let manifest = directory.join(name).join("Cargo.toml");

@@ -1,4 +1,4 @@
-//! Values of variables.
+//! Values of variables, read and set by value reference.
 
 use crate::ffi::{
     fmi2Boolean, fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2String, fmi2ValueReference,
