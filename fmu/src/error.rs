@@ -176,7 +176,10 @@ pub(crate) enum Error {
     #[error("{0}")]
     Time(#[from] TimeError),
     /// The log category is not declared.
-    #[error("log category {name} is not declared; modelDescription.xml lists LogCategories")]
+    #[error(
+        "log category {name} is not declared; \
+         modelDescription.xml lists the names under LogCategories"
+    )]
     UnknownCategory {
         /// The importer's name.
         name: String,
