@@ -83,7 +83,15 @@ def test_the_site_needs_no_network(build):
     fonts = set(re.findall(r"url\((fonts/[^)]+\.woff2)\)", style))
     assert len(fonts) >= 20 and all((site / "vendor/katex" / font).is_file() for font in fonts)
     assert "MIT" in (site / "vendor/katex/LICENSE.txt").read_text(encoding="utf-8")
+    # What search reads in a site that is opened from a disk.
+    assert (site / "search/search_index.js").is_file()
     assert json.loads((site / "search/search_index.json").read_text(encoding="utf-8"))["docs"]
+
+
+def test_anchors_are_those_of_code_hosts(build):
+    heading = "## Energy & the `tol_m` (2e-6 m), rod's"
+    _, code, said = build(f"# Start\n\n[there](#energy--the-tol_m-2e-6-m-rods)\n\n{heading}\n")
+    assert code == 0, said
 
 
 @pytest.mark.parametrize(
