@@ -3,6 +3,7 @@
 * README.md and the other pages of the repository's root become pages under project/.
 * Links are written as they work in the repository; here they are pointed to where their targets lie on the site.
   A link to a file that is no page gets a copy of the file, a link to a folder becomes text, one to nothing is a warning.
+* What code hosts and the site would show differently is a warning.
 * Formulas are rendered by KaTeX while the site is built; one that KaTeX refuses is a warning.
 * Patterns in the navigation are replaced by pages.
 
@@ -90,16 +91,17 @@ def on_files(files, config):
 def on_page_markdown(markdown, page, config, files):
     links = next(e for e in config.markdown_extensions if isinstance(e, LinkExtension))
     links.begin(page, config, files)
-    for number, problem in list_problems(markdown):
+    for number, problem in layout_problems(markdown):
         log.warning("%s, line %d: %s", links.here, number, problem)
     return markdown
 
 
-def list_problems(markdown):
-    """Lists that code hosts show and the site does not: it wants an empty line before and four spaces inside."""
-    fence, before = None, ""
+def layout_problems(markdown):
+    """Where code hosts and the site read a page differently, as pairs of line number and sentence."""
+    fence, formula, before = None, False, ""
     for number, line in enumerate(markdown.splitlines(), 1):
         mark = re.match(r"( *)(```+|~~~+)", line)
+        item = re.match(r"( *)([-*+]|\d+[.)]) ", line)
         if mark and fence is None:
             fence = mark[2]
             if 0 < len(mark[1]) < 4:
@@ -107,12 +109,18 @@ def list_problems(markdown):
         elif mark and mark[2].startswith(fence) and line.strip() == mark[2]:
             fence = None
         elif fence is None:
-            item = re.match(r"( *)([-*+]|\d+[.)]) ", line)
-            if item and 0 < len(item[1]) < 4:
+            formula ^= line.count("$$") % 2 == 1
+            # A paragraph, not another item, quotation, table, heading, comment or what continues one of them.
+            paragraph = before.strip() and not re.match(r"[ |]|[-*+>] |\d+[.)] |#+ |<!--|\$\$", before)
+            if formula:
+                if item:
+                    yield number, f"code hosts begin a list at this {item[2]}; it belongs at the end of the line before"
+            elif item and 0 < len(item[1]) < 4:
                 yield number, "a list inside a list is indented by four spaces"
-            text_before = before.strip() and not re.match(r" |[-*+>|#] |\d+[.)] |#+ |<!--", before)
-            if item and not item[1] and text_before:
+            elif item and not item[1] and paragraph:
                 yield number, "a list begins after an empty line"
+            elif line.startswith("|") and paragraph:
+                yield number, "a table begins after an empty line"
         before = line
 
 
