@@ -289,7 +289,7 @@ def main():
     if os.environ.get(RUNNING):
         sys.exit("check_commands.py: a page runs the check of pages; mark its fence <!-- not run: REASON -->")
     root = args.root.resolve()
-    target = Path(os.environ.get("CARGO_TARGET_DIR") or root / "target").resolve()
+    target = (root / (os.environ.get("CARGO_TARGET_DIR") or "target")).resolve()
     command = Command(str(target / "release/coilwind"))
     pages = [Path(page).resolve().relative_to(root).as_posix() for page in args.pages] or [
         *(name for name in ROOT_PAGES if (root / name).exists()),
