@@ -53,7 +53,7 @@ SECTIONS = {
 SCENE_INTRO = """\
 # Scene reference
 
-For whoever writes a scene file: every section, every key, its unit, default, range and meaning.
+For writing scene files: every section and key with its unit, default, range and meaning.
 
 A scene is a TOML file. `coilwind check FILE` validates it, and `coilwind variables` prints this table.
 [Your first coil](first-coil.md) shows a scene in use.
@@ -67,7 +67,7 @@ A scene is a TOML file. `coilwind check FILE` validates it, and `coilwind variab
 VARIABLES_INTRO = """\
 # Variables of the FMU
 
-For whoever connects the FMU: every input, output and parameter, with unit, start value, range and meaning.
+For connecting the FMU: every input, output and parameter with its unit, start value, range and meaning.
 
 - Every value is in the unit of its column. `modelDescription.xml` gives importers the display unit as well.
 - *fixed* parameters are set before `fmi2ExitInitializationMode`. *tunable* ones may also change at a communication point.
