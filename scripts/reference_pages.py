@@ -10,6 +10,7 @@ of the FMU. With --check nothing is written; the exit code is 1 if a page on dis
 import argparse
 import json
 import math
+import os
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -91,7 +92,9 @@ class Page:
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--command", default=str(ROOT / "target/release/coilwind"), help="the command coilwind")
+    built = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release/coilwind"
+    command = os.environ.get("COILWIND_COMMAND", str(built))
+    parser.add_argument("--command", metavar="PATH", default=command, help="the command coilwind; COILWIND_COMMAND names it too")
     parser.add_argument("--check", action="store_true", help="compare with the files, write nothing")
     arguments = parser.parse_args()
 
