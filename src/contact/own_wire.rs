@@ -2,7 +2,7 @@
 
 /// Length of a place's own neighbourhood in wire diameters: wire cannot bend so sharply that it touches
 /// itself within this length. Chosen.
-pub(super) const OWN_WIRE: f64 = 5.0;
+const OWN_WIRE: f64 = 5.0;
 
 /// Unstretched length from the clamp, m, beyond which wire belongs to the neighbourhood of the place at
 /// `arc` (m) and is no partner of its contact.

@@ -2,11 +2,15 @@
 
 use super::node::{ANCHORS, Anchor, NO_ANCHOR, NodeContact};
 use crate::contact::law::{ContactLaw, ContactLoss};
-use crate::contact::own_wire::OWN_WIRE;
+use crate::contact::own_wire::own_wire;
 use crate::geometry::{FrozenNode, Surface, Touch, Tube};
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+
+/// Distance beyond touching within which surfaces are listed, in wire diameters. Chosen: a handful of triangles lies within,
+/// and the list lasts some steps.
+const SKIN: f64 = 0.1;
 
 /// Motion, length and mass of a node, core frame.
 #[derive(Clone, Copy, Debug)]
@@ -70,8 +74,7 @@ impl Contacts {
             nodes: vec![NodeContact::new(); nodes],
             loss: ContactLoss::default(),
             touches: Vec::new(),
-            // a handful of triangles lies within, and it lasts some steps
-            skin: 0.1 * diameter,
+            skin: SKIN * diameter,
         }
     }
 
@@ -137,7 +140,7 @@ impl Contacts {
 
     /// Lists the triangles and the frozen wire near node `i`.
     fn look_up(&mut self, i: usize, body: &Body) {
-        let own = body.arc - OWN_WIRE * 2.0 * self.tube_radius();
+        let own = own_wire(body.arc, 2.0 * self.wire_radius());
         let (surface, tube) = (&self.surface, &self.tube);
         let node = &mut self.nodes[i];
         node.centre = body.position;
@@ -169,9 +172,9 @@ impl Contacts {
         );
     }
 
-    fn tube_radius(&self) -> f64 {
-        // the tube carries the wire's own radius even where the centreline touches the core
-        self.skin / 0.2
+    /// Radius of the wire, m, also where its centreline touches the core.
+    fn wire_radius(&self) -> f64 {
+        self.skin / (2.0 * SKIN)
     }
 
     /// Contact force on live node `i`, core frame, N. With `commit = Some(dt)` anchors move on and the totals of

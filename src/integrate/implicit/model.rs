@@ -254,44 +254,68 @@ impl Model<'_> {
         (energy, axial)
     }
 
+    /// Adds the touches of the wire.
     fn contact<const D: usize, const HESSIAN: bool>(
         &mut self,
         work: &mut Work<D>,
         value: &mut Value,
     ) {
-        let Some(line) = self.line.as_deref_mut() else {
+        // taken out while it changes along with the rest of the model at hand
+        let Some(line) = self.line.take() else {
             return;
         };
         line.begin();
-        let (rest, elapsed) = (&self.rod.rest, self.elapsed);
-        let of_node = |i| voronoi(self.rod, self.grown, i);
         let mut arc = self.arc0;
-        let mut touch = |line: &mut LineContact, point: ContactPoint, arc: f64| {
-            let p = point.place(&work.q);
-            let own = own_wire(point.arc(arc, rest), self.diameter);
-            let length = point.length_with(rest, of_node);
-            if let Some(response) = line.push(point.number(), p, length, own, elapsed) {
-                value.merit += response.energy_lagged;
-                value.now += response.energy;
-                let weights = point.weights();
-                weights.spread(&response.gradient, &mut work.gradient);
-                if HESSIAN {
-                    weights.spread_block(&response.hessian, &mut work.matrix);
-                }
-            }
-        };
-        for (j, rest) in rest.iter().enumerate() {
+        for (j, rest) in self.rod.rest.iter().enumerate() {
             if j > 0 {
-                touch(line, ContactPoint::Node(j), arc);
+                let point = ContactPoint::Node(j);
+                self.contact_of::<D, HESSIAN>(point, arc, line, work, value);
             }
-            touch(line, ContactPoint::Edge(j), arc);
+            let point = ContactPoint::Edge(j);
+            self.contact_of::<D, HESSIAN>(point, arc, line, work, value);
             arc += rest;
         }
+        self.contact_of_pairs::<D, HESSIAN>(line, work, value);
+        self.line = Some(line);
+    }
+
+    /// Adds the touches of one contact point, whose node or edge begins at the unstretched length `arc`.
+    #[inline(always)]
+    fn contact_of<const D: usize, const HESSIAN: bool>(
+        &self,
+        point: ContactPoint,
+        arc: f64,
+        line: &mut LineContact,
+        work: &mut Work<D>,
+        value: &mut Value,
+    ) {
+        let rest = &self.rod.rest;
+        let p = point.place(&work.q);
+        let own = own_wire(point.arc(arc, rest), self.diameter);
+        let length = point.length_with(rest, |i| voronoi(self.rod, self.grown, i));
+        if let Some(response) = line.push(point.number(), p, length, own, self.elapsed) {
+            value.merit += response.energy_lagged;
+            value.now += response.energy;
+            let weights = point.weights();
+            weights.spread(&response.gradient, &mut work.gradient);
+            if HESSIAN {
+                weights.spread_block(&response.hessian, &mut work.matrix);
+            }
+        }
+    }
+
+    /// Adds the touches of live wire with live wire.
+    fn contact_of_pairs<const D: usize, const HESSIAN: bool>(
+        &self,
+        line: &mut LineContact,
+        work: &mut Work<D>,
+        value: &mut Value,
+    ) {
         let conditions = PairConditions {
             law: &line.law,
             onset: line.onset,
             diameter: self.diameter,
-            step: elapsed,
+            step: self.elapsed,
             hold_limits: line.hold_limits,
         };
         let Some(pairs) = &mut line.self_contact else {

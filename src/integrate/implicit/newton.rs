@@ -7,8 +7,8 @@ use crate::linalg::Banded;
 use crate::math::V3;
 use crate::rod::{Block, Laws, add_outer};
 
-/// Newton steps that renew the friction limits; from then on they stay, so that the rest converges
-/// quadratically. What is left of the lag is its last change.
+/// Newton steps that renew the friction limits; from then on the limits stay, so that the rest converges
+/// quadratically. The solution then lags behind its own limits by their last change.
 const LIMIT_STEPS: usize = 5;
 /// Times that an update is solved again for contact and yielding it meets on its way.
 const LOOKS_AHEAD: usize = 8;
@@ -317,7 +317,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
         if look == LOOKS_AHEAD {
             return Ok(false);
         }
-        let mut any = foresee_knees(model.laws, work);
+        let mut any = predict_yielding(model.laws, work);
         let Work {
             q,
             update,
@@ -390,7 +390,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
-fn foresee_knees<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
+fn predict_yielding<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
     let Work {
         yield_branches,
         update,
