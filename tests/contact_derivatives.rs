@@ -1,7 +1,7 @@
 //! Energy, gradient and Hessian of a contact point's push by finite differences, with friction limits
 //! held as the line search sees them.
 
-use coilwind::contact::{ContactLaw, LineContact, Push};
+use coilwind::contact::{ContactLaw, ContactResponse, LineContact};
 use coilwind::geometry::Shape;
 use coilwind::math::V3;
 use proptest::prelude::*;
@@ -87,7 +87,7 @@ fn on() -> impl Strategy<Value = On> {
     prop_oneof![Just(On::Flat), Just(On::Corner), Just(On::Wire)]
 }
 
-fn at(line: &mut LineContact, p: V3) -> Push {
+fn at(line: &mut LineContact, p: V3) -> ContactResponse {
     line.push(0, p, LENGTH, f64::INFINITY, STEP)
         .unwrap_or_default()
 }
@@ -102,7 +102,7 @@ fn held(mu: f64, [q, out, _]: [V3; 3], before: f64, p: V3) -> LineContact {
     }
     // an iterate that is accepted leaves its limit behind
     at(&mut line, p);
-    line.renew_lags();
+    line.renew_limits();
     line.hold_limits = true;
     line
 }

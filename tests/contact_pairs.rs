@@ -3,7 +3,9 @@
 mod brute;
 
 use brute::Coil;
-use coilwind::contact::{Between, ContactLaw, Cross, PairPush, point_weights};
+use coilwind::contact::{
+    ContactLaw, ContactPoint, ContactResponse, Coupling, PairConditions, SelfContact,
+};
 use coilwind::math::V3;
 use proptest::prelude::*;
 
@@ -28,8 +30,8 @@ fn law(mu: f64) -> ContactLaw {
 }
 
 fn place(q: &[V3], point: usize) -> V3 {
-    let (nodes, weights) = point_weights(point);
-    nodes.iter().zip(weights).map(|(i, w)| q[*i] * w).sum()
+    let weights = ContactPoint::of_number(point).weights();
+    weights.iter().map(|(i, w)| q[i] * w).sum()
 }
 
 fn rests(q: &[V3]) -> Vec<f64> {
@@ -69,17 +71,25 @@ fn moved(q: &[V3], (size, phase): (V3, f64)) -> Vec<V3> {
 }
 
 /// Pushes of all pairs in touch: point and gradient.
-fn fast(between: &mut Between, q: &[V3], last: &[V3], mu: f64) -> Vec<(Cross, PairPush)> {
+fn fast(
+    pairs: &mut SelfContact,
+    q: &[V3],
+    last: &[V3],
+    mu: f64,
+) -> Vec<(Coupling, ContactResponse)> {
     let mut all = Vec::new();
-    between.evaluate(
-        &law(mu),
-        ONSET,
+    let conditions = PairConditions {
+        law: &law(mu),
+        onset: ONSET,
+        diameter: DIAMETER,
+        step: STEP,
+        hold_limits: false,
+    };
+    pairs.evaluate(
+        &conditions,
         (q, last),
-        DIAMETER,
-        STEP,
-        false,
         |_| LENGTH,
-        |cross, push| all.push((*cross, *push)),
+        |coupling, response| all.push((*coupling, *response)),
     );
     all
 }
@@ -126,38 +136,38 @@ proptest! {
         let rest = rests(&q);
         let mut arc = vec![0.0];
         rest.iter().for_each(|r| arc.push(arc[arc.len() - 1] + r));
-        let mut between = Between::default();
+        let mut pairs = SelfContact::default();
         for way in ways {
             let last = q.clone();
             q = moved(&q, way);
             // a guess that falls short of the way, as far as the method lets it pass
             let guess: Vec<V3> = last.iter().zip(&q).map(|(a, b)| a + (b - a) * 0.8).collect();
-            between.list(&last, &guess, &rest, DIAMETER);
-            prop_assert_eq!(between.missed(&last, &last), None);
-            if between.missed(&last, &q).is_some() {
+            pairs.list(&last, &guess, &rest, DIAMETER);
+            prop_assert_eq!(pairs.missed(&last, &last), None);
+            if pairs.missed(&last, &q).is_some() {
                 return Ok(());
             }
             let (want, doubtful) = slow(&q, &arc);
             if doubtful {
                 return Ok(());
             }
-            let got = fast(&mut between, &q, &last, 0.0);
+            let got = fast(&mut pairs, &q, &last, 0.0);
             let deep: Vec<_> = want.iter().filter(|w| w.0 > 1e-12).collect();
             prop_assert!(got.len() >= deep.len() && got.len() <= want.len() + 1);
             for (depth, normal, point) in deep {
-                let same = |(cross, push): &&(Cross, PairPush)| {
+                let same = |(coupling, push): &&(Coupling, ContactResponse)| {
                     let f = -push.gradient / (STIFFNESS * LENGTH);
                     let onset = if *depth < ONSET {
                         depth * depth / (2.0 * ONSET)
                     } else {
                         depth - 0.5 * ONSET
                     };
-                    cross.young.0 == point_weights(*point).0
+                    coupling.young.nodes == ContactPoint::of_number(*point).weights().nodes
                         && (f - normal * onset).norm() < 1e-12 + onset * 1e-7
                 };
                 prop_assert!(got.iter().any(|g| same(&g)), "missed {depth:e} of point {point}");
             }
-            prop_assert_eq!(between.deepest() > 0.0, !got.is_empty());
+            prop_assert_eq!(pairs.deepest() > 0.0, !got.is_empty());
         }
     }
 
@@ -165,15 +175,15 @@ proptest! {
     #[test]
     fn pairs_put_no_force_and_no_moment_on_the_whole(coil in coil(), way in way(), mu in 0.0..0.4f64) {
         let (q, _) = coil.wound();
-        let mut between = Between::default();
+        let mut pairs = SelfContact::default();
         let now = moved(&q, way);
-        between.list(&q, &now, &rests(&q), DIAMETER);
-        for (cross, push) in fast(&mut between, &now, &q, mu) {
+        pairs.list(&q, &now, &rests(&q), DIAMETER);
+        for (coupling, push) in fast(&mut pairs, &now, &q, mu) {
             let (mut force, mut moment) = (V3::zeros(), V3::zeros());
-            for side in [&cross.young, &cross.old] {
-                for (i, w) in side.0.iter().zip(side.1) {
+            for side in [&coupling.young, &coupling.old] {
+                for (i, w) in side.iter() {
                     force += push.gradient * w;
-                    moment += now[*i].cross(&(push.gradient * w));
+                    moment += now[i].cross(&(push.gradient * w));
                 }
             }
             let size = push.gradient.norm();
@@ -199,9 +209,9 @@ fn wire_two_turns_back_is_a_partner_too() {
         layer: 1.8,
     };
     let (q, arc) = coil.wound();
-    let mut between = Between::default();
-    between.list(&q, &q, &rests(&q), DIAMETER);
-    let got = fast(&mut between, &q, &q, 0.0);
+    let mut pairs = SelfContact::default();
+    pairs.list(&q, &q, &rests(&q), DIAMETER);
+    let got = fast(&mut pairs, &q, &q, 0.0);
     let (want, _) = slow(&q, &arc);
     assert_eq!(got.len(), want.len());
 }

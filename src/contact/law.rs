@@ -1,23 +1,17 @@
-//! Penalty contact and stick-slip friction of one touching point.
-//!
-//! Normal: `N = k h + c h'` per the wire length the node stands for; the dashpot is chosen so
-//! that a free node rebounds with the stated restitution (the paper's eq. 7 has none and
-//! rebounds fully). Tangential: a spring from an anchor in the core frame (bristle) with its own
-//! dashpot, cut off at `mu N`. The coefficient falls from static to kinetic with the slip speed,
-//! not with the slip per step, so that the law does not depend on the step.
+//! Parameters of contact and friction, and the smooth normal law of the production method.
 
-use crate::math::V3;
+use serde::{Deserialize, Serialize};
 
 /// Tangential over normal contact stiffness of equal bodies, `2(1 - nu)/(2 - nu)` (Mindlin 1949),
 /// for copper, nu = 0.34.
 pub(super) const TANGENTIAL_SHARE: f64 = 2.0 * (1.0 - 0.34) / (2.0 - 0.34);
 
-/// Contact parameters, per length of wire.
+/// Parameters of contact and friction, per length of wire.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLaw {
     /// line load per depth, N/m^2
     pub stiffness: f64,
-    /// damping ratio of a free node on the contact spring
+    /// damping ratio of a free node on the contact spring (nodal contact only)
     pub damping_ratio: f64,
     /// static friction coefficient
     pub mu_static: f64,
@@ -27,32 +21,8 @@ pub struct ContactLaw {
     pub slip_speed: f64,
 }
 
-/// Damping ratio at which a linear spring and dashpot rebounds by `e` (0 < e <= 1); critical at 0.
-pub fn damping_for_restitution(e: f64) -> f64 {
-    if e <= 0.0 {
-        return 1.0;
-    }
-    let l = -libm::log(e);
-    l / (std::f64::consts::PI * std::f64::consts::PI + l * l).sqrt()
-}
-
-/// Force of one touch and what it costs.
-#[derive(Clone, Copy, Debug)]
-pub struct TouchForce {
-    /// force on the node, N
-    pub force: V3,
-    /// bristle stretch after the cut-off, m
-    pub bristle: V3,
-    /// slip that the cut-off let go, m
-    pub slip: V3,
-    /// friction force on the node, N
-    pub friction: V3,
-    /// damping power: normal and tangential dashpots, W
-    pub damping: f64,
-}
-
 impl ContactLaw {
-    /// Friction coefficient at a slip speed, m/s.
+    /// Friction coefficient at a slip speed (m/s): `mu_k + (mu_s - mu_k) exp(-(v / v_s)^2)`.
     #[inline]
     pub fn mu(&self, speed: f64) -> f64 {
         let rise = self.mu_static - self.mu_kinetic;
@@ -66,116 +36,134 @@ impl ContactLaw {
             self.mu_kinetic + rise * libm::exp(-s * s)
         }
     }
+}
 
-    /// Stored energy of a touch over `length` of wire, J.
-    pub fn stored(&self, depth: f64, bristle: V3, length: f64) -> f64 {
-        0.5 * self.stiffness * length * (depth * depth + TANGENTIAL_SHARE * bristle.norm_squared())
+/// Damping ratio at which a mass on a linear spring and dashpot rebounds with restitution `e` (0 < e <= 1);
+/// 1, the critical one, at `e` = 0.
+pub fn damping_for_restitution(e: f64) -> f64 {
+    if e <= 0.0 {
+        return 1.0;
     }
+    let l = -libm::log(e);
+    l / (std::f64::consts::PI * std::f64::consts::PI + l * l).sqrt()
+}
 
-    /// Force on a node of mass `mass` that stands for `length` of wire.
-    ///
-    /// `normal` points from the surface to the node, `depth` > 0, `velocity` is relative to the
-    /// surface, `bristle` the node's position relative to its anchor; all in the core frame.
+/// Running totals of the energy that contact dissipated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ContactLoss {
+    /// slip against friction, J
+    pub friction: f64,
+    /// dashpots of contact and landings, J
+    pub damping: f64,
+}
+
+/// The normal law at a depth, over the contact stiffness k (N/m).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NormalLaw {
+    /// energy / k, m^2
+    pub(super) energy: f64,
+    /// force / k, m
+    pub(super) force: f64,
+    /// stiffness / k
+    pub(super) stiffness: f64,
+}
+
+impl NormalLaw {
+    /// The law without a dashpot: the force is quadratic up to the depth `onset`, then linear.
     #[inline]
-    pub fn force(
-        &self,
-        normal: V3,
-        depth: f64,
-        velocity: V3,
-        bristle: V3,
-        length: f64,
-        mass: f64,
-    ) -> TouchForce {
-        let k = self.stiffness * length;
-        let c = 2.0 * self.damping_ratio * (k * mass).sqrt();
-        let rate = -velocity.dot(&normal);
-        let push = k * depth + c * rate;
-        let slide = velocity + normal * rate;
-        let mut stretch = bristle - normal * bristle.dot(&normal);
-        let kt = k * TANGENTIAL_SHARE;
-        let ct = 2.0 * self.damping_ratio * (kt * mass).sqrt();
-        let mut friction = -(stretch * kt + slide * ct);
-        let limit = self.mu(slide.norm()) * push.max(0.0);
-        let size = friction.norm();
-        let mut slip = V3::zeros();
-        let mut damping = c * rate * rate;
-        if size > limit {
-            friction *= limit / size;
-            let kept = friction * (-1.0 / kt);
-            slip = stretch - kept;
-            stretch = kept;
+    pub(super) fn at(depth: f64, onset: f64) -> Self {
+        if depth < onset {
+            let s = depth / onset;
+            Self {
+                energy: s * depth * depth / 6.0,
+                force: 0.5 * s * depth,
+                stiffness: s,
+            }
         } else {
-            damping += ct * slide.norm_squared();
-        }
-        TouchForce {
-            force: normal * push + friction,
-            bristle: stretch,
-            slip,
-            friction,
-            damping,
+            Self {
+                energy: 0.5 * depth * depth - 0.5 * depth * onset + onset * onset / 6.0,
+                force: depth - 0.5 * onset,
+                stiffness: 1.0,
+            }
         }
     }
+
+    /// The law with a dashpot of `damping` times the stiffness against the way in from the depth `before`
+    /// of the last accepted instant (m; 0: no touch then).
+    ///
+    /// A dashpot alone would pull on what leaves faster than the spring can push. Here the law ends at the
+    /// depth where spring and dashpot cancel, so that the potential stays convex and without a kink.
+    #[inline]
+    pub(super) fn damped(depth: f64, onset: f64, damping: f64, before: f64) -> Self {
+        let sum = |depth: f64| {
+            let spring = Self::at(depth, onset);
+            let way = depth - before;
+            Self {
+                energy: spring.energy + 0.5 * damping * way * way,
+                force: spring.force + damping * way,
+                stiffness: spring.stiffness + damping,
+            }
+        };
+        if before == 0.0 || damping == 0.0 {
+            return sum(depth);
+        }
+        let linear = (damping * before + 0.5 * onset) / (1.0 + damping);
+        let end = if linear >= onset {
+            linear
+        } else {
+            2.0 * damping * before / (damping + (damping * (damping + 2.0 * before / onset)).sqrt())
+        };
+        if depth <= end {
+            return Self {
+                energy: 0.0,
+                force: 0.0,
+                stiffness: 0.0,
+            };
+        }
+        let there = sum(depth);
+        Self {
+            energy: (there.energy - sum(end).energy).max(0.0),
+            ..there
+        }
+    }
+}
+
+/// Work over stiffness (m^2) that a touch does beyond the `energy` it stores, if it acts at one end of a step
+/// only and the energy balance takes half its `force` over the `way` (m).
+///
+/// [`LineContact::commit`](super::LineContact::commit) says when this is the case.
+#[inline]
+pub(super) fn work_beyond_stored(force: f64, energy: f64, way: f64) -> f64 {
+    0.5 * force * way - energy
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn law() -> ContactLaw {
-        ContactLaw {
-            stiffness: 1e10,
-            damping_ratio: damping_for_restitution(0.5),
-            mu_static: 0.23,
-            mu_kinetic: 0.17,
-            slip_speed: 0.01,
-        }
-    }
-
+    /// Force and stiffness are the derivatives of energy and force, and the force never pulls.
     #[test]
-    fn the_paper_law_is_singular_and_fully_elastic_ours_is_not() {
-        assert!((damping_for_restitution(1.0)).abs() < 1e-15);
-        let z = damping_for_restitution(0.5);
-        let e = (-std::f64::consts::PI * z / (1.0 - z * z).sqrt()).exp();
-        assert!((e - 0.5).abs() < 1e-12);
-        let f = law().force(V3::y(), 1e-6, V3::zeros(), V3::zeros(), 1e-3, 3e-6);
-        assert!((f.force - V3::new(0.0, 10.0, 0.0)).norm() < 1e-12);
-    }
-
-    #[test]
-    fn friction_stays_inside_its_cone_and_opposes_the_slide() {
-        let l = law();
-        for speed in [0.0, 1e-3, 1e-2, 1.0] {
-            let f = l.force(
-                V3::y(),
-                2e-6,
-                V3::new(speed, 0.0, 0.0),
-                V3::new(1e-4, 0.0, 0.0),
-                1e-3,
-                3e-6,
-            );
-            let mu = l.mu(speed);
-            assert!((f.friction.norm() - mu * 20.0).abs() < 1e-9 && f.friction.x < 0.0);
-            assert!(
-                f.slip.x > 0.0 && (f.slip + f.bristle - V3::new(1e-4, 0.0, 0.0)).norm() < 1e-18
-            );
-        }
-        assert!((l.mu(0.0) - 0.23).abs() < 1e-15 && (l.mu(1.0) - 0.17).abs() < 1e-15);
-    }
-
-    #[test]
-    fn sticking_force_is_minus_the_energy_gradient() {
-        let l = law();
-        let (n, length) = (V3::new(0.6, 0.8, 0.0), 5e-4);
-        let (depth, b) = (1e-6, V3::new(0.8e-7, -0.6e-7, 0.5e-7));
-        let f = l.force(n, depth, V3::zeros(), b, length, 1.7e-6);
-        let e = |d: V3| {
-            let t = b + d;
-            l.stored(depth - d.dot(&n), t - n * t.dot(&n), length)
-        };
-        let h = 1e-10;
-        for a in [V3::x(), V3::y(), V3::z()] {
-            let de = (e(a * h) - e(a * -h)) / (2.0 * h);
-            assert!((de + f.force.dot(&a)).abs() < 1e-6 * f.force.norm());
+    fn normal_law_is_a_family() {
+        let onset = 1e-6;
+        for damping in [0.0, 0.3, 20.0] {
+            for before in [0.0, 4e-7, 2e-6, 1e-5] {
+                for i in 1..400 {
+                    let depth = 1.37e-8 * f64::from(i) * (1.0 + 0.01 * f64::from(i));
+                    let law = |d: f64| NormalLaw::damped(d, onset, damping, before);
+                    let h = 1e-12;
+                    let here = law(depth);
+                    let (a, b) = (law(depth - h), law(depth + h));
+                    assert!(here.energy >= 0.0 && here.force >= 0.0 && here.stiffness >= 0.0);
+                    let scale = onset * (1.0 + damping);
+                    let slope = (b.energy - a.energy) / (2.0 * h);
+                    assert!((slope - here.force).abs() < 1e-4 * scale);
+                    // the stiffness jumps where the push ends
+                    if a.force > 0.0 || b.force == 0.0 {
+                        let slope = (b.force - a.force) / (2.0 * h);
+                        assert!((slope - here.stiffness).abs() < 1e-4 * (1.0 + damping));
+                    }
+                }
+            }
         }
     }
 }

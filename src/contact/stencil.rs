@@ -1,20 +1,166 @@
-//! The points of line contact: one at each inner node, on the wire's spline, and one at the middle of each edge.
-//!
-//! Point `2 i` is that of node `i`, point `2 j + 1` that of edge `j`.
+//! Contact points of the production method: where they lie on the wire, and the nodes that they move with.
 
-use crate::math::V3;
+use crate::linalg::Banded;
+use crate::math::{Block, V3, scaled_block};
 use crate::rod::Rod;
 
-/// Length of wire that a contact point stands for, m.
-pub(crate) fn point_length(rod: &Rod, point: usize) -> f64 {
-    0.5 * if point.is_multiple_of(2) {
-        rod.voronoi(point / 2)
-    } else {
-        rod.rest[point / 2]
+/// A contact point of the wire: one at each inner node and one at the middle of each edge.
+///
+/// Both lie on the quadratic B-spline of the nodes, so that a coarse polygon neither cuts a corner nor catches
+/// on a kink. The end nodes have no point of their own.
+///
+/// Points are numbered along the wire: node `i` has number `2 i`, edge `j` has `2 j + 1`. When edge `j` is
+/// split, [`LineContact`](super::LineContact) hands the state of point `2 j + 1` to the new node's point
+/// `2 j + 2` and begins both halves anew. [`SelfContact`](super::SelfContact) leaves the pairs of that point
+/// at `2 j + 1`, the middle of the first half. When a node is taken out, both hand the state of its point
+/// to the middle of the joined edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactPoint {
+    /// at an inner node `i`: `p = x[i-1] / 8 + 3 x[i] / 4 + x[i+1] / 8`
+    Node(usize),
+    /// at the middle of edge `j`: `p = x[j] / 2 + x[j+1] / 2`
+    Edge(usize),
+}
+
+impl ContactPoint {
+    /// The point of this number.
+    #[inline]
+    pub fn of_number(number: usize) -> Self {
+        if number.is_multiple_of(2) {
+            Self::Node(number / 2)
+        } else {
+            Self::Edge(number / 2)
+        }
+    }
+
+    /// The number of the point, see [`ContactPoint`].
+    #[inline]
+    pub fn number(self) -> usize {
+        match self {
+            Self::Node(i) => 2 * i,
+            Self::Edge(j) => 2 * j + 1,
+        }
+    }
+
+    /// All points of a wire of so many edges, clamp first.
+    pub fn all(edges: usize) -> impl Iterator<Item = Self> {
+        (1..2 * edges).map(Self::of_number)
+    }
+
+    /// Place of the point, m, on a wire with nodes at `q`.
+    #[inline(always)]
+    pub fn place(self, q: &[V3]) -> V3 {
+        match self {
+            Self::Node(i) => (q[i - 1] + q[i + 1]) * 0.125 + q[i] * 0.75,
+            Self::Edge(j) => (q[j] + q[j + 1]) * 0.5,
+        }
+    }
+
+    /// Nodes that the point moves with, and their weights.
+    #[inline(always)]
+    pub fn weights(self) -> NodeWeights {
+        match self {
+            Self::Node(i) => NodeWeights {
+                nodes: [i - 1, i, i + 1],
+                weights: [0.125, 0.75, 0.125],
+            },
+            Self::Edge(j) => NodeWeights {
+                nodes: [j, j + 1, j + 1],
+                weights: [0.5, 0.5, 0.0],
+            },
+        }
+    }
+
+    /// Unstretched length of wire that the point stands for, m: half of what its node or edge stands for.
+    #[inline]
+    pub fn length(self, rod: &Rod) -> f64 {
+        self.length_with(&rod.rest, |i| rod.voronoi(i))
+    }
+
+    /// [`Self::length`] for edges of the unstretched lengths `rest` and nodes that stand for `of_node`, m.
+    #[inline(always)]
+    pub fn length_with(self, rest: &[f64], of_node: impl Fn(usize) -> f64) -> f64 {
+        match self {
+            Self::Node(i) => 0.5 * of_node(i),
+            Self::Edge(j) => 0.5 * rest[j],
+        }
+    }
+
+    /// Unstretched length from the clamp of a point whose node or edge begins at `arc`, m.
+    #[inline(always)]
+    pub fn arc(self, arc: f64, rest: &[f64]) -> f64 {
+        match self {
+            Self::Node(_) => arc,
+            Self::Edge(j) => arc + 0.5 * rest[j],
+        }
     }
 }
 
-/// Point of the wire's spline at node `i` (not an end), m.
-pub(crate) fn spline_point(q: &[V3], i: usize) -> V3 {
-    (q[i - 1] + q[i + 1]) * 0.125 + q[i] * 0.75
+/// A place on the wire as a weighted mean of up to three neighbouring nodes; unused ones have weight 0.
+///
+/// The weights of a foot on the partner's wire are negative where the mean of both is a distance vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NodeWeights {
+    /// the nodes, ascending; one with weight 0 repeats the node before it
+    pub nodes: [usize; 3],
+    /// their weights
+    pub weights: [f64; 3],
+}
+
+impl NodeWeights {
+    /// Nodes and weights.
+    #[inline]
+    pub fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        self.nodes.into_iter().zip(self.weights)
+    }
+
+    /// The same nodes with the opposite weights.
+    #[inline]
+    pub fn negative(&self) -> Self {
+        Self {
+            nodes: self.nodes,
+            weights: self.weights.map(|w| -w),
+        }
+    }
+
+    /// The weighted sum of what the nodes have in `q`, for a [`ContactPoint`] its place but for rounding.
+    #[inline]
+    pub fn sum(&self, q: &[V3]) -> V3 {
+        let [a, b, c] = self.nodes;
+        q[a] * self.weights[0] + q[b] * self.weights[1] + q[c] * self.weights[2]
+    }
+
+    /// Adds the force or gradient `f` on the place to the nodes' `out`.
+    #[inline(always)]
+    pub fn spread(&self, f: &V3, out: &mut [V3]) {
+        for (i, w) in self.iter() {
+            if w != 0.0 {
+                out[i] += f * w;
+            }
+        }
+    }
+
+    /// Adds the Hessian `block` with respect to the place to the nodes' `matrix`.
+    #[inline(always)]
+    pub fn spread_block<const D: usize>(&self, block: &Block, matrix: &mut Banded<D>) {
+        for a in 0..3 {
+            let (i, wa) = (self.nodes[a], self.weights[a]);
+            if wa == 0.0 {
+                continue;
+            }
+            matrix.add_diagonal(i, &scaled_block(block, wa * wa));
+            for b in a + 1..3 {
+                let wb = self.weights[b];
+                if wb != 0.0 {
+                    matrix.add(i, self.nodes[b] - i, &scaled_block(block, wa * wb));
+                }
+            }
+        }
+    }
+}
+
+impl From<([usize; 3], [f64; 3])> for NodeWeights {
+    fn from((nodes, weights): ([usize; 3], [f64; 3])) -> Self {
+        Self { nodes, weights }
+    }
 }

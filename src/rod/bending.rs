@@ -9,7 +9,7 @@
 
 use super::plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
 use super::yield_branch::YieldBranch;
-use crate::math::V3;
+use crate::math::{Block, V3, add_outer};
 
 /// Smallest `1 + cos` of a turning angle: just short of a complete fold.
 pub(super) const FOLD: f64 = 1e-6;
@@ -180,23 +180,9 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
     }
 }
 
-/// A block of the Hessian, row by row.
-pub type Block = [[f64; 3]; 3];
-
 #[inline]
 fn scaled_identity(c: f64) -> Block {
     [[c, 0.0, 0.0], [0.0, c, 0.0], [0.0, 0.0, c]]
-}
-
-/// Adds `a b^T`.
-#[inline]
-pub fn add_outer(m: &mut Block, a: &V3, b: &V3) {
-    let (a, b) = ([a.x, a.y, a.z], [b.x, b.y, b.z]);
-    for (row, a) in m.iter_mut().zip(a) {
-        for (x, b) in row.iter_mut().zip(b) {
-            *x += a * b;
-        }
-    }
 }
 
 /// A symmetric block by its lower half, row by row.

@@ -15,10 +15,9 @@ mod twist;
 mod twisting;
 mod yield_branch;
 
+pub use crate::math::{Block, add_outer};
 pub use batch::{BendingJoints, Forces, TwistingJoints};
-pub use bending::{
-    Bent, Block, Stretched, Symmetric, add_outer, add_square, bent, stretched, turning,
-};
+pub use bending::{Bent, Stretched, Symmetric, add_square, bent, stretched, turning};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::Joint;
 pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};

@@ -10,11 +10,12 @@
 //! the trial moment from a frame that rolls along with the edges in part. The part is the one with which a joint
 //! whose edges roll alike has the right stiffness: none for elastic wire, which does not feel it.
 
-use super::bending::{Bent, Symmetric, add_outer, add_square, respond};
+use super::bending::{Bent, Symmetric, add_square, respond};
 use super::forces::Laws;
 use super::joint::Joint;
 use super::plasticity::{Bend, Scalar, respond_scalar};
 use super::yield_branch::YieldBranch;
+use crate::math::add_outer;
 use crate::math::{M3, Quat, V3};
 use crate::math::{align, rotate};
 

@@ -1,6 +1,7 @@
 //! Where energy comes from and where it goes.
 
 use super::{Mass, System};
+use crate::contact::{ContactPoint, LineContact};
 use crate::rod::stored_energy;
 
 /// Where energy came from and went, J, since the start.
@@ -55,21 +56,22 @@ impl System {
         rod + touch + between
     }
 
-    fn stored_in_points(&self, line: &crate::contact::LineContact) -> f64 {
+    fn stored_in_points(&self, line: &LineContact) -> f64 {
         let rod = &self.rod;
+        let at = |point: ContactPoint| line.stored(point.number(), point.length(rod));
         (0..rod.edges())
             .map(|j| {
                 let node = if j > 0 {
-                    line.stored(2 * j, 0.5 * rod.voronoi(j))
+                    at(ContactPoint::Node(j))
                 } else {
                     0.0
                 };
-                node + line.stored(2 * j + 1, 0.5 * rod.rest[j])
+                node + at(ContactPoint::Edge(j))
             })
             .sum::<f64>()
-            + line.between.as_ref().map_or(0.0, |b| {
-                b.stored(&line.law, line.onset, |p| {
-                    crate::contact::point_length(rod, p)
+            + line.self_contact.as_ref().map_or(0.0, |pairs| {
+                pairs.stored(&line.law, line.onset, |number| {
+                    ContactPoint::of_number(number).length(rod)
                 })
             })
     }

@@ -14,7 +14,7 @@ pub use remesh::FrozenHistory;
 pub(crate) use saved::SavedSystem;
 pub use support::{Spindle, Support};
 
-use crate::contact::{Body, Contacts, LineContact, LiveContact, Wire};
+use crate::contact::{Body, ContactPoint, Contacts, LineContact, LiveContact, Wire};
 use crate::feed::{Feed, FeedSpec};
 use crate::math::rotate;
 use crate::math::turn_about_y;
@@ -322,7 +322,7 @@ impl System {
     pub fn centre(&self, i: usize) -> V3 {
         let x = &self.rod.x;
         if self.line.is_some() && i > 0 && i + 1 < x.len() {
-            crate::contact::spline_point(x, i)
+            ContactPoint::Node(i).place(x)
         } else {
             x[i]
         }

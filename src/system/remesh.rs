@@ -2,8 +2,7 @@
 //! it back.
 
 use super::{Support, System};
-use crate::contact::spline_point;
-use crate::contact::{Memory, NodeContact};
+use crate::contact::{ContactPoint, ContactRecord, NodeContact};
 use crate::math::PersistentVec;
 use crate::math::turn_about_y;
 use crate::math::{Quat, Spin, V3, spin_velocity};
@@ -29,7 +28,7 @@ pub struct FrozenNodeRecord {
     stretch: Scalar,
     bend: Bend,
     twist: Scalar,
-    memory: Memory,
+    memory: ContactRecord,
 }
 
 impl FrozenNodeRecord {
@@ -114,7 +113,7 @@ impl System {
         rod.bend.insert(j + 1, bend);
         rod.twist.insert(j + 1, twist);
         if let Some(c) = &mut self.contacts {
-            c.nodes.insert(j + 1, crate::contact::NodeContact::new());
+            c.nodes.insert(j + 1, NodeContact::new());
         }
         if let Some(l) = &mut self.live {
             l.insert(j + 1);
@@ -435,12 +434,13 @@ impl System {
         if q.len() != self.rod.nodes() {
             return;
         }
+        let mut carry = |point: ContactPoint| line.carry(point.number(), point.place(q));
         if i > 1 {
-            line.carry(2 * (i - 1), spline_point(q, i - 1));
+            carry(ContactPoint::Node(i - 1));
         }
-        line.carry(2 * i - 1, (q[i - 1] + q[i]) * 0.5);
+        carry(ContactPoint::Edge(i - 1));
         if i + 1 < q.len() {
-            line.carry(2 * i, spline_point(q, i));
+            carry(ContactPoint::Node(i));
         }
     }
 

@@ -3,8 +3,7 @@
 use super::scheme::{Scheme, Step};
 use super::tensioner::{NozzleEdge, advance};
 use super::{Implicit, Work};
-use crate::contact::{LineContact, own_wire};
-use crate::contact::{point_length, spline_point};
+use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
 use crate::math::{Spin, V3};
 use crate::rod::Rod;
 use crate::system::Past;
@@ -198,11 +197,8 @@ impl System {
     fn place_points(&mut self) {
         let Some(line) = &mut self.line else { return };
         let q = &self.past.q[0];
-        for j in 0..q.len() - 1 {
-            if j > 0 {
-                line.place(2 * j, spline_point(q, j));
-            }
-            line.place(2 * j + 1, (q[j] + q[j + 1]) * 0.5);
+        for point in ContactPoint::all(q.len() - 1) {
+            line.place(point.number(), point.place(q));
         }
     }
 
@@ -247,18 +243,13 @@ impl System {
             let step = if h > 0.0 { h } else { f64::INFINITY };
             for j in 0..rod.edges() {
                 let rest = rod.rest[j];
-                for at_node in [true, false] {
-                    if at_node && j == 0 {
+                for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {
+                    if point == ContactPoint::Node(0) {
                         continue;
                     }
-                    let (p, length, own, k) = if at_node {
-                        let p = (rod.x[j - 1] + rod.x[j + 1]) * 0.125 + rod.x[j] * 0.75;
-                        (p, 0.5 * rod.voronoi(j), arc, 2 * j)
-                    } else {
-                        let p = (rod.x[j] + rod.x[j + 1]) * 0.5;
-                        (p, 0.5 * rest, arc + 0.5 * rest, 2 * j + 1)
-                    };
-                    let own = own_wire(own, diameter);
+                    let (k, length) = (point.number(), point.length(rod));
+                    let own = own_wire(point.arc(arc, &rod.rest), diameter);
+                    let p = point.place(&rod.x);
                     let q = spin.to_core(p);
                     let f = if commit {
                         line.commit(k, q, length, own, step)
@@ -271,22 +262,16 @@ impl System {
                     }
                     let f = spin.to_lab(f);
                     moment -= p.z * f.x - p.x * f.z;
-                    if at_node {
-                        force[j - 1] += f * 0.125;
-                        force[j] += f * 0.75;
-                        force[j + 1] += f * 0.125;
-                    } else {
-                        force[j] += f * 0.5;
-                        force[j + 1] += f * 0.5;
-                    }
+                    point.weights().spread(&f, force);
                 }
                 arc += rest;
             }
             self.deepest = self.deepest.max(line.deepest);
             moment += between_forces(line, rod, force, &self.past, spin, (diameter, step), commit);
-            let between = line.between.as_ref().map(|b| b.loss).unwrap_or_default();
-            self.balance.friction = line.loss.friction + between.friction;
-            self.balance.damping = line.loss.damping + between.damping;
+            let pairs = line.self_contact.as_ref();
+            let pairs = pairs.map(|pairs| pairs.loss).unwrap_or_default();
+            self.balance.friction = line.loss.friction + pairs.friction;
+            self.balance.damping = line.loss.damping + pairs.damping;
             self.balance.numerical -= std::mem::take(&mut line.lifted);
         }
         self.torque_on_core = moment + self.clamp_torque();
@@ -307,18 +292,18 @@ fn between_forces(
     (diameter, step): (f64, f64),
     commit: bool,
 ) -> f64 {
-    let LineContact {
-        between: Some(between),
-        law,
-        onset,
-        deepest,
-        ..
-    } = line
-    else {
+    let conditions = PairConditions {
+        law: &line.law,
+        onset: line.onset,
+        diameter,
+        step,
+        hold_limits: false,
+    };
+    let Some(pairs) = &mut line.self_contact else {
         return 0.0;
     };
     let mut moment = 0.0;
-    let mut q = std::mem::take(&mut between.scratch);
+    let mut q = std::mem::take(&mut pairs.scratch);
     q.clear();
     q.extend(rod.x.iter().map(|x| spin.to_core(*x)));
     let last = if past.q[0].len() == q.len() {
@@ -326,29 +311,21 @@ fn between_forces(
     } else {
         &q
     };
-    between.evaluate(
-        law,
-        *onset,
-        (&q, last),
-        diameter,
-        step,
-        false,
-        |point| point_length(rod, point),
-        |cross, push| {
-            let f = spin.to_lab(push.gradient);
-            for side in [&cross.young, &cross.old] {
-                for (node, weight) in side.0.iter().zip(side.1) {
-                    let (f, p) = (f * weight, rod.x[*node]);
-                    force[*node] -= f;
-                    moment += p.z * f.x - p.x * f.z;
-                }
+    let length = |number| ContactPoint::of_number(number).length(rod);
+    pairs.evaluate(&conditions, (&q, last), length, |coupling, response| {
+        let f = spin.to_lab(response.gradient);
+        for place in [&coupling.young, &coupling.old] {
+            for (node, weight) in place.iter() {
+                let (f, p) = (f * weight, rod.x[node]);
+                force[node] -= f;
+                moment += p.z * f.x - p.x * f.z;
             }
-        },
-    );
+        }
+    });
     if commit {
-        between.commit((law, *onset), (&q, last), |point| point_length(rod, point));
-        *deepest = deepest.max(between.deepest());
+        pairs.commit((conditions.law, conditions.onset), (&q, last), length);
+        line.deepest = line.deepest.max(pairs.deepest());
     }
-    between.scratch = q;
+    pairs.scratch = q;
     moment
 }

@@ -3,7 +3,7 @@
 //! The banded part contains both partners' own shares of every pair, the couplings only what
 //! lies between them, so the sum is positive semidefinite and the preconditioner is its upper bound.
 
-use crate::contact::{Cross, add_cross};
+use crate::contact::{Coupling, add_couplings};
 use crate::linalg::Banded;
 
 /// Residual, in the norm of the preconditioner, at which an update is good enough: Newton's method needs no more.
@@ -26,7 +26,7 @@ pub(super) struct Scratch {
 #[inline(never)]
 pub(super) fn solve<const D: usize>(
     matrix: &Banded<D>,
-    cross: &[Cross],
+    couplings: &[Coupling],
     held: [[bool; 3]; 2],
     b: &mut [f64],
     s: &mut Scratch,
@@ -45,7 +45,7 @@ pub(super) fn solve<const D: usize>(
     let stop = rz * CLOSE * CLOSE;
     for _ in 0..MOST_STEPS {
         s.y.copy_from_slice(&s.banded);
-        add_cross::<D>(cross, &s.p, &mut s.y);
+        add_couplings::<D>(couplings, &s.p, &mut s.y);
         for (end, first) in [(0, 0), (1, n - D)] {
             for a in 0..3 {
                 if held[end][a] {

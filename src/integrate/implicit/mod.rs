@@ -252,7 +252,7 @@ impl Implicit {
             }
             if let Some(line) = &mut sys.line {
                 line.begin_attempt();
-                if let Some(b) = &mut line.between {
+                if let Some(b) = &mut line.self_contact {
                     let (from, guess) = (&sys.past.q[0], &work.guess);
                     b.list(from, guess, &sys.rod.rest, sys.section.diameter);
                 }
@@ -277,8 +277,8 @@ impl Implicit {
             self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
             self.statistics.cg_iterations += std::mem::take(&mut work.gradients.cg_iterations);
             let missed = sys.line.as_ref().and_then(|l| {
-                let between = l.between.as_ref()?;
-                between.missed(&sys.past.q[0], &work.q)
+                let pairs = l.self_contact.as_ref()?;
+                pairs.missed(&sys.past.q[0], &work.q)
             });
             let retry = match solved {
                 // farther than the pairs of wire were looked for

@@ -2,8 +2,7 @@
 
 use super::tensioner::NozzleEdge;
 use super::{Axial, Work, assembly, voronoi};
-use crate::contact::{LineContact, own_wire, point_length, spline_point};
-use crate::linalg::Banded;
+use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
 use crate::math::V3;
 use crate::rod::{Block, Laws, Rod, stretched, turning};
 use crate::system::Loads;
@@ -50,7 +49,7 @@ impl Model<'_> {
         self.evaluate_with::<D, true>(work)
     }
 
-    /// Evaluates at `work.q` into `work.gradient`; `work.matrix` stays what it was, knees are forgotten.
+    /// Evaluates at `work.q` into `work.gradient`; `work.matrix` stays what it was, yield branches are forgotten.
     pub(super) fn evaluate_forces<const D: usize>(&mut self, work: &mut Work<D>) -> Value {
         self.evaluate_with::<D, false>(work)
     }
@@ -255,47 +254,71 @@ impl Model<'_> {
         (energy, axial)
     }
 
+    /// Adds the touches of the wire.
     fn contact<const D: usize, const HESSIAN: bool>(
         &mut self,
         work: &mut Work<D>,
         value: &mut Value,
     ) {
-        let Some(line) = self.line.as_deref_mut() else {
+        // taken out while it changes along with the rest of the model at hand
+        let Some(line) = self.line.take() else {
             return;
         };
         line.begin();
-        let edges = work.q.len() - 1;
         let mut arc = self.arc0;
-        for j in 0..edges {
-            let rest = self.rod.rest[j];
+        for (j, rest) in self.rod.rest.iter().enumerate() {
             if j > 0 {
-                let p = spline_point(&work.q, j);
-                let own = own_wire(arc, self.diameter);
-                let length = 0.5 * voronoi(self.rod, self.grown, j);
-                if let Some(push) = line.push(2 * j, p, length, own, self.elapsed) {
-                    value.merit += push.energy_lagged;
-                    value.now += push.energy;
-                    let weights = [0.125, 0.75, 0.125];
-                    spread::<D, HESSIAN>(work, j - 1, &weights, &push.gradient, &push.hessian);
-                }
+                let point = ContactPoint::Node(j);
+                self.contact_of::<D, HESSIAN>(point, arc, line, work, value);
             }
-            let p = (work.q[j] + work.q[j + 1]) * 0.5;
-            let own = own_wire(arc + 0.5 * rest, self.diameter);
-            if let Some(push) = line.push(2 * j + 1, p, 0.5 * rest, own, self.elapsed) {
-                value.merit += push.energy_lagged;
-                value.now += push.energy;
-                spread::<D, HESSIAN>(work, j, &[0.5, 0.5], &push.gradient, &push.hessian);
-            }
+            let point = ContactPoint::Edge(j);
+            self.contact_of::<D, HESSIAN>(point, arc, line, work, value);
             arc += rest;
         }
-        let LineContact {
-            between: Some(between),
-            law,
-            onset,
-            hold_limits,
-            ..
-        } = line
-        else {
+        self.contact_of_pairs::<D, HESSIAN>(line, work, value);
+        self.line = Some(line);
+    }
+
+    /// Adds the touches of one contact point, whose node or edge begins at the unstretched length `arc`.
+    #[inline(always)]
+    fn contact_of<const D: usize, const HESSIAN: bool>(
+        &self,
+        point: ContactPoint,
+        arc: f64,
+        line: &mut LineContact,
+        work: &mut Work<D>,
+        value: &mut Value,
+    ) {
+        let rest = &self.rod.rest;
+        let p = point.place(&work.q);
+        let own = own_wire(point.arc(arc, rest), self.diameter);
+        let length = point.length_with(rest, |i| voronoi(self.rod, self.grown, i));
+        if let Some(response) = line.push(point.number(), p, length, own, self.elapsed) {
+            value.merit += response.energy_lagged;
+            value.now += response.energy;
+            let weights = point.weights();
+            weights.spread(&response.gradient, &mut work.gradient);
+            if HESSIAN {
+                weights.spread_block(&response.hessian, &mut work.matrix);
+            }
+        }
+    }
+
+    /// Adds the touches of live wire with live wire.
+    fn contact_of_pairs<const D: usize, const HESSIAN: bool>(
+        &self,
+        line: &mut LineContact,
+        work: &mut Work<D>,
+        value: &mut Value,
+    ) {
+        let conditions = PairConditions {
+            law: &line.law,
+            onset: line.onset,
+            diameter: self.diameter,
+            step: self.elapsed,
+            hold_limits: line.hold_limits,
+        };
+        let Some(pairs) = &mut line.self_contact else {
             return;
         };
         let Work {
@@ -304,71 +327,21 @@ impl Model<'_> {
             matrix,
             ..
         } = work;
-        between.evaluate(
-            law,
-            *onset,
+        pairs.evaluate(
+            &conditions,
             (q, self.last),
-            self.diameter,
-            self.elapsed,
-            *hold_limits,
-            |point| point_length(self.rod, point),
-            |cross, push| {
-                value.merit += push.energy_lagged;
-                value.now += push.energy;
-                for side in [&cross.young, &cross.old] {
-                    for (i, w) in side.0.iter().zip(side.1) {
-                        gradient[*i] += push.gradient * w;
-                    }
+            |point| ContactPoint::of_number(point).length(self.rod),
+            |coupling, response| {
+                value.merit += response.energy_lagged;
+                value.now += response.energy;
+                for place in [&coupling.young, &coupling.old] {
+                    place.spread(&response.gradient, gradient);
                     if HESSIAN {
-                        add_block(matrix, side, &cross.block);
+                        place.spread_block(&response.hessian, matrix);
                     }
                 }
             },
         );
-    }
-}
-
-/// Adds a point's Hessian to three neighbouring nodes.
-pub(super) fn add_block<const D: usize>(
-    matrix: &mut Banded<D>,
-    (nodes, weights): &([usize; 3], [f64; 3]),
-    block: &Block,
-) {
-    for a in 0..3 {
-        let (i, wa) = (nodes[a], weights[a]);
-        if wa == 0.0 {
-            continue;
-        }
-        matrix.add_diagonal(i, &combine(|r, c| block[r][c] * (wa * wa)));
-        for b in a + 1..3 {
-            let wb = weights[b];
-            if wb != 0.0 {
-                let cross = combine(|r, c| block[r][c] * (wa * wb));
-                matrix.add(i, nodes[b] - i, &cross);
-            }
-        }
-    }
-}
-
-#[inline]
-fn spread<const D: usize, const HESSIAN: bool>(
-    work: &mut Work<D>,
-    first: usize,
-    weight: &[f64],
-    gradient: &V3,
-    hessian: &Block,
-) {
-    for (a, wa) in weight.iter().enumerate() {
-        work.gradient[first + a] += gradient * *wa;
-        if !HESSIAN {
-            continue;
-        }
-        let own = combine(|r, c| hessian[r][c] * (wa * wa));
-        work.matrix.add_diagonal(first + a, &own);
-        for (b, wb) in weight.iter().enumerate().skip(a + 1) {
-            let cross = combine(|r, c| hessian[r][c] * (wa * wb));
-            work.matrix.add(first + a, b - a, &cross);
-        }
     }
 }
 

@@ -1,14 +1,14 @@
 //! Newton's method on the incremental potential, with line search.
 
-use super::model::{Model, add_block};
+use super::model::Model;
 use super::{Work, conjugate, roll};
-use crate::contact::{Triple, point_weights};
+use crate::contact::{ContactPoint, NodeWeights, PairConditions};
 use crate::linalg::Banded;
 use crate::math::V3;
 use crate::rod::{Block, Laws, add_outer};
 
-/// Newton steps that renew the friction limits; from then on they stay, so that the rest converges
-/// quadratically. What is left of the lag is its last change.
+/// Newton steps that renew the friction limits; from then on the limits stay, so that the rest converges
+/// quadratically. The solution then lags behind its own limits by their last change.
 const LIMIT_STEPS: usize = 5;
 /// Times that an update is solved again for contact and yielding it meets on its way.
 const LOOKS_AHEAD: usize = 8;
@@ -191,7 +191,7 @@ pub(super) fn solve<const D: usize>(
             if trial.merit <= value + NOISE * value.abs() || share * update < close {
                 value = trial.now;
                 if let Some(line) = model.line.as_deref_mut() {
-                    line.renew_lags();
+                    line.renew_limits();
                 }
                 break;
             }
@@ -232,8 +232,8 @@ fn end_by_chord<const D: usize>(
     damped: bool,
 ) -> bool {
     let coupled = |model: &Model| {
-        let between = model.line.as_deref().and_then(|l| l.between.as_ref());
-        between.is_some_and(|b| !b.cross.is_empty())
+        let line = model.line.as_deref();
+        line.is_some_and(|l| !l.couplings().is_empty())
     };
     // pairs of live wire have their share of the matrix outside the band, and that is always of the present
     if first > CHORD * close || coupled(model) {
@@ -301,15 +301,15 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
     for look in 0.. {
         work.matrix.factor().map_err(|loose| loose.node)?;
         work.update.clone_from(&work.load);
-        match model.line.as_deref().and_then(|l| l.between.as_ref()) {
-            Some(between) if !between.cross.is_empty() => conjugate::solve(
+        match model.line.as_deref().map_or(&[][..], |l| l.couplings()) {
+            [] => work.matrix.solve(&mut work.update),
+            couplings => conjugate::solve(
                 &work.matrix,
-                &between.cross,
+                couplings,
                 model.held,
                 &mut work.update,
                 &mut work.gradients,
             ),
-            _ => work.matrix.solve(&mut work.update),
         }
         if look == 0 {
             work.plain.clone_from(&work.update);
@@ -317,7 +317,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
         if look == LOOKS_AHEAD {
             return Ok(false);
         }
-        let mut any = foresee_knees(model.laws, work);
+        let mut any = predict_yielding(model.laws, work);
         let Work {
             q,
             update,
@@ -326,34 +326,40 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
             force: there,
             ..
         } = work;
-        let move_of = |(at, weight): &Triple| {
+        let move_of = |point: usize| {
             let mut d = V3::zeros();
-            for (i, w) in at.iter().zip(weight) {
-                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * *w;
+            for (i, w) in ContactPoint::of_number(point).weights().iter() {
+                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * w;
             }
             d
         };
-        let mut correct = |triple: &Triple, stiffness: &Block, gradient: &V3| {
-            add_block(matrix, triple, stiffness);
-            for (i, w) in triple.0.iter().zip(triple.1) {
+        let mut correct = |place: &NodeWeights, stiffness: &Block, gradient: &V3| {
+            place.spread_block(stiffness, matrix);
+            for (i, w) in place.iter() {
                 for a in 0..3 {
                     load[D * i + a] -= w * gradient[a];
                 }
             }
         };
         if let Some(line) = model.line.as_deref_mut() {
-            any |= line.predict(
-                model.elapsed,
-                |point| move_of(&point_weights(point)),
-                |point, stiffness, gradient| correct(&point_weights(point), stiffness, gradient),
-            );
-            if let Some(between) = &mut line.between {
+            any |= line.predict(model.elapsed, move_of, |point, stiffness, gradient| {
+                let place = ContactPoint::of_number(point).weights();
+                correct(&place, stiffness, gradient);
+            });
+            let conditions = PairConditions {
+                law: &line.law,
+                onset: line.onset,
+                diameter: model.diameter,
+                step: model.elapsed,
+                hold_limits: line.hold_limits,
+            };
+            if let Some(pairs) = &mut line.self_contact {
                 there.clear();
                 for (i, p) in q.iter().enumerate() {
                     there.push(p + V3::new(update[D * i], update[D * i + 1], update[D * i + 2]));
                 }
-                any |= between.predict(
-                    (&line.law, line.onset, model.diameter),
+                any |= pairs.predict(
+                    &conditions,
                     (q, model.last, there),
                     |young, old, stiffness, gradient| {
                         correct(young, stiffness, gradient);
@@ -384,7 +390,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
-fn foresee_knees<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
+fn predict_yielding<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
     let Work {
         yield_branches,
         update,

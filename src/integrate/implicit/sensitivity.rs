@@ -114,7 +114,7 @@ impl Implicit {
         let now = set(work, sys, &step, &base, 0, 0.0);
         if let Some(line) = &mut sys.line {
             line.begin_attempt();
-            if let Some(b) = &mut line.between {
+            if let Some(b) = &mut line.self_contact {
                 let (from, guess) = (&sys.past.q[0], &work.guess);
                 b.list(from, guess, &sys.rod.rest, sys.section.diameter);
             }
@@ -193,13 +193,12 @@ impl Implicit {
                 if settled {
                     break;
                 }
-                let between = sys.line.as_ref().and_then(|l| l.between.as_ref());
-                match between.filter(|b| !b.cross.is_empty()) {
-                    Some(b) => {
+                match sys.line.as_ref().map_or(&[][..], |l| l.couplings()) {
+                    [] => work.matrix.solve(&mut residual),
+                    couplings => {
                         let scratch = &mut work.gradients;
-                        conjugate::solve(&work.matrix, &b.cross, held, &mut residual, scratch);
+                        conjugate::solve(&work.matrix, couplings, held, &mut residual, scratch);
                     }
-                    None => work.matrix.solve(&mut residual),
                 }
                 let size = |v: &[f64]| v.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
                 for (d, r) in dq.iter_mut().zip(&residual) {

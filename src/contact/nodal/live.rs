@@ -1,27 +1,31 @@
-//! Live wire against live wire: where wire has not come to rest before the next turn lands on it.
+//! Contact of live wire with live wire in the explicit methods.
 //!
-//! The younger wire's nodes touch the older wire's segments, as they touch the segments of frozen
-//! wire; force and reaction go to the node and to both ends of the segment. Pairs are listed with
-//! a skin and listed anew once some node has moved by half of it. The bristle of friction grows
-//! with the relative slide, so it travels with both partners.
+//! Wire that has not come to rest before the next turn lands on it is touched while it moves. The younger
+//! wire's nodes touch the older wire's segments, as they touch the segments of frozen wire; the force
+//! goes to the node, its reaction to both ends of the segment. Pairs are listed with a skin and listed anew once
+//! some node has moved by half of it. The bristle of friction grows with the relative slide, so it
+//! travels with both partners.
 
-use super::law::ContactLaw;
+use crate::contact::law::{ContactLaw, ContactLoss};
+use crate::contact::own_wire::own_wire;
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
 
-/// Skin of the pair list in wire diameters.
+/// Distance beyond touching within which pairs are listed, in wire diameters. Chosen.
 const SKIN: f64 = 0.5;
 
-/// Node and segment that came near each other, and the friction between them.
+/// A node and an older segment near it, and the friction between them.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 struct Pair {
     node: u32,
     segment: u32,
+    /// stretch of the bristle, core frame, m
     bristle: V3,
+    /// depth at the last committed evaluation, m
     depth: f64,
 }
 
-/// A moving wire as this contact sees it: core frame, one entry per live node.
+/// Motion and lengths of the live wire in the core frame, one entry per live node.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Wire {
     /// positions, m
@@ -34,10 +38,11 @@ pub struct Wire {
     pub arc: Vec<f64>,
 }
 
-/// Pairs of live wire and what their friction remembers.
+/// Pairs of live wire with their friction state.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveContact {
     pairs: Vec<Pair>,
+    /// places of the nodes when the pairs were listed, m; empty: list them anew
     seen: Vec<V3>,
     /// forces per node, core frame, N
     #[serde(skip)]
@@ -45,16 +50,16 @@ pub struct LiveContact {
     /// deepest penetration at the last committed evaluation, m
     pub deepest: f64,
     /// friction and damping losses so far, J
-    pub loss: super::ContactLoss,
+    pub loss: ContactLoss,
 }
 
 impl LiveContact {
-    /// Forgets the list (nodes were inserted or left); friction starts anew.
+    /// Makes the next evaluation list the pairs anew.
     pub fn forget(&mut self) {
         self.seen.clear();
     }
 
-    /// A node was inserted before index `at`.
+    /// Renumbers the pairs after a node was inserted before index `at`.
     pub fn insert(&mut self, at: usize) {
         self.seen.clear();
         for p in &mut self.pairs {
@@ -63,7 +68,7 @@ impl LiveContact {
         }
     }
 
-    /// The first `count` nodes left.
+    /// Renumbers the pairs after the first `count` nodes left.
     pub fn remove_front(&mut self, count: usize) {
         self.seen.clear();
         let n = count as u32;
@@ -74,20 +79,20 @@ impl LiveContact {
         }
     }
 
-    /// Whether every pair is one of a wire of so many nodes: a node and a segment nearer to the clamp.
+    /// Whether every pair lies on a wire of so many nodes: a node, and a segment nearer to the clamp.
     pub(crate) fn fits(&self, nodes: usize) -> bool {
         let mut pairs = self.pairs.iter();
         pairs.all(|p| (p.node as usize) < nodes && p.segment < p.node)
     }
 
+    /// Lists node and segments of older wire that may touch before a node has moved by half the skin.
     fn list_pairs(&mut self, wire: &Wire, diameter: f64) {
         let reach = diameter * (1.0 + SKIN);
         let old = std::mem::take(&mut self.pairs);
         let mut carry = old.iter().peekable();
         let x = &wire.position;
         for i in 0..x.len() {
-            // wire five diameters back along itself is no neighbour
-            let own = wire.arc[i] - super::OWN_WIRE * diameter;
+            let own = own_wire(wire.arc[i], diameter);
             for j in 0..i {
                 if wire.arc[j + 1] > own {
                     break;
@@ -118,7 +123,8 @@ impl LiveContact {
         self.seen.clone_from(x);
     }
 
-    /// Computes `force`. With `commit = Some(dt)` bristles move on and losses grow.
+    /// Computes [`Self::force`] on a wire of `per_length` kg/m. With `commit = Some(dt)` bristles move on and losses grow
+    /// by those of the step `dt` (s).
     pub fn evaluate(
         &mut self,
         wire: &Wire,
@@ -157,6 +163,7 @@ impl LiveContact {
         }
     }
 
+    /// Adds the touch of the pairs `from..to`, neighbouring segments near one node: the nearest segment touches.
     fn touch(
         &mut self,
         from: usize,
@@ -181,7 +188,7 @@ impl LiveContact {
                 nearest = Some((j, s, off));
             }
         }
-        // the bristle of the passage is kept on its first pair
+        // the bristle of the whole run is kept on its first pair
         let bristle = self.pairs[from].bristle;
         let Some((j, s, off)) = nearest else {
             if commit.is_some() && self.pairs[from].depth > 0.0 {

@@ -1,0 +1,156 @@
+//! Response of one touch of the production method: normal force and friction from one potential.
+//!
+//! Friction is a spring, the bristle, that gives way at the friction limit: the coefficient times a normal
+//! force that is held while the potential is differentiated. For given limits normal and tangential force
+//! derive from one potential, with a symmetric Hessian. Wire on core, wire on frozen wire and wire on
+//! live wire use the same law; they differ in where the stretch of the bristle comes from.
+
+use super::law::{ContactLaw, NormalLaw};
+use crate::math::{Block, V3, add_identity, add_outer};
+use serde::{Deserialize, Serialize};
+
+/// Share of the zero stiffness of a sliding bristle along its slide that the Hessian takes over. With
+/// all of it updates overshoot to the far side of the anchor, with none they crawl.
+const ALONG_SLIDE: f64 = 0.9;
+
+/// What the touches of one contact point add to potential, gradient and Hessian of a step.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ContactResponse {
+    /// potential with the friction limits of the iterate before, J
+    pub energy_lagged: f64,
+    /// potential with the friction limits of this iterate, J
+    pub energy: f64,
+    /// gradient with respect to the point (minus the force on it), N
+    pub gradient: V3,
+    /// Hessian with respect to the point, N/m
+    pub hessian: Block,
+}
+
+/// The largest friction force of a touch by the normal force of three iterates, N.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct FrictionLimit {
+    /// of the iterate accepted last within the step
+    pub(super) lagged: f64,
+    /// of the last accepted instant
+    pub(super) accepted: f64,
+    /// of the last evaluation
+    pub(super) current: f64,
+}
+
+impl FrictionLimit {
+    /// No friction.
+    pub(super) const ZERO: Self = Self {
+        lagged: 0.0,
+        accepted: 0.0,
+        current: 0.0,
+    };
+
+    /// The last evaluation becomes the accepted instant.
+    pub(super) fn accept(&mut self) {
+        (self.lagged, self.accepted) = (self.current, self.current);
+    }
+}
+
+/// Which friction limit a response takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum LimitFrom {
+    /// [`FrictionLimit::lagged`]
+    Lagged,
+    /// the normal force of this response
+    NormalForce,
+    /// [`FrictionLimit::current`]: the response is that of a prediction, which keeps the limit of the iterate
+    Current,
+}
+
+/// The state of one touch, as far as its response depends on it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touching<'a> {
+    pub(super) law: &'a ContactLaw,
+    /// contact stiffness of the wire that the point stands for, N/m
+    pub(super) stiffness: f64,
+    /// unit normal towards the point
+    pub(super) normal: V3,
+    /// the normal law at the depth
+    pub(super) pressed: NormalLaw,
+    /// stretch of the bristle, across the normal, m
+    pub(super) bristle: V3,
+    /// stiffness of the bristle, N/m
+    pub(super) bristle_stiffness: f64,
+    /// way of the point relative to what it touches since the last accepted instant, m
+    pub(super) way: V3,
+    /// time since then, s
+    pub(super) step: f64,
+    pub(super) limit: FrictionLimit,
+    pub(super) limit_from: LimitFrom,
+    /// direction in which the linear system has the bristle slide; 0: it holds
+    pub(super) slide: V3,
+}
+
+impl ContactResponse {
+    /// Adds the response of one touch; returns its friction limit, N, and the direction of its slide (0: the
+    /// bristle holds).
+    ///
+    /// A prediction that leaves the sliding branch for a slide the other way is evaluated on the sticking branch
+    /// once; otherwise the update alternates between both slides.
+    ///
+    /// `UNIT_FIRST` chooses how the force of a sliding bristle b is rounded: limit times (b / |b|), or b times
+    /// (limit / |b|). The two agree but for rounding.
+    #[inline(always)]
+    pub(super) fn add_touch<const UNIT_FIRST: bool>(&mut self, t: &Touching) -> (f64, V3) {
+        let n = t.normal;
+        let force = t.stiffness * t.pressed.force;
+        let pressed = t.stiffness * t.pressed.energy;
+        self.energy += pressed;
+        self.energy_lagged += pressed;
+        self.gradient -= n * force;
+        let mut along = t.stiffness * t.pressed.stiffness;
+        let (mut limit, mut slide) = (0.0, V3::zeros());
+        if t.law.mu_static > 0.0 {
+            limit = match t.limit_from {
+                LimitFrom::Lagged => t.limit.lagged,
+                LimitFrom::Current => t.limit.current,
+                LimitFrom::NormalForce => {
+                    let slid = (t.way - n * t.way.dot(&n)).norm();
+                    t.law.mu(slid / t.step) * force
+                }
+            };
+            let (b, k_t) = (t.bristle, t.bristle_stiffness);
+            let size = b.norm();
+            self.energy_lagged += bristle_energy(k_t, t.limit.lagged, size);
+            self.energy += bristle_energy(k_t, limit, size);
+            let unit = b / size;
+            let turns = t.limit_from == LimitFrom::Current && unit.dot(&t.slide) < 0.0;
+            if k_t * size <= limit || turns {
+                self.gradient += b * k_t;
+                add_identity(&mut self.hessian, k_t);
+                along -= k_t;
+            } else {
+                slide = unit;
+                let h = limit / size;
+                self.gradient += if UNIT_FIRST { unit * limit } else { b * h };
+                add_identity(&mut self.hessian, h);
+                add_outer(&mut self.hessian, &(unit * (-ALONG_SLIDE * h)), &unit);
+                along -= h;
+            }
+        }
+        add_outer(&mut self.hessian, &(n * along), &n);
+        (limit, slide)
+    }
+}
+
+/// Potential (J) of a bristle of stiffness `k` (N/m) and stretch `size` (m) that gives way at the force `limit`
+/// (N): Huber's function.
+#[inline]
+fn bristle_energy(k: f64, limit: f64, size: f64) -> f64 {
+    if k * size <= limit {
+        0.5 * k * size * size
+    } else {
+        limit * (size - 0.5 * limit / k)
+    }
+}
+
+/// The part of `v` across the unit normal `n`.
+#[inline]
+pub(super) fn across(v: V3, n: &V3) -> V3 {
+    v - n * v.dot(n)
+}

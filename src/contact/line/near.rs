@@ -1,0 +1,22 @@
+//! Contact points with surfaces near them, as the linear system sees them.
+
+use crate::math::{Block, V3};
+
+/// A contact point with surfaces near it, and the quadratic model of its potential in the linear system.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NearPoint {
+    /// its number
+    pub(super) point: u32,
+    /// length of wire that it stands for, m
+    pub(super) length: f64,
+    /// place at the iterate, m
+    pub(super) place: V3,
+    /// gradient at the iterate, N
+    pub(super) gradient: V3,
+    /// Hessian, N/m
+    pub(super) hessian: Block,
+    /// way from the iterate without any touch, while the model has none, m
+    pub(super) room: f64,
+    /// way that the last prediction looked along, m; none: the model is that of the iterate
+    pub(super) looked_along: Option<V3>,
+}

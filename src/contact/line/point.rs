@@ -1,0 +1,75 @@
+//! State of one contact point of the live wire.
+
+use super::saved_touches;
+use super::touch::TouchState;
+use crate::math::V3;
+use serde::{Deserialize, Serialize};
+
+/// Passages of frozen wire that a point can have near it: neighbours left and right, and a layer below, with
+/// one to spare.
+pub(super) const PASSAGES: usize = 4;
+
+/// State of a contact point, core frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct PointState {
+    /// place at the last accepted instant, m
+    pub(super) last: V3,
+    /// whether `last` was ever set
+    pub(super) placed: bool,
+    /// where the surroundings were looked up, m
+    pub(super) centre: V3,
+    /// how far from `centre` they hold, m; negative: they have to be looked up anew
+    pub(super) reach: f64,
+    /// a place at which the point touched nothing, m
+    pub(super) clear_at: V3,
+    /// how far from `clear_at` it touches nothing, m; 0: not known
+    pub(super) clear_within: f64,
+    /// the core, then passages of frozen wire
+    #[serde(with = "saved_touches")]
+    pub(super) touch: [TouchState; 1 + PASSAGES],
+    /// whether the first touch is in use
+    pub(super) core_near: bool,
+    /// number of passages in use
+    pub(super) passages: usize,
+}
+
+impl PointState {
+    /// A point that was never placed.
+    pub(super) const NEW: Self = Self {
+        last: V3::new(0.0, 0.0, 0.0),
+        placed: false,
+        centre: V3::new(0.0, 0.0, 0.0),
+        reach: -1.0,
+        clear_at: V3::new(0.0, 0.0, 0.0),
+        clear_within: 0.0,
+        touch: [TouchState::UNUSED; 1 + PASSAGES],
+        core_near: false,
+        passages: 0,
+    };
+
+    /// Whether core or frozen wire is near.
+    #[inline]
+    pub(super) fn has_surroundings(&self) -> bool {
+        self.core_near || self.passages > 0
+    }
+
+    /// The touch with the core, used or not, and those with the passages near the point.
+    #[inline]
+    pub(super) fn touches(&self) -> &[TouchState] {
+        &self.touch[..=self.passages]
+    }
+
+    /// [`Self::touches`], to be changed.
+    #[inline]
+    pub(super) fn touches_mut(&mut self) -> &mut [TouchState] {
+        &mut self.touch[..=self.passages]
+    }
+
+    /// Whether a touch before `slot` is with the passage at `segment` already.
+    ///
+    /// Inside a sharp bend two feet merge as the point moves; they are one touch then.
+    #[inline]
+    pub(super) fn has_passage_before(&self, slot: usize, segment: u32) -> bool {
+        self.touch[1..slot].iter().any(|t| t.start == segment)
+    }
+}

@@ -1,0 +1,59 @@
+//! Tangents of contact where an update of Newton's method leads.
+
+use super::line_contact::LineContact;
+use super::tolerance::prediction_tolerance;
+use crate::math::{Block, V3, block_difference, block_times};
+
+/// Change of an update that calls for no new look, as a share of the prediction tolerance. Chosen.
+const SAME_UPDATE: f64 = 0.2;
+
+impl LineContact {
+    /// Evaluates the response where the update `move_of(point)` (m) leads every point, and replaces the models that promise
+    /// something else by the tangents there; returns whether there were any.
+    ///
+    /// `correct(point, change of the Hessian, change of the gradient at the iterate)` hands the replacement over, N/m and N.
+    /// Without it a point on its way through a surface that the Hessian does not hold yet would be thrown back
+    /// and forth, with all its neighbours on a flat; so would one that slides round a corner, or whose bristle
+    /// comes to hold.
+    #[inline(never)]
+    pub fn predict(
+        &mut self,
+        step: f64,
+        move_of: impl Fn(usize) -> V3,
+        mut correct: impl FnMut(usize, &Block, &V3),
+    ) -> bool {
+        let mut any = false;
+        let tolerance = prediction_tolerance(2.0 * self.radius);
+        let same = SAME_UPDATE * tolerance;
+        let mut near = std::mem::take(&mut self.near);
+        for n in &mut near {
+            let way = move_of(n.point as usize);
+            let far = way.norm_squared();
+            // too short a way to change the force by more than the tolerance, or as good as the one looked along
+            let still = n
+                .looked_along
+                .map_or(far <= tolerance * tolerance, |before| {
+                    (way - before).norm_squared() <= same * same
+                });
+            if far < n.room * n.room || still {
+                continue;
+            }
+            n.looked_along = Some(way);
+            let there = self.respond_ahead(n.point as usize, n.place + way, n.length, step);
+            let off = there.gradient - n.gradient - block_times(&n.hessian, &way);
+            if off.amax() <= tolerance * self.law.stiffness * n.length {
+                continue;
+            }
+            any = true;
+            let gradient = there.gradient - block_times(&there.hessian, &way);
+            correct(
+                n.point as usize,
+                &block_difference(&there.hessian, &n.hessian),
+                &(gradient - n.gradient),
+            );
+            (n.gradient, n.hessian, n.room) = (gradient, there.hessian, 0.0);
+        }
+        self.near = near;
+        any
+    }
+}

@@ -1,0 +1,64 @@
+//! Contact state of frozen nodes, kept for the case that they thaw.
+
+use super::point::{PASSAGES, PointState};
+use super::touch::TouchState;
+use crate::math::V3;
+use serde::{Deserialize, Serialize};
+
+/// Contact state that a frozen node keeps of its two points, its own and the middle of the edge after it.
+///
+/// It holds the points' places and the touches in use; most nodes have one touch or none. There is one record for
+/// every frozen node.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ContactRecord {
+    /// places at the last accepted instant, core frame, m
+    last: [V3; 2],
+    placed: [bool; 2],
+    /// touches of the first point, then of the second, with their slots in `PointState::touch`
+    touches: Box<[(u8, TouchState)]>,
+    /// how many of them belong to the first
+    first: u8,
+}
+
+impl ContactRecord {
+    /// The record of two successive points.
+    pub(super) fn of(points: &[Box<PointState>]) -> Self {
+        let used = |p: &'_ PointState| {
+            (0..=p.passages as u8)
+                .zip(p.touch)
+                .filter(|(slot, t)| (*slot > 0 || p.core_near) && *t != TouchState::UNUSED)
+                .collect::<Vec<_>>()
+        };
+        let mut touches = used(&points[0]);
+        let first = touches.len() as u8;
+        touches.extend(used(&points[1]));
+        Self {
+            last: [points[0].last, points[1].last],
+            placed: [points[0].placed, points[1].placed],
+            touches: touches.into(),
+            first,
+        }
+    }
+
+    /// Whether every touch has a slot in its point; saved bytes may say anything.
+    pub(crate) fn is_sound(&self) -> bool {
+        let mut slots = self.touches.iter().map(|(slot, _)| *slot as usize);
+        self.first as usize <= self.touches.len() && slots.all(|slot| slot <= PASSAGES)
+    }
+
+    /// The two points as they froze; their surroundings are looked up anew.
+    pub(super) fn points(&self) -> [PointState; 2] {
+        let (one, two) = self.touches.split_at(self.first as usize);
+        let point = |k: usize, touches: &[(u8, TouchState)]| {
+            let mut p = PointState::NEW;
+            (p.last, p.placed) = (self.last[k], self.placed[k]);
+            for &(slot, t) in touches {
+                p.touch[slot as usize] = t;
+                p.core_near |= slot == 0;
+                p.passages = p.passages.max(slot as usize);
+            }
+            p
+        };
+        [point(0, one), point(1, two)]
+    }
+}

@@ -1,0 +1,178 @@
+//! Potential, gradient and Hessian of a contact point at an iterate, and where an update leads it.
+
+use super::line_contact::LineContact;
+use super::near::NearPoint;
+use super::touch::{Conditions, TouchState};
+use crate::contact::friction::{ContactResponse, LimitFrom};
+use crate::math::{Block, V3};
+
+impl LineContact {
+    /// Begins an evaluation of all points.
+    pub fn begin(&mut self) {
+        self.near.clear();
+    }
+
+    /// The dashpot over stiffness and step.
+    #[inline(always)]
+    pub(super) fn damping_over(&self, step: f64) -> f64 {
+        self.damping / (self.law.stiffness * step)
+    }
+
+    /// Potential, gradient and Hessian of point `k` at `p` (m), which stands for `length` (m) of wire; `None` where
+    /// it touches nothing.
+    ///
+    /// `own` is the unstretched length from the clamp (m) beyond which frozen wire belongs to the point's own
+    /// neighbourhood, `step` the time since the last accepted instant (s).
+    #[inline]
+    pub fn push(
+        &mut self,
+        k: usize,
+        p: V3,
+        length: f64,
+        own: f64,
+        step: f64,
+    ) -> Option<ContactResponse> {
+        self.look_up_if_moved(k, p, own);
+        let point = &self.points[k];
+        if !point.has_surroundings() {
+            return None;
+        }
+        if point.clear_within > 0.0 {
+            let way = (p - point.clear_at).norm();
+            if way < point.clear_within {
+                self.near.push(NearPoint {
+                    point: k as u32,
+                    length,
+                    place: p,
+                    gradient: V3::zeros(),
+                    hessian: Block::default(),
+                    room: point.clear_within - way,
+                    looked_along: None,
+                });
+                return None;
+            }
+        }
+        self.respond(k, p, length, step)
+    }
+
+    /// [`Self::push`] for a point that may touch.
+    fn respond(&mut self, k: usize, p: V3, length: f64, step: f64) -> Option<ContactResponse> {
+        let damping = self.damping_over(step);
+        let Self {
+            points,
+            tube,
+            shape,
+            law,
+            onset,
+            radius,
+            hold_limits,
+            near,
+            ..
+        } = self;
+        let point = &mut points[k];
+        let around = Conditions {
+            law,
+            onset: *onset,
+            stiffness: law.stiffness * length,
+            damping,
+            step,
+            last: point.last,
+            limit_from: if *hold_limits {
+                LimitFrom::Lagged
+            } else {
+                LimitFrom::NormalForce
+            },
+        };
+        let mut sum = ContactResponse::default();
+        let mut any = false;
+        let mut gap = f64::INFINITY;
+        for slot in 0..=point.passages {
+            let (depth, normal) = if slot == 0 {
+                if !point.core_near {
+                    continue;
+                }
+                let n = shape.nearness(p);
+                (*radius - n.distance, n.normal)
+            } else {
+                let foot = tube.foot(p, point.touch[slot].start);
+                point.touch[slot].start = foot.segment;
+                if point.has_passage_before(slot, foot.segment) {
+                    let touch = &mut point.touch[slot];
+                    (touch.depth, touch.limit.current) = (0.0, 0.0);
+                    continue;
+                }
+                (foot.depth(*radius + tube.radius()), foot.normal)
+            };
+            let touch = &mut point.touch[slot];
+            touch.depth = depth;
+            touch.normal = normal;
+            if depth <= 0.0 {
+                touch.limit.current = 0.0;
+                gap = gap.min(-depth);
+                continue;
+            }
+            any = true;
+            (touch.limit.current, touch.slide) = touch.respond(p, &around, &mut sum);
+        }
+        (point.clear_at, point.clear_within) = (p, if any { 0.0 } else { gap });
+        near.push(NearPoint {
+            point: k as u32,
+            length,
+            place: p,
+            gradient: sum.gradient,
+            hessian: sum.hessian,
+            room: point.clear_within,
+            looked_along: None,
+        });
+        any.then_some(sum)
+    }
+
+    /// Response of point `k` at a place `p` to which an update leads, as far as its surroundings are known. The
+    /// friction limits stay those of the iterate.
+    pub(super) fn respond_ahead(
+        &mut self,
+        k: usize,
+        p: V3,
+        length: f64,
+        step: f64,
+    ) -> ContactResponse {
+        let damping = self.damping_over(step);
+        let point = &mut self.points[k];
+        let around = Conditions {
+            law: &self.law,
+            onset: self.onset,
+            stiffness: self.law.stiffness * length,
+            damping,
+            step,
+            last: point.last,
+            limit_from: LimitFrom::Current,
+        };
+        let mut sum = ContactResponse::default();
+        for slot in 0..=point.passages {
+            let touch = point.touch[slot];
+            if slot > 0 && point.has_passage_before(slot, touch.start) {
+                continue;
+            }
+            let (depth, normal) = if slot == 0 {
+                if !point.core_near {
+                    continue;
+                }
+                let n = self.shape.nearness(p);
+                (self.radius - n.distance, n.normal)
+            } else {
+                let foot = self.tube.foot(p, touch.start);
+                let wire = self.radius + self.tube.radius();
+                (foot.depth(wire), foot.normal)
+            };
+            if depth > 0.0 {
+                let there = TouchState {
+                    depth,
+                    normal,
+                    ..touch
+                };
+                point.touch[slot].slide = there.respond(p, &around, &mut sum).1;
+            }
+        }
+        sum
+    }
+}

@@ -1,0 +1,110 @@
+//! The surfaces near a contact point: when they are looked up, and what is found.
+
+use super::line_contact::LineContact;
+use super::point::PASSAGES;
+use super::touch::TouchState;
+use crate::math::V3;
+
+/// Distance beyond touching within which surfaces are listed, and the way after which a point with surfaces near it looks
+/// them up again, in wire diameters. Chosen.
+const SKIN: f64 = 0.15;
+
+/// Passages whose segments are nearer along the wire than this are one passage at successive searches.
+const SAME_PASSAGE: u32 = 6;
+
+impl LineContact {
+    /// Makes every point look its surroundings up anew.
+    pub fn forget_surroundings(&mut self) {
+        for p in &mut self.points {
+            p.reach = -1.0;
+        }
+    }
+
+    /// Makes points near frozen wire from node `from` on look their surroundings up anew: that wire has just
+    /// been laid.
+    pub fn forget_near(&mut self, from: usize) {
+        let skin = SKIN * 2.0 * self.tube.radius();
+        let wire = self.radius + self.tube.radius();
+        // the share of the curve that belongs to the node before has changed as well
+        let laid = &self.tube.controls()[from.saturating_sub(2)..];
+        for p in &mut self.points {
+            let reach = wire + p.reach.max(skin);
+            let near = |ends: &[V3]| {
+                let (middle, length) = ((ends[0] + ends[1]) * 0.5, (ends[1] - ends[0]).norm());
+                (middle - p.centre).norm() < reach + length
+            };
+            if p.reach >= 0.0 && laid.windows(2).any(near) {
+                p.reach = -1.0;
+            }
+        }
+    }
+
+    /// Looks up the surroundings of point `k` at `p` if they may have changed since they were.
+    #[inline(always)]
+    pub(super) fn look_up_if_moved(&mut self, k: usize, p: V3, own: f64) {
+        let point = &self.points[k];
+        if point.reach < 0.0 || (p - point.centre).norm_squared() >= point.reach * point.reach {
+            self.look_up(k, p, own);
+        }
+    }
+
+    /// Looks up the surroundings of point `k` at `p`, and how far they hold. Frozen wire beyond the unstretched length
+    /// `own` from the clamp belongs to the point's own neighbourhood.
+    fn look_up(&mut self, k: usize, p: V3, own: f64) {
+        let skin = SKIN * 2.0 * self.tube.radius();
+        let point = &mut self.points[k];
+        self.undo.push((k as u32, **point));
+        point.centre = p;
+        point.clear_within = 0.0;
+        let core = self.shape.lower_bound(p);
+        let core = if core > skin + self.radius {
+            core
+        } else {
+            self.shape.nearness(p).distance
+        };
+        let core_room = core - self.radius;
+        point.core_near = core_room < skin;
+        if !point.core_near {
+            point.touch[0] = TouchState::UNUSED;
+        }
+        let wire = self.radius + self.tube.radius();
+        // above all frozen wire there is nothing to search for; elsewhere the search ball must stay small
+        let above = core_room - self.height;
+        let reach = if above > skin {
+            above
+        } else {
+            (core_room + skin).clamp(skin, 4.0 * skin)
+        };
+        self.found.clear();
+        if self.tube.len() > 1 && above <= skin {
+            self.tube.gather(p, wire + reach, own, &mut self.found);
+        }
+        let mut next = [TouchState::UNUSED; PASSAGES];
+        let mut count = 0;
+        let mut nearest = f64::INFINITY;
+        for &start in &self.found {
+            let foot = self.tube.foot(p, start);
+            nearest = nearest.min(-foot.depth(wire));
+            if -foot.depth(wire) > skin || count == PASSAGES {
+                continue;
+            }
+            // a passage keeps its friction: it is the one whose segment is close by along the wire
+            let known = point.touch[1..=point.passages]
+                .iter()
+                .filter(|t| t.start.abs_diff(foot.segment) < SAME_PASSAGE)
+                .min_by_key(|t| t.start.abs_diff(foot.segment));
+            next[count] = known.copied().unwrap_or(TouchState::UNUSED);
+            next[count].start = foot.segment;
+            count += 1;
+        }
+        point.touch[1..].copy_from_slice(&next);
+        point.passages = count;
+        let wire_room = nearest.min(reach);
+        let room = if point.core_near { 0.0 } else { core_room }.min(if count > 0 {
+            0.0
+        } else {
+            wire_room
+        });
+        point.reach = if room > 0.0 { room } else { skin };
+    }
+}

@@ -1,0 +1,22 @@
+//! Live wire on live wire in the implicit method.
+//!
+//! Where wire lands before the turn below it is at rest, the younger wire's contact points touch the spline of the
+//! older wire. Force and reaction go to the nodes of both. The bristle of friction grows with the relative
+//! slide, so it travels with both partners. Such a pair couples nodes a whole turn apart, which no band holds: its
+//! share of the Hessian between the partners is kept as a [`Coupling`], and the linear system is solved by conjugate
+//! gradients with the banded part as preconditioner.
+//!
+//! * [`SelfContact`]: the pairs, and how they follow changes of the wire
+//! * `search`: which pairs a step has to look at
+//! * `response`: potential, gradient, Hessian and couplings, at an iterate and where an update leads
+//! * `commit`: an iterate becomes the accepted instant; what was lost and is stored
+
+mod commit;
+mod coupling;
+mod pairs;
+mod response;
+mod search;
+
+pub use coupling::{Coupling, add_couplings};
+pub use pairs::SelfContact;
+pub use response::PairConditions;

@@ -1,0 +1,169 @@
+//! Pairs of a contact point and older live wire near it, and how they follow changes of the wire.
+
+use super::coupling::Coupling;
+use crate::contact::friction::FrictionLimit;
+use crate::contact::law::ContactLoss;
+use crate::contact::stencil::{ContactPoint, NodeWeights};
+use crate::geometry::Curve;
+use crate::math::{Block, V3};
+use serde::{Deserialize, Serialize};
+
+/// A contact point and the older wire near it; core frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Pair {
+    /// number of the point, see [`ContactPoint`]
+    pub(super) point: u32,
+    /// segment of the older wire's spline on which the foot lies
+    pub(super) segment: u32,
+    /// it touched at the last accepted instant
+    pub(super) touched: bool,
+    /// stretch of the bristle then, m
+    pub(super) bristle: V3,
+    /// largest friction force
+    pub(super) limit: FrictionLimit,
+    /// depth at the last evaluation, m; negative: a gap
+    pub(super) depth: f64,
+    /// place of the foot on its segment at the last evaluation, 0 to 1
+    pub(super) share: f64,
+    /// unit normal from the foot to the point
+    pub(super) normal: V3,
+}
+
+/// A listed pair and the quadratic model of its potential in the linear system, by the distance vector.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NearPair {
+    /// index of the pair
+    pub(super) pair: u32,
+    /// the point
+    pub(super) young: NodeWeights,
+    /// its foot, with negative weights
+    pub(super) old: NodeWeights,
+    /// contact stiffness of the wire that the point stands for, N/m
+    pub(super) stiffness: f64,
+    /// gradient at the iterate, N
+    pub(super) gradient: V3,
+    /// Hessian, N/m
+    pub(super) hessian: Block,
+    /// distance to touching, while the model has no touch, m
+    pub(super) room: f64,
+    /// the model is that of a place that an update led to
+    pub(super) predicted: bool,
+    /// direction of the slide in the model; 0: the bristle holds
+    pub(super) slide: V3,
+    /// index of its coupling, if it has one
+    pub(super) coupling: Option<u32>,
+}
+
+/// A contact point next to older wire with which it makes no pair.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unpaired {
+    /// number of the point
+    pub(super) point: u32,
+    /// way that both together may move before they would be a pair, m
+    pub(super) room: f64,
+    /// node of the older wire
+    pub(super) other: u32,
+}
+
+/// Contact of live wire with live wire: the pairs with their friction state, and their couplings.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct SelfContact {
+    pub(super) pairs: Vec<Pair>,
+    /// the live wire begins at a seam with frozen wire
+    pub(in crate::contact::line) has_seam: bool,
+    /// the pairs of the step before, while those of the next are listed
+    #[serde(skip)]
+    pub(super) previous: Vec<Pair>,
+    /// polar angle of each node from the clamp, rad
+    #[serde(skip)]
+    pub(super) angle: Vec<f64>,
+    /// unstretched length from the clamp to each node, m
+    #[serde(skip)]
+    pub(super) arc: Vec<f64>,
+    #[serde(skip)]
+    pub(super) unpaired: Vec<Unpaired>,
+    /// by turns back along the wire, the node that the search has reached
+    #[serde(skip)]
+    pub(super) reached: Vec<usize>,
+    /// room for the wire in the core frame
+    #[serde(skip)]
+    pub scratch: Vec<V3>,
+    /// couplings by the last evaluation
+    #[serde(skip)]
+    pub couplings: Vec<Coupling>,
+    #[serde(skip)]
+    pub(super) near: Vec<NearPair>,
+    /// totals of what was lost
+    pub loss: ContactLoss,
+}
+
+impl SelfContact {
+    /// Renumbers the pairs after edge `j` was split. Those of its middle stay with the middle of the first half, see
+    /// [`ContactPoint`].
+    pub fn split(&mut self, j: usize) {
+        let middle = ContactPoint::Edge(j).number();
+        for p in &mut self.pairs {
+            p.point += 2 * u32::from(p.point as usize > middle);
+            p.segment += u32::from(p.segment as usize > j);
+        }
+    }
+
+    /// Drops the pairs with wire of the first `count` nodes, which froze, and renumbers the others.
+    pub fn remove_front(&mut self, count: usize) {
+        self.pairs.retain(|p| p.segment as usize >= count);
+        for p in &mut self.pairs {
+            p.point -= 2 * count as u32;
+            p.segment -= count as u32;
+        }
+    }
+
+    /// Renumbers the pairs after `count` nodes thawed at the front.
+    pub fn insert_front(&mut self, count: usize) {
+        for p in &mut self.pairs {
+            p.point += 2 * count as u32;
+            p.segment += count as u32;
+        }
+    }
+
+    /// Drops the pairs of both edges at node `i`, which was taken out, and renumbers the others; its own point becomes
+    /// the middle of the joined edge.
+    pub fn merge(&mut self, i: usize) {
+        let i = i as u32;
+        self.pairs
+            .retain(|p| p.point != 2 * i - 1 && p.point != 2 * i + 1);
+        for p in &mut self.pairs {
+            p.point -= u32::from(p.point >= 2 * i) + u32::from(p.point > 2 * i);
+            p.segment -= u32::from(p.segment >= i);
+        }
+    }
+
+    /// The spline of the live wire with nodes at `q`.
+    pub(super) fn curve<'a>(&self, q: &'a [V3]) -> Curve<'a> {
+        Curve {
+            points: q,
+            seams: [self.has_seam, false],
+        }
+    }
+
+    /// Whether every pair lies on a wire of so many live nodes: a point, and wire nearer to the clamp.
+    pub(in crate::contact::line) fn fits(&self, nodes: usize) -> bool {
+        let points = 1..2 * (nodes as u32 - 1);
+        let mut pairs = self.pairs.iter();
+        pairs.all(|p| points.contains(&p.point) && p.segment < p.point / 2)
+    }
+
+    /// Number of pairs listed.
+    pub fn len(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Whether no pair is listed.
+    pub fn is_empty(&self) -> bool {
+        self.pairs.is_empty()
+    }
+
+    /// Depth of the deepest touch, m; 0: none.
+    pub fn deepest(&self) -> f64 {
+        self.pairs.iter().map(|p| p.depth).fold(0.0, f64::max)
+    }
+}

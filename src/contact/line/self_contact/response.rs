@@ -1,0 +1,180 @@
+//! Potential, gradient, Hessian and couplings of the pairs, at an iterate and where an update leads.
+
+use super::coupling::Coupling;
+use super::pairs::{NearPair, Pair, SelfContact};
+use crate::contact::friction::{ContactResponse, LimitFrom, Touching, across};
+use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE};
+use crate::contact::line::tolerance::prediction_tolerance;
+use crate::contact::stencil::{ContactPoint, NodeWeights};
+use crate::math::{Block, V3, block_difference, block_times};
+
+/// What the response of the pairs depends on besides the wire.
+#[derive(Clone, Copy, Debug)]
+pub struct PairConditions<'a> {
+    /// the law
+    pub law: &'a ContactLaw,
+    /// depth over which the normal force sets in, m
+    pub onset: f64,
+    /// wire diameter, m
+    pub diameter: f64,
+    /// time since the last accepted instant, s
+    pub step: f64,
+    /// take the friction limits of the iterate before, see
+    /// [`LineContact::hold_limits`](crate::contact::LineContact::hold_limits)
+    pub hold_limits: bool,
+}
+
+impl Pair {
+    /// Response of a touching pair that slid by `way` (m) since the last accepted instant, by the distance vector; its
+    /// friction limit, N, and the direction of its slide. `slide` is the one in the linear system.
+    #[inline]
+    fn respond(
+        &self,
+        around: &PairConditions,
+        limit_from: LimitFrom,
+        stiffness: f64,
+        way: V3,
+        slide: V3,
+    ) -> (ContactResponse, f64, V3) {
+        let mut sum = ContactResponse::default();
+        let (limit, slide) = sum.add_touch::<false>(&Touching {
+            law: around.law,
+            stiffness,
+            normal: self.normal,
+            pressed: NormalLaw::at(self.depth, around.onset),
+            bristle: across(self.bristle + way, &self.normal),
+            bristle_stiffness: stiffness * TANGENTIAL_SHARE,
+            way,
+            step: around.step,
+            limit: self.limit,
+            limit_from,
+            slide,
+        });
+        (sum, limit, slide)
+    }
+}
+
+impl SelfContact {
+    /// Evaluates all pairs with the wire at `q`; `last` is the wire at the last accepted instant (core frame, m), `length`
+    /// tells what the point of a number stands for, m. Hands the coupling and the response of each touching pair
+    /// to `take`, and keeps the couplings.
+    ///
+    /// The gradient of a response acts on the point; its negative acts on the foot.
+    pub fn evaluate(
+        &mut self,
+        around: &PairConditions,
+        (q, last): (&[V3], &[V3]),
+        length: impl Fn(usize) -> f64,
+        mut take: impl FnMut(&Coupling, &ContactResponse),
+    ) {
+        self.couplings.clear();
+        self.near.clear();
+        let limit_from = if around.hold_limits {
+            LimitFrom::Lagged
+        } else {
+            LimitFrom::NormalForce
+        };
+        let curve = self.curve(q);
+        for pair in &mut self.pairs {
+            let young = ContactPoint::of_number(pair.point as usize).weights();
+            let p = young.sum(q);
+            let foot = curve.foot(p, pair.segment);
+            pair.segment = foot.segment;
+            (pair.share, pair.normal) = (foot.share, foot.normal);
+            pair.depth = foot.depth(around.diameter);
+            let old = NodeWeights::from(curve.weights(foot.segment as usize, foot.share));
+            let stiffness = around.law.stiffness * length(pair.point as usize);
+            let mut near = NearPair {
+                pair: self.near.len() as u32,
+                young,
+                old: old.negative(),
+                stiffness,
+                gradient: V3::zeros(),
+                hessian: Block::default(),
+                room: (-pair.depth).max(0.0),
+                predicted: false,
+                slide: V3::zeros(),
+                coupling: None,
+            };
+            if pair.depth <= 0.0 {
+                pair.limit.current = 0.0;
+                self.near.push(near);
+                continue;
+            }
+            let way = (p - young.sum(last)) - (foot.point - old.sum(last));
+            let (response, limit, slide) =
+                pair.respond(around, limit_from, stiffness, way, V3::zeros());
+            pair.limit.current = limit;
+            near.coupling = Some(self.couplings.len() as u32);
+            (near.gradient, near.hessian) = (response.gradient, response.hessian);
+            near.slide = slide;
+            self.near.push(near);
+            let coupling = Coupling {
+                young,
+                old: near.old,
+                block: response.hessian,
+            };
+            take(&coupling, &response);
+            self.couplings.push(coupling);
+        }
+    }
+
+    /// Does for pairs what [`LineContact::predict`](crate::contact::LineContact::predict) does for points, with the iterate `q`, the
+    /// wire `last` at the last accepted instant and the wire `there` to which the update leads. `correct` gets the
+    /// point, its foot with negative weights, and the changes of Hessian and gradient.
+    pub fn predict(
+        &mut self,
+        around: &PairConditions,
+        (q, last, there): (&[V3], &[V3], &[V3]),
+        mut correct: impl FnMut(&NodeWeights, &NodeWeights, &Block, &V3),
+    ) -> bool {
+        let mut any = false;
+        let curve = self.curve(there);
+        let tolerance = prediction_tolerance(around.diameter);
+        for near in &mut self.near {
+            let relative = |q: &[V3]| near.young.sum(q) + near.old.sum(q);
+            let way = relative(there) - relative(q);
+            let far = way.norm_squared();
+            // the foot moves along with its wire, whose turning is small beside that
+            let still = far <= tolerance * tolerance && !near.predicted;
+            if 4.0 * far < near.room * near.room || still {
+                continue;
+            }
+            let now = self.pairs[near.pair as usize];
+            let foot = curve.foot(near.young.sum(there), now.segment);
+            let pair = Pair {
+                depth: foot.depth(around.diameter),
+                normal: foot.normal,
+                ..now
+            };
+            let (mut gradient, mut hessian) = (V3::zeros(), Block::default());
+            if pair.depth > 0.0 {
+                let slid = relative(there) - relative(last);
+                let response;
+                (response, _, near.slide) =
+                    pair.respond(around, LimitFrom::Current, near.stiffness, slid, near.slide);
+                (gradient, hessian) = (response.gradient, response.hessian);
+            }
+            let off = gradient - near.gradient - block_times(&near.hessian, &way);
+            if off.amax() <= tolerance * near.stiffness {
+                continue;
+            }
+            any = true;
+            gradient -= block_times(&hessian, &way);
+            let more = block_difference(&hessian, &near.hessian);
+            correct(&near.young, &near.old, &more, &(gradient - near.gradient));
+            let at = *near.coupling.get_or_insert_with(|| {
+                self.couplings.push(Coupling {
+                    young: near.young,
+                    old: near.old,
+                    block: Block::default(),
+                });
+                self.couplings.len() as u32 - 1
+            });
+            self.couplings[at as usize].block = hessian;
+            (near.gradient, near.hessian, near.room) = (gradient, hessian, 0.0);
+            near.predicted = true;
+        }
+        any
+    }
+}
