@@ -2,7 +2,7 @@
 
 use super::{CROSS, GRADIENT, JOINT, Joints, LEAD, OWN, put_places, series};
 use crate::math::V3;
-use crate::math::simd::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
+use crate::math::simd::{Columns, Lanes, Lanes3, ROWS, RowBlock, WithSimd, run};
 use crate::rod::bending::{FOLD, SERIES, SLOPE_TERMS, TERMS, angle_over_tangent, respond};
 use crate::rod::plasticity::{Bend, Law};
 use crate::rod::yield_branch::YieldBranch;
@@ -97,8 +97,10 @@ impl BendingJoints {
         self.edge.get(INVERSE, j)
     }
 
-    /// Lets the joints answer; returns their energy. `set` is the plastic curvature of each as a vector, `length` the
-    /// length that it stands for. `knees` gets those joints that may change their branch, for [`Joints::joints`] to complete.
+    /// Computes the moments and stiffnesses of all joints by their law; returns their energy, J.
+    ///
+    /// `set` is the plastic curvature of each joint as a vector, 1/m, `length` its Voronoi length, m. Joints that may
+    /// change their branch are appended to `yield_branches`, for [`Joints::joints`] to complete.
     pub fn respond(
         &mut self,
         law: &Law,
@@ -213,7 +215,7 @@ impl Joints for BendingJoints {
         block: usize,
         j: usize,
         near: bool,
-        out: &mut Block<JOINT>,
+        out: &mut RowBlock<JOINT>,
     ) {
         let (edge, angle) = (&self.edge.blocks()[block], &self.angle.blocks()[block]);
         let law = &self.answer.blocks()[block];
@@ -335,12 +337,12 @@ mod tests {
     struct All<'a, const HESSIAN: bool>(&'a BendingJoints, &'a mut [(u32, YieldBranch)]);
 
     impl<const HESSIAN: bool> WithSimd for All<'_, HESSIAN> {
-        type Output = Vec<Block<JOINT>>;
+        type Output = Vec<RowBlock<JOINT>>;
 
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
             let Self(joints, mut yield_branches) = self;
-            let mut all = vec![Block::default(); joints.blocks()];
+            let mut all = vec![RowBlock::default(); joints.blocks()];
             for (block, out) in all.iter_mut().enumerate() {
                 joints.joints::<S, HESSIAN>(simd, block, out, &mut yield_branches);
             }
