@@ -1,14 +1,13 @@
 //! The settled wire, node by node, and what is measured on it.
 
+use super::defect::{DefectKind, DefectLimits};
 use super::profile::Profile;
 use super::runs::{Run, stations_for};
-use super::state::DefectKind;
 use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::PersistentVec;
 use crate::math::V3;
 use crate::math::{polar_angle, wrap_to_pi};
-use crate::measure::DefectLimits;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

@@ -1,8 +1,8 @@
 //! Measures and verdict of each turn.
 
 use super::coil::{Coil, Record};
+use super::defect::DefectKind;
 use super::runs::Run;
-use super::state::DefectKind;
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
