@@ -2,6 +2,7 @@
 
 use super::error::Warning;
 use super::features::{Decisions, Features, LiveContact};
+use super::impossible::si;
 use super::material::section;
 use super::{Core, Integrator, Preset, Scene, SceneError, Solver};
 use crate::rod::Section;
@@ -16,12 +17,6 @@ use std::path::{Path, PathBuf};
 /// nearly all was from the steps).
 fn spacing_for(tolerance: f64) -> f64 {
     0.4e-3 * libm::cbrt((tolerance / 2e-6).max(1.0))
-}
-
-/// A length or force for a message: six digits are enough to act on.
-pub(super) fn si(x: f64) -> String {
-    let rounded = format!("{x:.5e}").parse().unwrap_or(x);
-    crate::variables::Value::Real(rounded).to_string()
 }
 
 impl SceneSettings {
@@ -77,22 +72,6 @@ impl SceneSettings {
         self.skip(&mut scene, &mut decisions)?;
         scene.skipped = decisions.0;
         Ok((scene, warnings))
-    }
-
-    /// An error about a leaf, with its place and value filled in.
-    pub(super) fn impossible(
-        &self,
-        key: &str,
-        reason: impl Into<Box<str>>,
-        allowed: impl Into<Box<str>>,
-    ) -> SceneError {
-        SceneError::Impossible {
-            place: self.place(key),
-            key: key.into(),
-            value: self.shown(key).into(),
-            reason: reason.into(),
-            allowed: allowed.into(),
-        }
     }
 
     fn core(&self) -> Result<(Core, Extent), SceneError> {
@@ -261,7 +240,7 @@ impl SceneSettings {
             ));
         }
         if self.friction.kinetic > self.friction.static_ {
-            let kinetic_given = self.places.contains_key("friction.kinetic");
+            let kinetic_given = self.origins.contains_key("friction.kinetic");
             let (key, allowed) = match kinetic_given {
                 true => (
                     "friction.kinetic",
@@ -382,9 +361,9 @@ impl SceneSettings {
     ) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let mut warn = |key: &'static str, message: String| {
-            let (place, value) = (self.place(key), self.shown(key));
+            let (origin, value) = (self.origin(key), self.shown(key));
             warnings.push(Warning {
-                place,
+                origin,
                 key,
                 value,
                 message,

@@ -9,6 +9,7 @@ mod build;
 mod error;
 mod features;
 mod file;
+mod impossible;
 mod key;
 mod material;
 mod saved;
@@ -47,9 +48,9 @@ pub struct Scene {
     pub tensioner: Tensioner,
     /// where the wire begins
     pub start: Start,
-    /// spindle programme of `coilwind run`
+    /// spindle motion profile of `coilwind run`
     pub spindle: Spindle,
-    /// traverse programme of `coilwind run`
+    /// traverse motion profile of `coilwind run`
     pub traverse: Traverse,
     /// contact law
     pub contact: Contact,

@@ -5,7 +5,7 @@ use std::fmt;
 
 /// Where a value came from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Place {
+pub enum Origin {
     /// nobody gave it; the default of the program
     #[default]
     Default,
@@ -20,7 +20,7 @@ pub enum Place {
     Set,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Default => f.write_str("default scene"),
