@@ -43,8 +43,8 @@ impl Facet {
         [self.beyond(0, p), self.beyond(1, p), self.beyond(2, p)]
     }
 
-    /// Whether `p` projects onto the triangle: eq. 4 of the paper with the side normals pointing outwards,
-    /// so that all three products must not be positive.
+    /// Whether `p` projects onto the triangle: eq. 4 of the paper with the side normals pointing
+    /// outwards, so that all three products must not be positive.
     #[inline]
     pub fn in_prism(&self, p: V3) -> bool {
         (0..3).all(|k| self.beyond(k, p) <= 0.0)

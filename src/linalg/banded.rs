@@ -101,7 +101,8 @@ impl<const D: usize> Banded<D> {
         self.middle = [[0.0; WIDEST]; WIDEST];
     }
 
-    /// Becomes a matrix of `nodes` nodes with arbitrary entries, for [`Banded::put`] to write every row.
+    /// Becomes a matrix of `nodes` nodes with arbitrary entries, for [`Banded::put`] to write every
+    /// row.
     pub fn resize(&mut self, nodes: usize) {
         self.nodes = nodes;
         // Two nodes at least must be left, or the last of one chain would couple with the other's.
@@ -113,13 +114,15 @@ impl<const D: usize> Banded<D> {
         self.kept = 0;
     }
 
-    /// Whether anything of the first or the last node has changed since the last [`Banded::factor`].
+    /// Whether anything of the first or the last node has changed since the last
+    /// [`Banded::factor`].
     pub fn ends_changed(&self) -> bool {
         self.kept == 0
     }
 
-    /// Writes the rows of node `i` over what was there: the lower half of the diagonal block (`own`), and the blocks of
-    /// the columns of the next node (`near`) and of the one after (`far`), as far as these nodes exist.
+    /// Writes the rows of node `i` over what was there: the lower half of the diagonal block
+    /// (`own`), and the blocks of the columns of the next node (`near`) and of the one after
+    /// (`far`), as far as these nodes exist.
     ///
     /// Each closure gives an entry by its row and column within the block.
     #[inline(always)]
@@ -189,8 +192,8 @@ impl<const D: usize> Banded<D> {
         }
     }
 
-    /// Adds a symmetric block to node `i`; only its lower half is read. A block of fewer than `D` rows
-    /// belongs to the first unknowns of the node.
+    /// Adds a symmetric block to node `i`; only its lower half is read. A block of fewer than `D`
+    /// rows belongs to the first unknowns of the node.
     #[inline]
     pub fn add_diagonal<const B: usize>(&mut self, i: usize, block: &[[f64; B]; B]) {
         match self.slot(i, i) {
@@ -213,8 +216,8 @@ impl<const D: usize> Banded<D> {
         }
     }
 
-    /// Adds a block to the rows of node `i`, columns of node `i + k`, and its mirror image; one of fewer
-    /// than `D` rows to their first unknowns.
+    /// Adds a block to the rows of node `i`, columns of node `i + k`, and its mirror image; one of
+    /// fewer than `D` rows to their first unknowns.
     ///
     /// # Panics
     /// Unless `k` is 1 or 2 and node `i + k` exists.

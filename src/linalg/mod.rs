@@ -1,4 +1,5 @@
-//! Symmetric block-banded equations of the implicit method, factored as `L D L^T` from both ends at once.
+//! Symmetric block-banded equations of the implicit method, factored as `L D L^T` from both ends at
+//! once.
 //!
 //! The matrix couples node `i` with itself, `i + 1` and `i + 2` in blocks of `D x D`, as bending of
 //! a rod does.

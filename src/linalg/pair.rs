@@ -1,4 +1,5 @@
-//! Two numbers worked on together: one of the chain from the first node, one of the chain from the last.
+//! Two numbers worked on together: one of the chain from the first node, one of the chain from the
+//! last.
 
 use std::ops::{Add, Mul, Sub};
 

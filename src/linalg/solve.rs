@@ -1,4 +1,5 @@
-//! Solution with the factors of a block-banded matrix: a sweep from both ends to the middle, and back.
+//! Solution with the factors of a block-banded matrix: a sweep from both ends to the middle, and
+//! back.
 
 use super::banded::{Banded, StepRows};
 use super::pair::Pair;

@@ -242,7 +242,8 @@ fn no_nodes_are_no_trouble() {
     matrix.solve(&mut []);
 }
 
-/// After a change only the steps from it on are done again: the same factors to the bit as of a new matrix.
+/// After a change only the steps from it on are done again: the same factors to the bit as of a new
+/// matrix.
 #[test]
 fn factors_are_those_of_the_whole() {
     for nodes in [2, 3, 7, 8, 23, 40] {

@@ -48,14 +48,16 @@ pub fn align(q: &Quat, t: &V3, roll: f64) -> Quat {
     } else {
         (libm::cos(half), libm::sin(half))
     };
-    // swing from z to b in the body frame, (1 + b.z, -b.y, b.x, 0), then a roll about z, (c, 0, 0, s)
+    // swing from z to b in the body frame, (1 + b.z, -b.y, b.x, 0),
+    // then a roll about z, (c, 0, 0, s)
     let w = 1.0 + b.z;
     let turn = Quat::new(w * c, b.x * s - b.y * c, b.x * c + b.y * s, w * s);
     let r = q * turn;
     r * (1.0 / r.norm())
 }
 
-/// A frame whose z axis is the unit vector `t`, its roll chosen by parallel transport from `like`.
+/// A frame whose z axis is the unit vector `t`, its roll chosen by parallel transport from `like`,
+/// or from the identity.
 pub fn frame_along(t: &V3, like: Option<&Quat>) -> Quat {
     let base = like.copied().unwrap_or_else(Quat::identity);
     if rotate(&base, &V3::z()).dot(t) < -0.999 {

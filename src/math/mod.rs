@@ -1,4 +1,5 @@
-//! Vectors, frames and angles, arithmetic on many numbers at once, and a stack whose copies share what is covered.
+//! Vectors, frames and angles, arithmetic on many numbers at once, and a stack whose copies share
+//! what is covered.
 
 mod angle;
 mod frame;

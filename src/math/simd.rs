@@ -1,10 +1,10 @@
 //! The same arithmetic on many numbers at once, as wide as the machine can.
 //!
-//! Formulas are written once, for [`Lanes`] of numbers that never meet: each lane rounds as a lone number would
-//! (no fused multiply-add, no other order), so results are the same to the bit with one lane, with
-//! four (AVX2) and with eight (AVX-512). What the machine has is found out at run time; only what is inlined
-//! into [`run`] is compiled for it, and closures may not be. Numbers of a kind lie
-//! side by side, in columns of eight rows ([`RowBlock`]).
+//! Formulas are written once, for [`Lanes`] of numbers that never meet: each lane rounds as a lone
+//! number would (no fused multiply-add, no other order), so results are the same to the bit with
+//! one lane, with four (AVX2) and with eight (AVX-512). What the machine has is found out at run
+//! time; only what is inlined into [`run`] is compiled for it, and closures may not be. Numbers of
+//! a kind lie side by side, in columns of eight rows ([`RowBlock`]).
 
 use crate::math::V3;
 use pulp::Simd;
@@ -26,11 +26,13 @@ pub enum Width {
     Eight = 8,
 }
 
-/// Eight are slower than four in whole runs on the machine that was measured (the processor lowers its clock).
+/// Eight are slower than four in whole runs on the machine that was measured (the processor lowers
+/// its clock).
 static WIDEST: AtomicU8 = AtomicU8::new(Width::Four as u8);
 
-/// No more than `width` numbers at once from here on, in the whole process: for tests and measurements, since
-/// results do not depend on it.
+/// Limits [`run`] to `width` numbers at once from here on, in the whole process.
+///
+/// For tests and measurements; results do not depend on it.
 pub fn at_most(width: Width) {
     WIDEST.store(width as u8, Ordering::Relaxed);
 }
@@ -72,7 +74,7 @@ pub fn run<Op: WithSimd>(work: Op) -> Op::Output {
     Simd::vectorize(pulp::Scalar, work)
 }
 
-/// As many numbers as the machine works on at once.
+/// As many numbers as one instruction works on.
 #[derive(Debug)]
 pub struct Lanes<S: Simd> {
     simd: S,
@@ -336,8 +338,8 @@ pub const ROWS: usize = 8;
 
 /// `N` columns of eight rows each, with the row before them and the one after them.
 ///
-/// Loads begin at offset 0 (rows shifted back by one), 1 (the rows) or 2 (shifted on by one) and never leave the
-/// block: nothing to check at run time, and all of it close together in memory.
+/// Loads begin at offset 0 (rows shifted back by one), 1 (the rows) or 2 (shifted on by one) and
+/// never leave the block: nothing to check at run time, and all of it close together in memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct RowBlock<const N: usize>([[f64; ROWS + 2]; N]);

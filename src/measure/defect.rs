@@ -2,22 +2,22 @@
 
 use serde::Serialize;
 
-/// Limits of the defect flags, lengths in wire diameters.
+/// Limits of the defect flags.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DefectLimits {
-    /// gap above this ...
+    /// gap above which a station counts, diameters
     pub gap: f64,
-    /// ... over at least this fraction of a turn in one run
+    /// least length of a run of such stations, as a fraction of a turn
     pub gap_fraction: f64,
-    /// height over the quasi-static height
+    /// height over the quasi-static height above which wire bulges, diameters
     pub bulge_excess: f64,
     /// absolute bulge limit, m; 0: use `bulge_excess`
     pub bulge_absolute: f64,
-    /// axial distance to the neighbour below this ...
+    /// axial distance to the neighbour below which wire may overlap, diameters
     pub overlap_axial: f64,
-    /// ... while standing above its layer by this
+    /// height over its layer from which on such wire overlaps, diameters
     pub overlap_height: f64,
-    /// polar angle after the clamp that is left out, rad
+    /// polar angle after the clamp in which nothing is judged, rad
     pub skip_angle: f64,
 }
 

@@ -34,7 +34,7 @@ impl Coil {
         self.raised().iter().sum()
     }
 
-    /// Where the latest defect was found.
+    /// Where the latest defect was found; `None` before the first.
     pub fn last_defect(&self) -> Option<DefectPlace> {
         let index = self.records.last()?.last_defect?;
         Some(DefectPlace {
@@ -43,7 +43,7 @@ impl Coil {
         })
     }
 
-    /// Worst of the last settled turn; the neighbourhood of the clamp is left out.
+    /// Largest values of the last settled turn, without the neighbourhood of the clamp.
     pub fn worst(&self) -> Worst {
         self.last_turn()
             .map(|record| &record.station)

@@ -27,9 +27,9 @@ pub struct Joint {
 }
 
 impl Joint {
-    /// Below this squared half-angle sine the series of the turning angle hold to 1e-13 ...
+    /// Below this squared half-angle sine the series of the turning angle hold to 1e-13.
     pub(super) const SERIES: f64 = 0.04;
-    /// ... that of the angle over the sine of its half, by powers of the sine squared ...
+    /// Series of the angle over the sine of its half, by powers of the sine squared.
     pub(super) const ANGLE: [f64; 8] = [
         2.0,
         1.0 / 3.0,
@@ -40,7 +40,7 @@ impl Joint {
         231.0 / 6656.0,
         143.0 / 5120.0,
     ];
-    /// ... and that of its slope.
+    /// Series of the slope of that ratio.
     pub(super) const ANGLE_SLOPE: [f64; 7] = [
         -4.0 / 3.0,
         -2.0 / 5.0,
@@ -50,9 +50,9 @@ impl Joint {
         -63.0 / 832.0,
         -77.0 / 1280.0,
     ];
-    /// Below this tangent of half the twist its series holds to 1e-13 ...
+    /// Below this tangent of half the twist its series holds to 1e-13.
     pub(super) const TWIST_SERIES: f64 = 0.1;
-    /// ... for the twist over that tangent, by powers of the tangent squared.
+    /// Series of the twist over that tangent, by powers of the tangent squared.
     pub(super) const TWIST: [f64; 6] = [
         2.0,
         -2.0 / 3.0,
@@ -62,7 +62,7 @@ impl Joint {
         -2.0 / 11.0,
     ];
 
-    /// `g` and `g1`.
+    /// The series `g` and `g1` at this turning angle.
     pub(super) fn series(&self) -> [f64; 2] {
         [self.g, self.g1]
     }
@@ -100,11 +100,11 @@ impl Joint {
         }
     }
 
-    /// Derivatives of `bend[0]`, `bend[1]` and `twist` with respect to a rotation of the edge after the joint, in
-    /// the frame of the edge before it.
+    /// Derivatives of `bend[0]`, `bend[1]` and `twist` with respect to a rotation of the edge after
+    /// the joint, in the frame of the edge before it.
     ///
-    /// With the relative quaternion `(w, x, y, z)` an angle `a` has the derivative `(w grad a - v da/dw + v x grad a) / 2`;
-    /// for these angles nearly all of it cancels.
+    /// With the relative quaternion `(w, x, y, z)` an angle `a` has the derivative
+    /// `(w grad a - v da/dw + v x grad a) / 2`; for these angles nearly all of it cancels.
     #[inline]
     pub fn rows(&self) -> [V3; 3] {
         let (w, v) = (self.w, self.v);

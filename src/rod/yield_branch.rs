@@ -1,12 +1,13 @@
 //! Prediction of the branch, elastic or yielding, on which a joint ends a Newton update.
 //!
-//! A joint that yields is tens of times softer than one that unloads. The tangent of one branch gives a moment that is
-//! far off on the other, in every joint of a corner at once. So the tangent is taken from the branch where the update
-//! ends: a joint's angle is linear in the update to good accuracy, and along the direction of its moment the law is
-//! scalar.
+//! A joint that yields is tens of times softer than one that unloads. The tangent of one branch
+//! gives a moment that is far off on the other, in every joint of a corner at once. So the tangent
+//! is taken from the branch where the update ends: a joint's angle is linear in the update to good
+//! accuracy, and along the direction of its moment the law is scalar.
 //!
-//! A joint that yields in twist lets all wire on one side roll against that on the other, and nothing else holds rolls
-//! without inertia. Without the prediction Newton's method alternates between the branches, however short the step.
+//! A joint that yields in twist lets all wire on one side roll against that on the other, and
+//! nothing else holds rolls without inertia. Without the prediction Newton's method alternates
+//! between the branches, however short the step.
 
 use super::plasticity::{Law, Scalar, respond_scalar};
 use crate::math::V3;
@@ -36,9 +37,11 @@ impl YieldBranches {
 /// A joint whose law may change its branch.
 #[derive(Clone, Copy, Debug)]
 pub struct YieldBranch {
-    /// derivative of the angle along the moment, of bending or twist, by the edges before and after, 1/m
+    /// derivative of the angle along the moment, of bending or twist, by the edges before and
+    /// after, 1/m
     pub rows: [V3; 2],
-    /// derivative of that angle by the rolls of the edges before and after; 0 where no twist is carried
+    /// derivative of that angle by the rolls of the edges before and after; 0 where no twist is
+    /// carried
     pub rolls: [f64; 2],
     /// trial moment: the elastic one at the present angle, N m
     pub trial: f64,
@@ -50,13 +53,14 @@ pub struct YieldBranch {
     pub moment: f64,
     /// stiffness against the angle as the linear system has it, N m
     pub stiffness: f64,
-    /// branch of `moment` and `stiffness`: 0 elastic, 1 and -1 yielding along and against the moment
+    /// branch of `moment` and `stiffness`: 0 elastic, 1 and -1 yielding along and against the
+    /// moment
     pub branch: i8,
 }
 
 impl YieldBranch {
-    /// A joint that does not yield, without derivatives of its angle: trial moment and rise of the yield moment (N m),
-    /// Voronoi length (m), stiffness (N m).
+    /// A joint that does not yield, without derivatives of its angle: trial moment and rise of the
+    /// yield moment (N m), Voronoi length (m), stiffness (N m).
     pub fn elastic(trial: f64, rise: f64, length: f64, stiffness: f64) -> Self {
         Self {
             rows: [V3::zeros(); 2],
@@ -88,15 +92,17 @@ impl YieldBranch {
         }
     }
 
-    /// Whether a joint with this trial moment and rise of its yield moment, N m, is near enough to yielding to change
-    /// its branch in an update.
+    /// Whether a joint with this trial moment and rise of its yield moment, N m, is near enough to
+    /// yielding to change its branch in an update.
     pub fn matters(law: &Law, trial: f64, rise: f64) -> bool {
         trial > FAR * (law.limit + rise)
     }
 
-    /// Replaces the tangent by that of the branch on which the joint is after turning by `angle`, rad.
+    /// Replaces the tangent by that of the branch on which the joint is after turning by `angle`,
+    /// rad.
     ///
-    /// Gives the changes of stiffness and moment, N m; `None` where the present tangent predicts the moment well enough.
+    /// Gives the changes of stiffness and moment, N m; `None` where the present tangent predicts
+    /// the moment well enough.
     pub fn predict(&mut self, law: &Law, angle: f64) -> Option<(f64, f64)> {
         if self.branch == 0 && (self.trial + self.stiffness * angle).abs() <= law.limit + self.rise
         {
@@ -118,7 +124,8 @@ impl YieldBranch {
             _ => -1,
         };
         if branch == -self.branch {
-            // from yielding to yielding the other way: both are soft, so that updates would alternate
+            // from yielding to yielding the other way: both are soft, so that updates would
+            // alternate
             branch = 0;
         }
         let (stiffness, moment) = if branch == 0 {

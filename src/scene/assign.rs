@@ -12,13 +12,13 @@ impl SceneSettings {
         self.set_from(name, Given::Value(value), Origin::Set)
     }
 
-    /// The same from a text, as in `--set NAME=VALUE`.
+    /// Sets a leaf by name from a text, as in `--set NAME=VALUE`.
     pub fn set_text(&mut self, name: &str, text: &str) -> Result<(), SceneError> {
         self.set_from(name, Given::Text(text), Origin::Set)
     }
 
-    /// The settings that result from parameters set one by one, in whatever order: defaults, then
-    /// the scene that `scene.file` names, then every other parameter.
+    /// The settings from parameters in any order: defaults, then the scene that `scene.file` names,
+    /// then every other parameter.
     pub fn from_parameters<'a>(
         parameters: impl Iterator<Item = (&'a Variable, Value)> + Clone,
     ) -> Result<Self, SceneError> {
@@ -98,7 +98,7 @@ impl SceneSettings {
         Ok(())
     }
 
-    /// A leaf's value in words, with its unit.
+    /// The value of a leaf as text with its unit, for messages.
     pub(super) fn shown(&self, name: &str) -> String {
         match by_name(name).map(|v| (v, v.access)) {
             Some((v, Access::Parameter { get, .. })) => {

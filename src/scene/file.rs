@@ -52,8 +52,9 @@ impl SceneSettings {
         Self::from_toml_str(&text, name_or_path, path.parent().unwrap_or(Path::new("")))
     }
 
-    /// Defaults, then what the text gives. `file_name` is what messages call it; paths inside are
-    /// relative to `base_dir`.
+    /// Reads a scene from a TOML text; leaves that it does not give keep their defaults.
+    ///
+    /// Messages name `file_name`; paths in the text are relative to `base_dir`.
     pub fn from_toml_str(text: &str, file_name: &str, base_dir: &Path) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let at = |offset: Option<usize>| Origin::File {

@@ -133,13 +133,14 @@ fn unknown(
     }
 }
 
-/// Whether a row's key may carry a unit at all, for listings.
+/// The unit suffixes that a key of this variable may carry, for listings.
 pub fn unit_suffixes(variable: &Variable) -> Vec<&'static str> {
     if variable.kind != Kind::Real || variable.causality != Causality::Parameter {
         return Vec::new();
     }
     suffixes_of(variable.unit).map(|s| s.0).collect()
 }
+
 /// Name and value of `NAME=VALUE`, as `--set` takes it.
 pub fn assignment(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {

@@ -1,7 +1,7 @@
-//! Settings in a saved state: every leaf of the variable table with who set it.
+//! Settings in a saved state: every leaf of the variable table with its origin.
 //!
-//! Numbers in the bits they have, unlike a scene file, and leaves nobody set as well: another version's
-//! defaults may differ.
+//! Numbers are stored by their bits, unlike in a scene file. Leaves at their defaults are stored
+//! too, because another version's defaults may differ.
 
 use crate::settings::Origin;
 use crate::settings::SceneSettings;
@@ -9,7 +9,7 @@ use crate::variables::{Access, Value, by_reference, table};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Name and file, then each leaf with its reference; who set it, unless it was nobody.
+/// Name and file, then each leaf with its reference, value and origin, unless it is the default.
 type Saved = (String, String, Vec<(u32, Value, Option<Origin>)>);
 
 impl Serialize for SceneSettings {

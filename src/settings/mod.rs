@@ -37,7 +37,7 @@ pub struct SceneSettings {
     pub freeze: Freeze,
     pub defects: DefectLimits,
     pub output: Output,
-    /// who set a leaf, by its name; absent: default
+    /// origin of each leaf that was set, by its name
     pub(crate) origins: BTreeMap<&'static str, Origin>,
 }
 
@@ -100,7 +100,8 @@ pub struct SolverSettings {
 }
 
 impl SceneSettings {
-    /// Inputs before the first step: core at rest, nozzle where the motion profile starts, set tension.
+    /// Inputs before the first step: core at rest, nozzle where the motion profile starts, set
+    /// tension.
     pub fn start_inputs(&self) -> Inputs {
         Inputs {
             spindle_speed: 0.0,
@@ -202,7 +203,8 @@ impl Default for SceneSettings {
             freeze: Freeze {
                 enabled: true,
                 window: 1.0,
-                // ten periods of the free span's slowest ringing (60 mm of 0.7 mm wire at 15 N: 1.8 ms)
+                // ten periods of the free span's slowest ringing (60 mm of 0.7 mm wire at 15 N: 1.8
+                // ms)
                 time: 0.02,
                 creep: 2e-6,
                 patience: 0.75,

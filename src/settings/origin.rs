@@ -1,4 +1,4 @@
-//! Who gave a value.
+//! Where the value of a leaf came from.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -6,7 +6,7 @@ use std::fmt;
 /// Where a value came from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Origin {
-    /// nobody gave it; the default of the program
+    /// the default of the program
     #[default]
     Default,
     /// a scene file or packed scene

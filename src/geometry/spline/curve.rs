@@ -16,12 +16,15 @@ pub struct Curve<'a> {
 }
 
 impl Curve<'_> {
-    /// The foot of `p` in the passage of the wire that `start` (a segment) belongs to: downhill
-    /// from there to the first local minimum of the distance.
+    /// The foot of `p` (m, frame of the nodes) in the passage of the wire that the segment `start`
+    /// belongs to: the first local minimum of the distance downhill from there.
     ///
-    /// Panics with fewer than two nodes. Started from [`SplineTube::gather`]'s segments near the
-    /// same p it gives that minimum; after p has moved, a minimum may have merged with
-    /// its neighbour, and two starts end on one foot. After 64 joints it stops where it is.
+    /// Every start from [`SplineTube::gather`](super::SplineTube::gather) near the same `p` gives a
+    /// minimum of its own. After `p` has moved two minima may have merged, and two starts end on
+    /// one foot. After 64 joints the search stops where it is.
+    ///
+    /// # Panics
+    /// With fewer than two nodes.
     #[inline]
     pub fn foot(&self, p: V3, start: u32) -> Foot {
         assert!(self.points.len() > 1, "a foot needs wire to stand on");
@@ -142,8 +145,8 @@ impl Curve<'_> {
         }
     }
 
-    /// Where the minimum of a segment lies, or which way the distance falls; and whether it is an end of
-    /// the wire.
+    /// Where the minimum of a segment lies, or which way the distance falls; and whether it is an
+    /// end of the wire.
     pub(super) fn locate(&self, segment: usize, view: &SegmentView) -> (Lies, bool) {
         match view.minimum() {
             Lies::Before if segment == self.ends()[0] => (Lies::At(view.low), true),
@@ -175,7 +178,8 @@ impl Curve<'_> {
         past.max(0.0) / view.along(share).norm()
     }
 
-    /// The nodes on which the point at `share` of a segment depends, and their weights, which sum to 1.
+    /// The nodes on which the point at `share` of a segment depends, and their weights, which sum
+    /// to 1.
     pub fn weights(&self, segment: usize, share: f64) -> ([usize; 3], [f64; 3]) {
         let last = self.points.len() - 1;
         let s = share;

@@ -20,16 +20,17 @@
 //!
 //! # Seams
 //!
-//! A seam is where frozen wire goes on as live wire. Both curves hold the edge about the seam, so both pass the middle of
-//! that edge in its direction; there one curve ends and the other begins. A point whose nearest point lies past the seam
-//! has its foot at the end of this curve, with [`Foot::beyond`] above zero, and does not touch it. A wire that
-//! simply ended here would be a chord where it lies bent, off by an eighth of the second difference of its nodes.
+//! A seam is where frozen wire goes on as live wire. Both curves hold the edge about the seam, so
+//! both pass the middle of that edge in its direction; there one curve ends and the other begins. A
+//! point whose nearest point lies past the seam has its foot at the end of this curve, with
+//! [`Foot::beyond`] above zero, and does not touch it. A wire that simply ended here would be a
+//! chord where it lies bent, off by an eighth of the second difference of its nodes.
 //!
 //! # The foot of a point p
 //!
-//! Half the derivative of the squared distance, g(s) = (C - p) C', is a cubic on a segment. Where it
-//! goes from falling (g < 0) to rising there is a local minimum. At a joint g is the same number to
-//! the bit from either side, so that a minimum belongs to one segment and to one only.
+//! Half the derivative of the squared distance, g(s) = (C - p) C', is a cubic on a segment. Where
+//! it goes from falling (g < 0) to rising there is a local minimum. At a joint g is the same number
+//! to the bit from either side, so that a minimum belongs to one segment and to one only.
 
 mod curve;
 mod segment;

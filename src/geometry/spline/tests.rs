@@ -181,7 +181,8 @@ proptest! {
         }
     }
 
-    /// Wire cut in two by a seam is the wire in one piece: one side has the foot, the other says that it is beyond.
+    /// Wire cut in two by a seam is the wire in one piece: one side has the foot, the other says
+    /// that it is beyond.
     #[test]
     fn a_seam_does_not_show(
         tube in wire(),

@@ -25,7 +25,7 @@ pub struct SplineTube {
 }
 
 impl SplineTube {
-    /// No wire yet; `radius` of the wire, m, above zero.
+    /// A tube without wire; `radius` of the wire, m, above zero.
     pub fn new(radius: f64) -> Self {
         Self {
             radius,
@@ -70,14 +70,16 @@ impl SplineTube {
         &self.arc[..self.len()]
     }
 
-    /// Positions (core frame, m) and arc lengths (m) of the nodes beyond the seam; `None` where the wire ends.
+    /// Positions (core frame, m) and arc lengths (m) of the nodes beyond the seam; `None` where the
+    /// wire ends.
     pub fn ahead(&self) -> Option<[(V3, f64); SHARED]> {
         let own = self.len();
         self.goes_on
             .then(|| [own, own + 1].map(|k| (self.points[k], self.arc[k])))
     }
 
-    /// Sets the nodes beyond the seam by position (core frame, m) and arc length (m); `None` ends the wire.
+    /// Sets the nodes beyond the seam by position (core frame, m) and arc length (m); `None` ends
+    /// the wire.
     pub fn go_on(&mut self, ahead: Option<[(V3, f64); SHARED]>) {
         for _ in 0..self.shared() {
             self.goes_on = false;
@@ -92,8 +94,8 @@ impl SplineTube {
         self.goes_on = ahead.is_some();
     }
 
-    /// Appends a node at `point` (core frame, m), apart from the last one, with `arc` (m) not below the last.
-    /// The wire must have no seam.
+    /// Appends a node at `point` (core frame, m), apart from the last one, with `arc` (m) not below
+    /// the last. The wire must have no seam.
     pub fn push(&mut self, point: V3, arc: f64) {
         debug_assert!(!self.goes_on, "the wire goes on with other wire");
         debug_assert!(self.points.last() != Some(&point), "wire of no length");
@@ -133,8 +135,8 @@ impl SplineTube {
     }
 
     /// Segments to start a foot from, ascending, one for every passage of the wire that comes
-    /// within `reach` (m) of `p`: for each local minimum of the distance along the wire, its ends
-    /// included. Segments whose node has an arc length above `own` (m) are left out.
+    /// within `reach` (m) of `p` (core frame, m): for each local minimum of the distance along the
+    /// wire, its ends included. Segments whose node has an arc length above `own` (m) are left out.
     ///
     /// `out` is emptied first; nothing else is allocated. Two minima on one segment, which need p
     /// beyond its centre of curvature, count as one.
@@ -160,7 +162,8 @@ impl SplineTube {
         out.dedup();
     }
 
-    /// Arc length of a segment, m: that of its node, or at a seam that of the next node, where the following wire begins.
+    /// Arc length of a segment, m: that of its node, or at a seam that of the next node, where the
+    /// following wire begins.
     fn arc_of(&self, segment: usize) -> f64 {
         let at_seam = self.goes_on && segment + SHARED == self.points.len();
         self.arc[segment + usize::from(at_seam)]
@@ -194,7 +197,7 @@ impl SplineTube {
         }
     }
 
-    /// The foot of `p` on the passage that `start` belongs to, see [`Curve::foot`].
+    /// The foot of `p` (core frame, m) on the passage that `start` belongs to, by [`Curve::foot`].
     #[inline]
     pub fn foot(&self, p: V3, start: u32) -> Foot {
         self.curve().foot(p, start)

@@ -1,5 +1,5 @@
-//! Internal forces of a rod, many joints at once: what [`internal_forces`](crate::rod::internal_forces()) does joint by
-//! joint.
+//! Internal forces of a rod, many joints at once: what
+//! [`internal_forces`](crate::rod::internal_forces()) does joint by joint.
 
 use super::{GRADIENT, JOINT, Joints, TORQUE, TwistingJoints};
 use crate::math::simd::{Lanes, ROWS, RowBlock, WithSimd, run};
@@ -9,7 +9,7 @@ use crate::rod::plasticity::{beyond, respond_scalar};
 use crate::rod::state::Rod;
 use pulp::Simd;
 
-/// Forces of a rod; nothing is kept from one call to the next.
+/// Internal forces of a rod; holds working memory only, no state.
 #[derive(Debug, Default)]
 pub struct Forces {
     joints: TwistingJoints,
@@ -24,7 +24,8 @@ impl Clone for Forces {
 }
 
 impl Forces {
-    /// Adds the internal forces of `rod` into a fitted `load`, see [`internal_forces`](crate::rod::internal_forces()).
+    /// Adds the internal forces of `rod` into a fitted `load`, see
+    /// [`internal_forces`](crate::rod::internal_forces()).
     pub fn add(
         &mut self,
         rod: &mut Rod,

@@ -1,10 +1,10 @@
 //! All joints of a rod at once, many side by side.
 //!
-//! [`TwistingJoints`] compute with twist what [`super::twisted()`] computes for one joint, [`BendingJoints`] without twist
-//! what [`super::bent()`] computes.
+//! [`TwistingJoints`] compute with twist what [`super::twisted()`] computes for one joint,
+//! [`BendingJoints`] without twist what [`super::bent()`] computes.
 //!
-//! Three passes: edges; angles of the joints; and, after the laws of all joints, gradients and Hessians, which the
-//! assembly asks for a block of joints at a time ([`Joints`]). The row before
+//! Three passes: edges; angles of the joints; and, after the laws of all joints, gradients and
+//! Hessians, which the assembly asks for a block of joints at a time ([`Joints`]). The row before
 //! the first edge is the clamp there, the row after the last the clamp at the other end.
 
 mod bending_joints;
@@ -19,26 +19,28 @@ pub use forces::Forces;
 use pulp::Simd;
 pub use twisting_joints::TwistingJoints;
 
-/// Columns of a joint's gradient and Hessian, see [`super::Bent`] and [`super::Rolled`].
+/// Number of columns of a joint's gradient and Hessian; units as in [`super::Bent`] and
+/// [`super::Rolled`].
 pub const JOINT: usize = 52;
-/// Hessian by the edge vector before the joint and after it, lower halves.
+/// Columns of the Hessian by the edge vector before the joint and after it, lower halves.
 pub const OWN: [usize; 2] = [0, 6];
-/// Hessian, rows before, columns after.
+/// Columns of the Hessian, rows before, columns after.
 pub const CROSS: usize = 12;
-/// Hessian, roll by roll: before-before, before-after, after-after.
+/// Columns of the Hessian, roll by roll: before-before, before-after, after-after.
 pub const ROLL_OWN: usize = 21;
-/// Hessian, roll of the edge before or after by either edge vector.
+/// Columns of the Hessian, roll of the edge before or after by either edge vector.
 pub const ROLL_WITH: [[usize; 2]; 2] = [[24, 27], [30, 33]];
-/// Gradient by the edge vectors.
+/// Columns of the gradient by the edge vectors.
 pub const GRADIENT: [usize; 2] = [36, 39];
-/// Gradient by the rolls.
+/// Columns of the gradient by the rolls.
 pub const TORQUE: usize = 42;
 /// Derivative of the angle along the moment by the edge vectors ...
 const LEAD: [usize; 2] = [44, 47];
 /// ... and by the rolls.
 const LEAD_ROLL: usize = 50;
 
-/// Joints whose moments are known, with the gradients and Hessians of their energy for the assembly.
+/// Joints whose moments are known, with the gradients and Hessians of their energy for the
+/// assembly.
 pub trait Joints {
     /// Blocks of eight edges or joints.
     fn blocks(&self) -> usize;
@@ -46,8 +48,8 @@ pub trait Joints {
     /// Directions of the edges of `block` from row `first` on.
     fn directions<S: Simd>(&self, simd: S, block: usize, first: usize) -> Lanes3<S>;
 
-    /// Gradients, and Hessians where asked for, of the joints of `block` from row `first` on; with `near` also the
-    /// derivatives that [`YieldBranch`] needs.
+    /// Gradients, and Hessians where asked for, of the joints of `block` from row `first` on; with
+    /// `near` also the derivatives that [`YieldBranch`] needs.
     fn derive<S: Simd, const HESSIAN: bool>(
         &self,
         simd: S,
@@ -59,7 +61,8 @@ pub trait Joints {
 
     /// Gradients and Hessians of the joints of `block`.
     ///
-    /// `yield_branches` begins with those of this block: their derivatives are filled in and they leave the slice.
+    /// `yield_branches` begins with those of this block: their derivatives are filled in and they
+    /// leave the slice.
     #[inline(always)]
     fn joints<S: Simd, const HESSIAN: bool>(
         &self,

@@ -1,4 +1,5 @@
-//! Gradients and Hessians of joints from their answers, for as many joints at once as the machine can.
+//! Gradients and Hessians of joints from their answers, for as many joints at once as the machine
+//! can.
 
 use super::layout::*;
 use crate::math::simd::{Lanes, Lanes3, RowBlock};
@@ -24,7 +25,8 @@ impl<S: Simd> Side<S> {
         }
     }
 
-    /// Derivative of an angle by edge vector and roll, see [`Turned::derivative`](crate::rod::Turned::derivative).
+    /// Derivative of an angle by edge vector and roll, see
+    /// [`Turned::derivative`](crate::rod::Turned::derivative).
     #[inline(always)]
     fn derivative(&self, row: Lanes3<S>) -> (Lanes3<S>, Lanes<S>) {
         let roll = row.dot(self.along);

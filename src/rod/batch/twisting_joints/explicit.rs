@@ -1,4 +1,5 @@
-//! Answers of all joints for the explicit methods: moments and couples by the laws, and the plastic state.
+//! Answers of all joints for the explicit methods: moments and couples by the laws, and the plastic
+//! state.
 
 use super::layout::{BEND, TWIST, TwistingJoints};
 use crate::math::simd::ROWS;
@@ -11,8 +12,9 @@ use crate::rod::state::Rod;
 impl TwistingJoints {
     /// Computes the moments and couples of the joints of `rod` for [`Forces`](crate::rod::Forces).
     ///
-    /// With `parts.commit` the plastic state of `rod` and its frames become those of the present angles. Moments of the
-    /// clamps (lab frame, N m), stored energy (J) and plastic work (J) are written into `load`.
+    /// With `parts.commit` the plastic state of `rod` and its frames become those of the present
+    /// angles. Moments of the clamps (lab frame, N m), stored energy (J) and plastic work (J) are
+    /// written into `load`.
     pub(in crate::rod::batch) fn respond_explicit(
         &mut self,
         rod: &mut Rod,

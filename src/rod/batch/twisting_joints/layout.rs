@@ -7,7 +7,8 @@ use crate::rod::forces::Laws;
 use crate::rod::plasticity::{Bend, Scalar};
 use crate::rod::twisting::Turned;
 
-/// Columns of an edge: direction, inverse length, length, frame (i, j, k, w), detour of its shortest way.
+/// Columns of an edge: direction, inverse length, length, frame (i, j, k, w), detour of its
+/// shortest way.
 pub(super) const ALONG: usize = 0;
 pub(super) const INVERSE: usize = 3;
 pub(super) const LENGTH: usize = 4;
@@ -27,8 +28,8 @@ pub(super) const COSINE: usize = 7;
 pub(super) const G: usize = 8;
 pub(super) const G1: usize = 9;
 
-/// Columns of a joint's plastic state: set curvature, rise of the yield moment, yield moment, these three of twist, Voronoi
-/// length and its inverse.
+/// Columns of a joint's plastic state: set curvature, rise of the yield moment, yield moment, these
+/// three of twist, Voronoi length and its inverse.
 pub(super) const STATE: usize = 9;
 pub(super) const SET: usize = 0;
 pub(super) const RISE: usize = 2;
@@ -39,8 +40,8 @@ pub(super) const TWIST_LIMIT: usize = 6;
 pub(super) const LV: usize = 7;
 pub(super) const PER_LV: usize = 8;
 
-/// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free roll, energy, see
-/// [`Answer`](crate::rod::twisting::Answer).
+/// Columns of a joint's answer: direction of the moment, moment, couple, three stiffnesses, free
+/// roll, energy, see [`Answer`](crate::rod::twisting::Answer).
 pub(super) const ANSWER: usize = 9;
 pub(super) const DIRECTION: usize = 0;
 pub(super) const PUSH: usize = 2;
@@ -65,7 +66,8 @@ pub struct TwistingJoints {
 }
 
 impl TwistingJoints {
-    /// Takes over the frames and directions of all edges at the last accepted instant, and the frames of the clamps.
+    /// Takes over the frames and directions of all edges at the last accepted instant, and the
+    /// frames of the clamps.
     pub fn begin(&mut self, frames: &[Quat], along: &[V3], clamps: [Option<Quat>; 2]) {
         self.edges = frames.len();
         let rows = self.edges + 1;
@@ -106,7 +108,7 @@ impl TwistingJoints {
         quaternion(|a| self.edge.blocks()[0].before(FRAME + a))
     }
 
-    /// Direction of edge `j`.
+    /// Unit direction of edge `j`.
     #[inline]
     pub fn along(&self, j: usize) -> V3 {
         self.edge.vector(ALONG, j)
@@ -130,9 +132,11 @@ impl TwistingJoints {
         Turned::known(self.frame(j), self.along(j), self.inverse(j), detour)
     }
 
-    /// Takes over the plastic state of the joints from `first` to `last`; other joints carry no moment.
+    /// Takes over the plastic state of the joints from `first` to `last`; other joints carry no
+    /// moment.
     ///
-    /// `length` gives the Voronoi length of a joint, m, and the factor on its set curvature and twist.
+    /// `length` gives the Voronoi length of a joint, m, and the factor on its set curvature and
+    /// twist.
     pub fn lay(
         &mut self,
         laws: &Laws,

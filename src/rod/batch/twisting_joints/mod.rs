@@ -25,7 +25,8 @@ use pulp::Simd;
 const SMALL_ROLL: f64 = 2e-3;
 
 impl TwistingJoints {
-    /// Computes edges and angles with the nodes at `q`, m, and the edges rolled by `roll`, rad, since [`Self::begin`].
+    /// Computes edges and angles with the nodes at `q`, m, and the edges rolled by `roll`, rad,
+    /// since [`Self::begin`].
     pub fn place(&mut self, q: &[V3], roll: &[f64]) {
         put_places(&mut self.places, q);
         self.roll.put(roll, |block, row, x| block.set(0, row, *x));
@@ -74,10 +75,11 @@ impl TwistingJoints {
         self.angle.set(G1, j, g[1]);
     }
 
-    /// Computes the moments, couples and stiffnesses of all joints by their laws; returns their energy, J.
+    /// Computes the moments, couples and stiffnesses of all joints by their laws; returns their
+    /// energy, J.
     ///
-    /// Joints that may change their branch are appended to `yield_branches`, if given; [`Joints::joints`] completes those
-    /// of bending.
+    /// Joints that may change their branch are appended to `yield_branches`, if given;
+    /// [`Joints::joints`] completes those of bending.
     pub fn respond(&mut self, laws: &Laws, mut yield_branches: Option<&mut YieldBranches>) -> f64 {
         run(Elastic(self, laws));
         if let Some(yield_branches) = &mut yield_branches {
@@ -136,7 +138,8 @@ impl TwistingJoints {
         energy
     }
 
-    /// Appends the joints that may change their branch of twist. Couples must still be the elastic ones.
+    /// Appends the joints that may change their branch of twist. Couples must still be the elastic
+    /// ones.
     fn find_twist_branches(&self, laws: &Laws, yield_branches: &mut Vec<(u32, YieldBranch)>) {
         let law = &laws.twist;
         for (block, (answers, state)) in

@@ -168,8 +168,8 @@ fn each_joint_is_that_of_the_rod_one_by_one() {
     }
 }
 
-/// Couple and stiffness of a joint near yielding in twist are those of its law, its rows those of its twist by finite
-/// differences.
+/// Couple and stiffness of a joint near yielding in twist are those of its law, its rows those of
+/// its twist by finite differences.
 #[test]
 fn branches_of_twist_are_those_of_the_law() {
     let mut seen = [0; 2];
