@@ -82,7 +82,7 @@ impl Bvh {
         }
     }
 
-    /// Signed distance, closest point and normal.
+    /// Signed distance, closest point and normal of a point `p`, core frame, m.
     pub fn nearest(&self, mesh: &TriMesh, p: V3) -> Nearest {
         let mut best = (f64::INFINITY, 0);
         nearest_walk(&self.nodes, mesh, p, 0, &mut best);

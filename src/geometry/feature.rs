@@ -5,7 +5,8 @@
 //! (its Voronoi regions). Seen from space the regions are prisms: over the face, beside an edge,
 //! past a vertex. Paper eq. 4 knows only the first, with its sign reversed.
 
-use super::mesh::{Edge, Facet, TriMesh};
+use super::elements::Facet;
+use super::mesh::TriMesh;
 use crate::math::V3;
 
 /// The Voronoi region of one triangle that a point lies in.
@@ -13,7 +14,7 @@ use crate::math::V3;
 pub(crate) enum Region {
     /// over or under the face
     Face,
-    /// beside side `side`; `along` is the projection on its edge, see [`Edge::project`]
+    /// beside side `side`; `along` is the projection on its edge, see `Edge::project`
     Edge { side: usize, along: f64 },
     /// past corner `corner`
     Vertex { corner: usize },
@@ -41,53 +42,6 @@ pub struct Nearest {
     pub point: V3,
     /// unit gradient of the distance at the query point
     pub normal: V3,
-}
-
-impl Edge {
-    /// Projection of `p` on the edge times the edge's length, m^2: 0 at the first end,
-    /// `length_sq` at the second. Every triangle and vertex at the edge decides by this one number.
-    #[inline]
-    pub fn project(&self, p: V3) -> f64 {
-        (p - self.start).dot(&self.along)
-    }
-
-    /// Whether `p` projects past the second end (`second`) or before the first.
-    #[inline]
-    pub fn is_past_end(&self, p: V3, second: bool) -> bool {
-        let along = self.project(p);
-        if second {
-            along >= self.length_sq
-        } else {
-            along <= 0.0
-        }
-    }
-}
-
-impl Facet {
-    /// Signed distance of `p` from the plane, m.
-    #[inline]
-    pub fn height(&self, p: V3) -> f64 {
-        self.normal.dot(&p) - self.offset
-    }
-
-    /// How far `p` lies beyond side `k`, measured in the plane, m; negative within.
-    #[inline]
-    pub fn beyond(&self, k: usize, p: V3) -> f64 {
-        self.side[k].dot(&p) - self.side_offset[k]
-    }
-
-    /// [`Facet::beyond`] of all three sides.
-    #[inline]
-    pub fn beyond_sides(&self, p: V3) -> [f64; 3] {
-        [self.beyond(0, p), self.beyond(1, p), self.beyond(2, p)]
-    }
-
-    /// Whether `p` projects onto the triangle: eq. 4 with the side normals pointing outwards,
-    /// so that all three products must not be positive.
-    #[inline]
-    pub fn in_prism(&self, p: V3) -> bool {
-        (0..3).all(|k| self.beyond(k, p) <= 0.0)
-    }
 }
 
 impl TriMesh {

@@ -191,7 +191,8 @@ mod tests {
 
     #[test]
     fn limits_of_the_corner_radius() {
-        // Sharp: a box of 4 sides; half the width: two half cylinders and two flats; both: a circle.
+        // Sharp: a box of 4 sides; half the width: two half cylinders and two flats; both: a
+        // circle.
         assert_eq!(rounded_box(0.02, 0.02, 0.04, 0.0, 9).unwrap().len(), 16);
         assert_eq!(
             rounded_box(0.01, 0.02, 0.04, 0.005, 3).unwrap().len(),

@@ -39,7 +39,7 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// No pieces yet, cells of `edge` (m).
+    /// A grid without pieces, of cubic cells of `edge` (m).
     pub(super) fn new(edge: f64) -> Self {
         assert!(
             edge > 0.0 && edge.is_finite(),
@@ -86,8 +86,8 @@ impl Grid {
         }
     }
 
-    /// Calls `visit` with the pieces of each cell within `reach` of `p` along every axis, in no order; a piece
-    /// shows up once for each of its cells.
+    /// Calls `visit` with the pieces of each cell within `reach` of `p` along every axis, in no
+    /// order; a piece shows up once for each of its cells.
     pub(super) fn visit_near(&self, p: V3, reach: f64, mut visit: impl FnMut(&[u32])) {
         let low = self.cell(p - V3::repeat(reach));
         let high = self.cell(p + V3::repeat(reach));

@@ -5,6 +5,7 @@
 //! triangles of an edge read the *same* edge record, so both decide alike whether a point lies
 //! beside the edge or past its end; that is what keeps a touch from being lost or counted twice.
 
+use super::elements::{Corner, Edge, Facet};
 use super::error::MeshError;
 use super::topology::{connected, corners, edges, rise};
 use crate::math::V3;
@@ -38,59 +39,6 @@ pub struct TriMesh {
     pub(crate) tiny: f64,
     /// every edge flat or convex, and one connected piece
     pub(crate) convex: bool,
-}
-
-/// One triangle, ready for queries. Side `k` runs from corner `k` to corner `k + 1`.
-#[derive(Clone, Debug)]
-pub(crate) struct Facet {
-    /// outward unit normal
-    pub normal: V3,
-    /// the plane is `normal . x = offset`, m
-    pub offset: f64,
-    /// unit normal of each side in the plane, pointing away from the triangle
-    pub side: [V3; 3],
-    /// the prism is `side[k] . x <= side_offset[k]`, m
-    pub side_offset: [f64; 3],
-    /// edge index of each side
-    pub edge: [u32; 3],
-    /// triangle across each side
-    pub across: [u32; 3],
-    /// vertex indices
-    pub corner: [u32; 3],
-    /// width per height of the strip over each side that lies in both prisms: 0 at flat and convex
-    /// edges, negative at concave edges that are no seams, where both faces touch
-    pub overlap: [f64; 3],
-}
-
-/// An edge shared by two triangles.
-#[derive(Clone, Debug)]
-pub(crate) struct Edge {
-    /// position of the first end, m
-    pub start: V3,
-    /// from the first end to the second, m
-    pub along: V3,
-    /// squared length, m^2
-    pub length_sq: f64,
-    /// vertex indices of the ends
-    pub ends: [u32; 2],
-    /// the two triangles, lower index first
-    pub triangles: [u32; 2],
-    /// which side of each triangle this edge is
-    pub side_in: [u8; 2],
-    /// unit bisector of the two face normals: tells outside from inside at the edge
-    pub outward: V3,
-}
-
-/// A vertex with its surroundings.
-#[derive(Clone, Debug)]
-pub(crate) struct Corner {
-    /// range of `rings`
-    pub ring: (u32, u32),
-    /// lowest triangle index at the vertex
-    pub first_triangle: u32,
-    /// unit normal, faces weighted by their angle (Baerentzen and Aanaes 2005): tells outside
-    /// from inside at the vertex
-    pub outward: V3,
 }
 
 impl TriMesh {

@@ -18,6 +18,7 @@ pub mod generate;
 pub mod stl;
 
 mod bvh;
+mod elements;
 mod error;
 mod feature;
 mod grid;

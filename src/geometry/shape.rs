@@ -22,7 +22,8 @@ pub enum Shape {
         half_z: f64,
         /// half the length along y, m
         half_y: f64,
-        /// radius of the four edges parallel to y, m; 0 (sharp) to the smaller of `half_x`, `half_z`
+        /// radius of the four edges parallel to y, m; 0 (sharp) to the smaller of `half_x`,
+        /// `half_z`
         corner_radius: f64,
     },
     /// Circular cylinder about y between flat ends.

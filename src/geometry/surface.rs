@@ -59,17 +59,17 @@ impl Surface {
         self.mesh.is_convex()
     }
 
-    /// Triangles within `radius` of `p`, see [`Bvh::near`].
+    /// Triangles within `radius` (m) of `p` (core frame, m), by [`Bvh::near`].
     pub fn near(&self, p: V3, radius: f64, out: &mut Vec<u32>) {
         self.bvh.near(&self.mesh, p, radius, out);
     }
 
-    /// Contacts of a sphere, see [`TriMesh::touching`].
+    /// Contacts of a sphere of centre `p` and radius `r`, m, by [`TriMesh::touching`].
     pub fn touching(&self, p: V3, r: f64, candidates: &[u32], out: &mut Vec<Touch>) {
         self.mesh.touching(p, r, candidates, out);
     }
 
-    /// Signed distance, closest point and normal.
+    /// Signed distance, closest point and normal of a point `p`, core frame, m.
     pub fn nearest(&self, p: V3) -> Nearest {
         self.bvh.nearest(&self.mesh, p)
     }

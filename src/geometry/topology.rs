@@ -1,7 +1,7 @@
 //! How the triangles of a mesh hang together: edges, vertices, pieces.
 
+use super::elements::{Corner, Edge, Facet};
 use super::error::MeshError;
-use super::mesh::{Corner, Edge, Facet};
 use crate::math::V3;
 
 /// Two neighbours whose unit normals sum to less than this lie back to back.

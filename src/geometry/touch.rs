@@ -23,8 +23,9 @@
 //! face the same can happen to triangles that share no edge: touches at one point are merged,
 //! and if every triangle passed the touch on to another, the nearest feature is taken.
 
+use super::elements::Facet;
 use super::feature::{Closest, Region};
-use super::mesh::{Facet, TriMesh};
+use super::mesh::TriMesh;
 use crate::math::V3;
 
 /// Touches closer than this share of the radius and with like normals are one.

@@ -4,13 +4,14 @@
 //! the segment (eq. 13). At a node between two segments it ends in the plane halfway between their
 //! directions (eq. 14, 15 with unit directions): an ellipse whose long axis, r over the cosine of
 //! half the turning angle, lies in the plane of the bend; projected along either segment it is the
-//! circle again. The published factor, the cosine itself, would make the wire thinner at every bend.
+//! circle again. The published factor, the cosine itself, would make the wire thinner at every
+//! bend.
 //!
 //! Later wire touches the triangles with friction. A facet is found by its angle and its vertices
-//! follow from the axis, so nothing of the mesh is stored. The force acts on the round wire that the
-//! facet stands for: a flat's own normal is off by up to pi/64, a fifth of the angle of friction,
-//! and between the edges of flats a sliding node takes off and lands again, which costs it speed
-//! (an eighth of the gap that a wire dropped on a shoulder leaves).
+//! follow from the axis, so nothing of the mesh is stored. The force acts on the round wire that
+//! the facet stands for: a flat's own normal is off by up to pi/64, a fifth of the angle of
+//! friction, and between the edges of flats a sliding node takes off and lands again, which costs
+//! it speed (an eighth of the gap that a wire dropped on a shoulder leaves).
 
 use crate::geometry::Touch;
 use crate::math::{Quat, V3};
@@ -69,7 +70,7 @@ pub struct Tube {
     chunks: Vec<Bounds>,
 }
 
-/// What a node brings along when it freezes.
+/// State of a node that freezes, kept for when it thaws.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct FrozenNode {
     /// position, core frame, m
@@ -85,7 +86,7 @@ pub struct FrozenNode {
 }
 
 impl Tube {
-    /// No frozen wire yet; `radius` of the wire, m.
+    /// A tube without wire; `radius` of the wire, m.
     pub fn new(radius: f64) -> Self {
         Self {
             radius,
@@ -110,7 +111,7 @@ impl Tube {
         self.radius
     }
 
-    /// What was pushed, oldest first.
+    /// The frozen nodes as they were pushed, oldest first.
     pub fn nodes(&self) -> impl Iterator<Item = FrozenNode> {
         (0..self.len()).map(|i| FrozenNode {
             point: self.points[i],
@@ -131,7 +132,7 @@ impl Tube {
         self.points.is_empty()
     }
 
-    /// Appends the next node along the wire.
+    /// Appends the next node along the wire; `arc` must not fall.
     pub fn push(&mut self, node: FrozenNode) {
         self.points.push(node.point);
         self.frames.push(node.frame);
@@ -150,7 +151,8 @@ impl Tube {
             if segment.is_multiple_of(CHUNK) {
                 self.chunks.push(Bounds::empty());
             }
-            // a mitre reaches past the radius; twice the radius covers turning angles to 120 degrees
+            // a mitre reaches past the radius; twice the radius covers turning angles to 120
+            // degrees
             let last = self.chunks.len() - 1;
             self.chunks[last].grow(self.points[n - 2], 2.0 * self.radius);
             self.chunks[last].grow(self.points[n - 1], 2.0 * self.radius);
@@ -206,13 +208,14 @@ impl Tube {
         }
     }
 
-    /// Vertices of segment `s` at its start (`end` 0) or end (1), core frame.
+    /// Vertices of segment `s` at its start (`end` 0) or end (1), core frame, m.
     pub fn ring(&self, s: usize, end: usize) -> Vec<V3> {
         let prism = self.prism(s);
         (0..SIDES).map(|k| prism.vertex(end, k)).collect()
     }
 
-    /// A lower bound of the distance from `p` to the surface of segments that end before `arc`.
+    /// A lower bound of the distance, m, from `p` (core frame, m) to the surface of segments that
+    /// end before `arc` (m).
     pub fn clearance(&self, p: V3, arc: f64) -> f64 {
         let mut best = f64::INFINITY;
         for (c, b) in self.chunks.iter().enumerate() {
@@ -246,7 +249,8 @@ impl Tube {
         (p - a - d * t).norm()
     }
 
-    /// Segments whose surface is within `reach` of `p` and which end before `arc`, ascending.
+    /// Segments whose surface is within `reach` (m) of `p` (core frame, m) and which end before
+    /// `arc` (m), ascending.
     pub fn near(&self, p: V3, reach: f64, arc: f64, out: &mut Vec<u32>) {
         out.clear();
         for (c, b) in self.chunks.iter().enumerate() {
@@ -264,8 +268,9 @@ impl Tube {
         }
     }
 
-    /// Touches of a sphere of radius `r` at `p` with the given segments: one for each passage of
-    /// the wire (a run of consecutive segments), at the nearest point of its triangles.
+    /// Touches of a sphere of radius `r` (m) at `p` (core frame, m) with the given segments: one
+    /// for each passage of the wire (a run of consecutive segments), at the nearest point of its
+    /// triangles.
     pub fn touching(&self, p: V3, r: f64, segments: &[u32], out: &mut Vec<Touch>) {
         let mut i = 0;
         while i < segments.len() {

@@ -11,7 +11,7 @@ pub fn polar_angle(point: V3) -> f64 {
     libm::atan2(point.z, point.x)
 }
 
-/// The same angle within `[-pi, pi)`, rad.
+/// Wraps an angle, rad, into `[-pi, pi)` by whole turns.
 #[inline]
 pub fn wrap_to_pi(angle: f64) -> f64 {
     // An angle in range passes unchanged: adding and taking pi away would cost its last digits.

@@ -1,4 +1,5 @@
-//! Vectors, 3 by 3 blocks, frames and angles, arithmetic on many numbers at once, and a stack whose copies share what is covered.
+//! Vectors, 3 by 3 blocks, frames and angles, arithmetic on many numbers at once, and a stack whose
+//! copies share what is covered.
 
 mod angle;
 mod block;

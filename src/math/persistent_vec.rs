@@ -99,15 +99,15 @@ impl<T, const N: usize> Index<usize> for PersistentVec<T, N> {
 
     fn index(&self, i: usize) -> &T {
         let entry = self.get(i);
-        entry.unwrap_or_else(|| panic!("entry {i} of a pile of {}", self.len()))
+        entry.unwrap_or_else(|| panic!("entry {i} of a stack of {}", self.len()))
     }
 }
 
 impl<T, const N: usize> FromIterator<T> for PersistentVec<T, N> {
     fn from_iter<I: IntoIterator<Item = T>>(entries: I) -> Self {
-        let mut pile = Self::default();
-        entries.into_iter().for_each(|entry| pile.push(entry));
-        pile
+        let mut stack = Self::default();
+        entries.into_iter().for_each(|entry| stack.push(entry));
+        stack
     }
 }
 
@@ -137,47 +137,47 @@ mod tests {
     type Small = PersistentVec<u32, 4>;
 
     proptest! {
-        /// Whatever is put on and taken off, a pile is a vector; copies stay what they were.
+        /// Whatever is put on and taken off, a stack is a vector; copies stay what they were.
         #[test]
-        fn a_pile_is_a_vector(changes in proptest::collection::vec((0u32..9, any::<bool>()), 0..60)) {
-            let (mut pile, mut plain) = (Small::default(), Vec::new());
+        fn a_stack_is_a_vector(changes in proptest::collection::vec((0u32..9, any::<bool>()), 0..60)) {
+            let (mut stack, mut plain) = (Small::default(), Vec::new());
             let mut copies = Vec::new();
             for (k, (count, grow)) in changes.into_iter().enumerate() {
                 if grow {
                     for i in 0..count {
-                        pile.push(100 * k as u32 + i);
+                        stack.push(100 * k as u32 + i);
                         plain.push(100 * k as u32 + i);
                     }
                 } else if count % 2 == 0 {
                     let keep = plain.len().saturating_sub(count as usize);
-                    pile.truncate(keep);
+                    stack.truncate(keep);
                     plain.truncate(keep);
                 } else {
                     let keep = plain.len().saturating_sub(count as usize);
-                    prop_assert_eq!(pile.split_off(count as usize), plain.split_off(keep));
+                    prop_assert_eq!(stack.split_off(count as usize), plain.split_off(keep));
                 }
-                copies.push((pile.clone(), plain.clone()));
+                copies.push((stack.clone(), plain.clone()));
             }
-            for (pile, plain) in &copies {
-                prop_assert_eq!(pile.iter().copied().collect::<Vec<_>>(), plain.clone());
-                prop_assert_eq!(pile.chunks().flatten().copied().collect::<Vec<_>>(), plain.clone());
-                prop_assert_eq!(pile.last(), plain.last());
-                prop_assert_eq!(pile.is_empty(), plain.is_empty());
-                prop_assert_eq!(pile.get(plain.len()), None);
-                prop_assert!(pile == &plain.iter().copied().collect::<Small>());
-                let bytes = postcard::to_stdvec(pile).expect("written");
+            for (stack, plain) in &copies {
+                prop_assert_eq!(stack.iter().copied().collect::<Vec<_>>(), plain.clone());
+                prop_assert_eq!(stack.chunks().flatten().copied().collect::<Vec<_>>(), plain.clone());
+                prop_assert_eq!(stack.last(), plain.last());
+                prop_assert_eq!(stack.is_empty(), plain.is_empty());
+                prop_assert_eq!(stack.get(plain.len()), None);
+                prop_assert!(stack == &plain.iter().copied().collect::<Small>());
+                let bytes = postcard::to_stdvec(stack).expect("written");
                 let read: Small = postcard::from_bytes(&bytes).expect("read");
-                prop_assert!(&read == pile);
+                prop_assert!(&read == stack);
             }
         }
     }
 
     #[test]
     fn copies_share_what_is_covered() {
-        let pile: Small = (0..9).collect();
-        let copy = pile.clone();
+        let stack: Small = (0..9).collect();
+        let copy = stack.clone();
         assert_eq!(copy.full.len(), 2);
-        for (a, b) in pile.full.iter().zip(&copy.full) {
+        for (a, b) in stack.full.iter().zip(&copy.full) {
             assert!(Arc::ptr_eq(a, b));
         }
     }

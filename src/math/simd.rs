@@ -1,10 +1,10 @@
 //! The same arithmetic on many numbers at once, as wide as the machine can.
 //!
-//! Formulas are written once, for [`Lanes`] of numbers that never meet: each lane rounds as a lone number would
-//! (no fused multiply-add, no other order), so results are the same to the bit with one lane, with
-//! four (AVX2) and with eight (AVX-512). What the machine has is found out at run time; only what is inlined
-//! into [`run`] is compiled for it, and closures may not be. Numbers of a kind lie
-//! side by side, in columns of eight rows ([`Block`]).
+//! Formulas are written once, for [`Lanes`] of numbers that never meet: each lane rounds as a lone
+//! number would (no fused multiply-add, no other order), so results are the same to the bit with
+//! one lane, with four (AVX2) and with eight (AVX-512). What the machine has is found out at run
+//! time; only what is inlined into [`run`] is compiled for it, and closures may not be. Numbers of
+//! a kind lie side by side, in columns of eight rows ([`RowBlock`]).
 
 use crate::math::V3;
 use pulp::Simd;
@@ -12,7 +12,7 @@ pub use pulp::WithSimd;
 use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 use std::sync::atomic::{AtomicU8, Ordering};
 
-/// How many numbers are worked on at once.
+/// How many numbers one instruction works on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum, serde::Serialize)]
 pub enum Width {
     /// one: any machine
@@ -26,16 +26,18 @@ pub enum Width {
     Eight = 8,
 }
 
-/// Eight are slower than four in whole runs on the machine that was measured (the processor lowers its clock).
+/// Eight are slower than four in whole runs on the machine that was measured (the processor lowers
+/// its clock).
 static WIDEST: AtomicU8 = AtomicU8::new(Width::Four as u8);
 
-/// No more than `width` numbers at once from here on, in the whole process: for tests and measurements, since
-/// results do not depend on it.
+/// Limits [`run`] to `width` numbers at once from here on, in the whole process.
+///
+/// For tests and measurements; results do not depend on it.
 pub fn at_most(width: Width) {
     WIDEST.store(width as u8, Ordering::Relaxed);
 }
 
-/// What [`run`] works with.
+/// The width that [`run`] works with.
 pub fn width() -> Width {
     struct Count;
     impl WithSimd for Count {
@@ -72,7 +74,7 @@ pub fn run<Op: WithSimd>(work: Op) -> Op::Output {
     Simd::vectorize(pulp::Scalar, work)
 }
 
-/// As many numbers as the machine works on at once.
+/// As many numbers as one instruction works on.
 #[derive(Debug)]
 pub struct Lanes<S: Simd> {
     simd: S,
@@ -89,7 +91,7 @@ impl<S: Simd> Clone for Lanes<S> {
 impl<S: Simd> Copy for Lanes<S> {}
 
 impl<S: Simd> Lanes<S> {
-    /// How many there are.
+    /// Number of lanes.
     pub const COUNT: usize = S::F64_LANES;
 
     /// `x` in every lane.
@@ -110,13 +112,13 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Into the first places of a slice.
+    /// Writes the lanes into the first numbers of a slice.
     #[inline(always)]
     pub fn store(self, to: &mut [f64]) {
         S::as_mut_simd_f64s(&mut to[..Self::COUNT]).0[0] = self.v;
     }
 
-    /// Square roots.
+    /// Square root of each lane.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
         Self {
@@ -125,7 +127,7 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Inverses.
+    /// Inverse of each lane.
     #[inline(always)]
     pub fn recip(self) -> Self {
         Self {
@@ -134,7 +136,7 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Quotients.
+    /// Quotient of each lane by that of `other`.
     #[inline(always)]
     pub fn over(self, other: Self) -> Self {
         Self {
@@ -249,14 +251,14 @@ impl<S: Simd> Neg for Lanes<S> {
     }
 }
 
-/// As many vectors.
+/// As many vectors as [`Lanes`] are numbers.
 #[derive(Debug)]
 pub struct Lanes3<S: Simd> {
-    /// components
+    /// first components
     pub x: Lanes<S>,
-    /// see `x`
+    /// second components
     pub y: Lanes<S>,
-    /// see `x`
+    /// third components
     pub z: Lanes<S>,
 }
 
@@ -331,24 +333,24 @@ impl<S: Simd> Mul<Lanes<S>> for Lanes3<S> {
     }
 }
 
-/// Rows that lie together in a [`Block`]: as many as there may be lanes.
+/// Rows that lie together in a [`RowBlock`]: as many as there may be lanes.
 pub const ROWS: usize = 8;
 
 /// `N` columns of eight rows each, with the row before them and the one after them.
 ///
-/// Loads begin at offset 0 (rows shifted back by one), 1 (the rows) or 2 (shifted on by one) and never leave the
-/// block: nothing to check at run time, and all of it close together in memory.
+/// Loads begin at offset 0 (rows shifted back by one), 1 (the rows) or 2 (shifted on by one) and
+/// never leave the block: nothing to check at run time, and all of it close together in memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
-pub struct Block<const N: usize>([[f64; ROWS + 2]; N]);
+pub struct RowBlock<const N: usize>([[f64; ROWS + 2]; N]);
 
-impl<const N: usize> Default for Block<N> {
+impl<const N: usize> Default for RowBlock<N> {
     fn default() -> Self {
         Self([[0.0; ROWS + 2]; N])
     }
 }
 
-impl<const N: usize> Block<N> {
+impl<const N: usize> RowBlock<N> {
     /// Lanes of column `k` from row `first` of the block on, shifted by `offset - 1`.
     #[inline(always)]
     pub fn load<S: Simd>(&self, simd: S, k: usize, first: usize, offset: usize) -> Lanes<S> {
@@ -402,7 +404,7 @@ impl<const N: usize> Block<N> {
         self.0[k][row + 1]
     }
 
-    /// Puts it.
+    /// Writes the number of column `k` in row `row`.
     #[inline(always)]
     pub fn set(&mut self, k: usize, row: usize, x: f64) {
         self.0[k][row + 1] = x;
@@ -426,23 +428,23 @@ impl<const N: usize> Block<N> {
 
 /// `N` columns of numbers, block by block.
 #[derive(Clone, Debug, Default)]
-pub struct Columns<const N: usize>(Vec<Block<N>>);
+pub struct Columns<const N: usize>(Vec<RowBlock<N>>);
 
 impl<const N: usize> Columns<N> {
     /// Makes room for `rows` rows; what is new is 0.
     pub fn fit(&mut self, rows: usize) {
-        self.0.resize(rows.div_ceil(ROWS), Block::default());
+        self.0.resize(rows.div_ceil(ROWS), RowBlock::default());
     }
 
     /// All blocks.
     #[inline(always)]
-    pub fn blocks(&self) -> &[Block<N>] {
+    pub fn blocks(&self) -> &[RowBlock<N>] {
         &self.0
     }
 
     /// All blocks, to be written.
     #[inline(always)]
-    pub fn blocks_mut(&mut self) -> &mut [Block<N>] {
+    pub fn blocks_mut(&mut self) -> &mut [RowBlock<N>] {
         &mut self.0
     }
 
@@ -480,7 +482,7 @@ impl<const N: usize> Columns<N> {
 
     /// Lets `set` put each of `values` into its row of its block.
     #[inline(always)]
-    pub fn put<T>(&mut self, values: &[T], set: impl Fn(&mut Block<N>, usize, &T)) {
+    pub fn put<T>(&mut self, values: &[T], set: impl Fn(&mut RowBlock<N>, usize, &T)) {
         for (block, values) in self.0.iter_mut().zip(values.chunks(ROWS)) {
             for (row, value) in values.iter().enumerate() {
                 set(block, row & (ROWS - 1), value);

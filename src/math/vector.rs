@@ -1,6 +1,6 @@
-//! Vectors and the two rotations everything else is written in.
+//! Vectors, and the pose of the turning core.
 
-/// A vector or point; metres, newtons, ... as the name says.
+/// A vector or point, in the unit that the field or argument states.
 pub type V3 = nalgebra::Vector3<f64>;
 /// A 3 by 3 matrix.
 pub type M3 = nalgebra::Matrix3<f64>;

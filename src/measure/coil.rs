@@ -1,14 +1,13 @@
 //! The settled wire, node by node, and what is measured on it.
 
+use super::defect::{DefectKind, DefectLimits};
 use super::profile::Profile;
 use super::runs::{Run, stations_for};
-use super::state::DefectKind;
 use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::PersistentVec;
 use crate::math::V3;
 use crate::math::{polar_angle, wrap_to_pi};
-use crate::measure::DefectLimits;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -108,7 +107,7 @@ pub struct Coil {
     traverse: f64,
 }
 
-/// What came to rest, with the direction of the traverse then.
+/// Settled nodes in a saved state, each with the direction of the traverse at its time.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct SavedCoil {
     nodes: Vec<(SettledNode, f64)>,
@@ -116,7 +115,7 @@ pub(crate) struct SavedCoil {
 }
 
 impl Coil {
-    /// No wire yet.
+    /// A coil without wire.
     pub fn new(spec: CoilSpec) -> Self {
         let traverse = if spec.traverse < 0.0 { -1.0 } else { 1.0 };
         Self {
@@ -128,7 +127,7 @@ impl Coil {
         }
     }
 
-    /// What it was made for.
+    /// The specification that [`Self::new`] was given.
     pub fn spec(&self) -> &CoilSpec {
         &self.spec
     }
@@ -176,7 +175,8 @@ impl Coil {
         self.records.iter().map(|record| &record.station)
     }
 
-    /// The next node of wire came to rest. Nodes come in order from the clamp.
+    /// Appends the next node of wire that has come to rest, in order from the clamp, and measures
+    /// it.
     pub fn settle(&mut self, settled: SettledNode) {
         let polar = polar_angle(settled.position);
         let (from_polar, from_angle, from_reach) = self
@@ -212,7 +212,7 @@ impl Coil {
         }
     }
 
-    /// What a saved state has to hold; all else follows from it.
+    /// The part of this coil that a saved state holds; everything else is computed from it.
     pub(crate) fn saved(&self) -> SavedCoil {
         SavedCoil {
             nodes: self.nodes.iter().map(|n| (n.settled, n.sense)).collect(),
@@ -220,8 +220,11 @@ impl Coil {
         }
     }
 
-    /// Takes a saved state over: settles its nodes anew, all of them within `far` (m) of the origin. Says what
-    /// is impossible about it.
+    /// Replaces the wire by that of a saved state and measures it again.
+    ///
+    /// # Errors
+    /// Says what is impossible about the state, such as a node farther than `far` (m) from the
+    /// origin.
     pub(crate) fn restore(&mut self, saved: SavedCoil, far: f64) -> Result<(), &'static str> {
         let mut fresh = Self::new(self.spec.clone());
         for (node, sense) in saved.nodes {
@@ -252,7 +255,7 @@ impl Coil {
         self.nodes.truncate(keep);
     }
 
-    /// This coil with more wire taken as settled, for a look at live wire at the end of a run.
+    /// A copy of this coil with `extra` wire settled too, to measure wire that is still live.
     pub fn what_if(&self, extra: &[SettledNode]) -> Coil {
         let mut coil = self.clone();
         for &node in extra {
@@ -447,7 +450,8 @@ impl Coil {
         record
     }
 
-    /// Value at a station (`None`: nothing to judge), its limit, and the stations a run needs.
+    /// Value of a defect at a station (`None`: nothing to judge), its limit, m, and the least
+    /// length of a run, in stations.
     pub(crate) fn criterion(&self, kind: DefectKind, station: &Station) -> (Option<f64>, f64, u32) {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let (value, limit, least) = match kind {

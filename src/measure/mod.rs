@@ -10,7 +10,7 @@
 //! back is truncation and leaves exactly what was there before.
 
 mod coil;
-mod limits;
+mod defect;
 mod profile;
 mod runs;
 mod state;
@@ -19,9 +19,9 @@ mod turn;
 
 pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode};
-pub use limits::DefectLimits;
+pub use defect::{DefectFlags, DefectLimits, DefectPlace};
 pub use profile::Profile;
-pub use state::{DefectFlags, DefectPlace, Worst};
+pub use state::Worst;
 pub use station::{Neighbour, Station};
 pub use turn::{TurnMeasures, Verdict};
 

@@ -2,10 +2,10 @@
 
 use std::f64::consts::TAU;
 
-/// Quasi-static height over polar angle, the yardstick of the bulge.
+/// Quasi-static height of the wire over the core by winding angle.
 ///
-/// A stiff wire stands off a flat face even when it is wound slowly. Only what a fast run adds to
-/// that is its defect.
+/// A stiff wire stands off a flat face even when it is wound slowly. Only the height that a fast
+/// run adds is a defect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     heights: Vec<f64>,

@@ -1,42 +1,11 @@
 //! Numbers that describe the settled coil as a whole, as the machine sees them.
 
 use super::coil::{Coil, Record};
+use super::defect::{DefectFlags, DefectPlace};
 use super::station::Station;
 use super::{STATIONS_PER_TURN, Verdict};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
-
-/// Kinds of defect that are measured on settled wire.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum DefectKind {
-    Bulge = 0,
-    Gap = 1,
-    Overlap = 2,
-}
-
-impl DefectKind {
-    pub(crate) const ALL: [Self; 3] = [Self::Bulge, Self::Gap, Self::Overlap];
-}
-
-/// Defects present in the settled wire. A flag falls only when the spindle unwinds the defect.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct DefectFlags {
-    /// wire stands off further than allowed
-    pub bulge: bool,
-    /// wire lies beside its place
-    pub gap: bool,
-    /// wire rides on its neighbour or has changed places with it
-    pub overlap: bool,
-}
-
-/// Where a defect was found: the end of the first run long enough to count.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct DefectPlace {
-    /// turn, from 1
-    pub turn: u32,
-    /// polar angle from the clamp within that turn, rad in 0..2 pi
-    pub angle: f64,
-}
 
 /// Largest values over the last 2 pi of settled wire, m; 0 before there is any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -65,7 +34,7 @@ impl Coil {
         self.raised().iter().sum()
     }
 
-    /// Where the latest defect was found.
+    /// Where the latest defect was found; `None` before the first.
     pub fn last_defect(&self) -> Option<DefectPlace> {
         let index = self.records.last()?.last_defect?;
         Some(DefectPlace {
@@ -74,7 +43,7 @@ impl Coil {
         })
     }
 
-    /// Worst of the last settled turn; the neighbourhood of the clamp is left out.
+    /// Largest values of the last settled turn, without the neighbourhood of the clamp.
     pub fn worst(&self) -> Worst {
         self.last_turn()
             .map(|record| &record.station)

@@ -1,8 +1,8 @@
 //! Measures and verdict of each turn.
 
 use super::coil::{Coil, Record};
+use super::defect::DefectKind;
 use super::runs::Run;
-use super::state::DefectKind;
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
@@ -14,7 +14,7 @@ const ALIGNED_SHARE: f64 = 0.95;
 /// ... and its root mean square below this many diameters.
 const ALIGNED_RMS: f64 = 0.05;
 
-/// What a turn looks like, mildest first. A turn with several defects has the last of them.
+/// Verdict on a turn, mildest first. A turn with several defects gets the worst.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
@@ -87,7 +87,7 @@ pub struct TurnMeasures {
     pub overlap_max: f64,
     /// largest geometric layer
     pub layer_max: u32,
-    /// what it comes to
+    /// verdict on the turn
     pub verdict: Verdict,
 }
 

@@ -40,8 +40,8 @@ pub(crate) struct Camera {
 }
 
 impl Camera {
-    /// Looks from `back` at the middle of `points` and comes as near as shows them all in `width` by
-    /// `height` pixels with a share `margin` left free on each side. `view_angle` is that of the
+    /// Looks from `back` at the middle of `points` and comes as near as shows them all in `width`
+    /// by `height` pixels with a share `margin` left free on each side. `view_angle` is that of the
     /// picture's width, rad.
     pub(crate) fn framing(
         points: &[V3],

@@ -100,7 +100,7 @@ impl History {
         Ok(history)
     }
 
-    /// The place reached, for [`Self::resume`].
+    /// The present end of the file, for [`Self::resume`].
     pub fn mark(&mut self) -> Result<Mark, OutputError> {
         self.flush()?;
         let counted = self.writer.get_ref();
@@ -110,8 +110,9 @@ impl History {
         })
     }
 
-    /// Goes on at a mark: what was written after it is cut off. `None` if the file is not there or is not the
-    /// one that the mark was made in.
+    /// Opens the file again at a mark and cuts off what was written after it.
+    ///
+    /// `None` if the file is not there or is not the one that the mark was made in.
     pub fn resume(path: &Path, mark: &Mark) -> Result<Option<Self>, OutputError> {
         let Ok(file) = File::options().read(true).write(true).open(path) else {
             return Ok(None);
@@ -146,7 +147,7 @@ impl History {
         Ok(())
     }
 
-    /// Puts what was written on disk.
+    /// Writes buffered rows to disk.
     pub fn flush(&mut self) -> Result<(), OutputError> {
         self.writer.flush().map_err(OutputError::io(&self.path))?;
         self.flushed = Instant::now();

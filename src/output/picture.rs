@@ -20,22 +20,23 @@ const SUPERSAMPLING: u32 = 2;
 const VIEW_ANGLE: f64 = 0.40;
 /// Angle between neighbouring triangles up to which the core is shaded as one round surface, rad.
 const CREASE: f64 = 0.6;
-/// Number of triangles that the wire's smoothness is kept to. More of them than pixels shows nothing.
+/// Number of triangles that the wire's smoothness is kept to. More of them than pixels shows
+/// nothing.
 const WIRE_TRIANGLES: usize = 1_500_000;
 /// Points of a wire's section: no corner shows in a short coil, and a long one has less to show.
 const SIDES: usize = 24;
 const FEWEST_SIDES: usize = 8;
 
-/// Surface of the core in its own frame.
+/// Surface of the core, core frame.
 #[derive(Clone, Copy, Debug)]
 pub struct CoreMesh<'a> {
-    /// m
+    /// positions, core frame, m
     pub vertices: &'a [V3],
-    /// three vertices each
+    /// three vertex indices each, counterclockwise from outside
     pub triangles: &'a [[u32; 3]],
 }
 
-/// What the wire's colour tells.
+/// How the wire is coloured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Colouring {
     /// wire at rest is copper, live wire blue
@@ -45,7 +46,7 @@ pub enum Colouring {
     Turn,
 }
 
-/// What is to be seen, from where.
+/// A coil and how it is seen.
 #[derive(Clone, Copy, Debug)]
 pub struct Picture<'a> {
     /// core, if any
@@ -54,7 +55,7 @@ pub struct Picture<'a> {
     pub wire: &'a Centreline,
     /// wire radius, m
     pub radius: f64,
-    /// what the wire's colour tells
+    /// how the wire is coloured
     pub colouring: Colouring,
     /// width and height, pixels
     pub size: (u32, u32),
@@ -63,7 +64,8 @@ pub struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    /// A 1200 x 900 picture, seen from the clamp's face, a little from the side and from above.
+    /// A picture of 1200 x 900 pixels, seen from the face of the clamp, a little from the side and
+    /// from above.
     pub fn new(core: Option<CoreMesh<'a>>, wire: &'a Centreline, radius: f64) -> Self {
         Self {
             core,

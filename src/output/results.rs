@@ -44,7 +44,7 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// For runs of this simulation's scene.
+    /// Builds the core of this simulation's scene.
     pub fn new(simulation: &Simulation) -> Result<Self, SimError> {
         Ok(Self {
             core: core_surface(&simulation.scene().core)?,
@@ -81,12 +81,14 @@ impl Snapshot {
     }
 }
 
-/// Writes `summary.json`, `turns.csv` and `stations.csv` (wire at rest) and, where there is a snapshot to
-/// write them with, `coil.vtp`, `core.vtp` and `coil.png` (all wire) into an existing folder. `wall_s` is the
-/// time computed so far, s.
+/// Writes the results of a run into an existing folder: `summary.json`, and `turns.csv` and
+/// `stations.csv` of wire at rest.
 ///
-/// A file that cannot be written keeps none of the others from being written; the first failure is
-/// returned.
+/// With a `snapshot` also `coil.vtp`, `core.vtp` and `coil.png` of all wire. `wall_s` is the time
+/// computed so far, s.
+///
+/// # Errors
+/// The first failure, after all other files have been written.
 pub fn write_results(
     directory: &Path,
     simulation: &Simulation,

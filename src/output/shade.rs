@@ -89,7 +89,7 @@ pub(crate) fn shade(material: &Material, normal: V3, light: &Lighting) -> V3 {
     material.colour.component_mul(&diffuse) + material.shine * highlight + sky * grazing
 }
 
-/// Background at a height in the picture, 0 at the top to 1 at the bottom.
+/// Colour of the background at a height in the picture, 0 at the top to 1 at the bottom.
 pub(crate) fn background(height: f64, aside: f64) -> V3 {
     let (top, bottom) = (V3::new(0.90, 0.92, 0.95), V3::new(0.62, 0.66, 0.72));
     let vignette = 1.0 - 0.22 * (aside * aside + (height - 0.45) * (height - 0.45));

@@ -28,7 +28,7 @@ struct TurnRow {
     layer_max: u32,
 }
 
-/// One row per turn.
+/// Writes `turns.csv`: one row per turn.
 pub fn write_turns(path: &Path, turns: &[TurnMeasures]) -> Result<(), OutputError> {
     write_rows(path, turns.iter().map(TurnRow::from), TURN_HEADER)
 }
@@ -56,7 +56,8 @@ struct StationRow {
     measured: u8,
 }
 
-/// One row per station, in the order of [`Coil::stations`](crate::measure::Coil::stations).
+/// Writes `stations.csv`: one row per station, in the order of
+/// [`Coil::stations`](crate::measure::Coil::stations).
 ///
 /// `angle` runs from the clamp without end, `polar` is `atan2(z, x)` in the core frame.
 pub fn write_stations<'a>(

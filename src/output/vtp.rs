@@ -233,7 +233,8 @@ impl<W: Write> Xml<W> {
     }
 }
 
-/// An array being written, a piece at a time: that of a long wire is larger than the run's own state.
+/// An array being written, a piece at a time: that of a long wire is larger than the run's own
+/// state.
 struct Numbers<'a, W: Write> {
     xml: &'a mut Xml<W>,
     text: String,

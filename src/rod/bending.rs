@@ -14,9 +14,9 @@ use crate::math::{Block, V3, add_outer};
 /// Smallest `1 + cos` of a turning angle: just short of a complete fold.
 pub(super) const FOLD: f64 = 1e-6;
 
-/// Below this square of the tangent of half an angle series stand for [`angle_over_tangent`], to 1e-16 ...
+/// Below this square of `tan(angle / 2)` the series of [`angle_over_tangent`] hold to 1e-16.
 pub(super) const SERIES: f64 = 0.012;
-/// ... its terms ...
+/// Terms of the series of [`angle_over_tangent`], by powers of the squared tangent.
 pub(super) const TERMS: [f64; 8] = [
     1.0,
     -1.0 / 3.0,
@@ -27,7 +27,7 @@ pub(super) const TERMS: [f64; 8] = [
     1.0 / 13.0,
     -1.0 / 15.0,
 ];
-/// ... and those of the derivative.
+/// Terms of the series of its derivative.
 pub(super) const SLOPE_TERMS: [f64; 7] = [
     -1.0 / 12.0,
     2.0 / 20.0,
@@ -38,7 +38,8 @@ pub(super) const SLOPE_TERMS: [f64; 7] = [
     -7.0 / 60.0,
 ];
 
-/// An edge at a length.
+/// Tension, stiffness and energy of an edge at a given length, with the plastic stretch of the last
+/// accepted instant.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Stretched {
     /// tension, N
@@ -49,8 +50,10 @@ pub struct Stretched {
     pub energy: f64,
 }
 
-/// Tension of an edge of unstretched length `rest` that is `length` long. It yields if it does so at
-/// the length `expected`, which an iteration may know better than its iterate.
+/// Tension of an edge of unstretched length `rest` (m) at `length` (m).
+///
+/// The branch, elastic or yielding, is that at the length `expected` (m), where an iteration may
+/// know it better than at its iterate.
 #[inline]
 pub fn stretched(law: &Law, state: &Scalar, rest: f64, length: f64, expected: f64) -> Stretched {
     let promised = law.modulus * (expected / rest - 1.0 - state.strain);
@@ -76,26 +79,31 @@ pub fn stretched(law: &Law, state: &Scalar, rest: f64, length: f64, expected: f6
     }
 }
 
-/// A joint between two edges: derivatives with respect to the edge vectors before and after it.
+/// Energy of a joint between two edges, and its derivatives by the edge vectors before and after
+/// it.
+///
+/// For a joint with twist ([`super::twisted()`]) the part without rolls.
 #[derive(Clone, Copy, Debug)]
 pub struct Bent {
     /// energy, J
     pub energy: f64,
-    /// its gradient, N
+    /// gradient by the edge vector before the joint, N
     pub before: V3,
-    /// its gradient, N
+    /// gradient by the edge vector after the joint, N
     pub after: V3,
-    /// Gauss-Newton Hessian, N/m: before-before and after-after
+    /// Gauss-Newton Hessian, before-before and after-after, N/m
     pub own: [Symmetric; 2],
-    /// its rest: rows before, columns after
+    /// Gauss-Newton Hessian, rows before, columns after, N/m
     pub cross: Block,
     /// set where the law may change its branch
     pub yield_branch: Option<YieldBranch>,
 }
 
-/// Bending of a joint between edges of directions `t` and inverse lengths `il`.
+/// Bending of a joint between two edges without twist.
 ///
-/// `set` is the plastic curvature as a vector, 1/m; `rise` the rise of its yield moment.
+/// `t` are the unit directions of the edges and `il` their inverse lengths, 1/m; `set` is the
+/// plastic curvature as a vector, 1/m, in the frame of `t`; `rise` the rise of the yield moment,
+/// N m; `lv` the Voronoi length, m.
 #[inline]
 pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) -> Bent {
     let chi = (1.0 + t[0].dot(t[1])).max(FOLD);
@@ -185,10 +193,10 @@ fn scaled_identity(c: f64) -> Block {
     [[c, 0.0, 0.0], [0.0, c, 0.0], [0.0, 0.0, c]]
 }
 
-/// A symmetric block by its lower half, row by row.
+/// A symmetric 3 by 3 block of a Hessian by its lower half, row by row.
 pub type Symmetric = [f64; 6];
 
-/// Adds `c a a^T`.
+/// Adds `c a a^T` to `m`.
 #[inline]
 pub fn add_square(m: &mut Symmetric, a: &V3, c: f64) {
     let b = a * c;
@@ -211,8 +219,8 @@ fn add_pair(m: &mut Symmetric, a: &V3, b: &V3) {
     m[5] += 2.0 * a.z * b.z;
 }
 
-/// Moment, energy per length, stiffness along and across the moment, its direction (none where that does not
-/// matter).
+/// Moment, energy per length, stiffness along and across the moment, its direction (none where that
+/// does not matter).
 #[inline(always)]
 pub(super) fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3) {
     let n2 = trial.norm_squared();
@@ -244,7 +252,7 @@ pub(super) fn respond(law: &Law, trial: V3, rise: f64) -> (V3, f64, f64, f64, V3
     )
 }
 
-/// Turning angle as a vector of the curvature binormal's direction, from two unit directions.
+/// Turning angle between two unit directions, rad, as a vector along their common normal.
 #[inline]
 pub fn turning(t: [&V3; 2]) -> V3 {
     let chi = (1.0 + t[0].dot(t[1])).max(FOLD);

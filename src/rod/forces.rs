@@ -16,11 +16,11 @@ use serde::{Deserialize, Serialize};
 /// The three laws of a section, ready for use in a loop.
 #[derive(Clone, Copy, Debug)]
 pub struct Laws {
-    /// force over stretch
+    /// tension (N) over stretch
     pub stretch: Law,
-    /// moment over curvature
+    /// moment (N m) over curvature (1/m)
     pub bend: Law,
-    /// torque over twist per length
+    /// torque (N m) over twist per length (1/m)
     pub twist: Law,
 }
 
@@ -36,7 +36,7 @@ impl Laws {
     }
 }
 
-/// Forces of one evaluation.
+/// Forces on a rod, lab frame, and energies of one evaluation.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Load {
     /// force per node, N
@@ -83,7 +83,7 @@ pub struct ForceParts {
 ///
 /// `clamp` holds the frames that clamp the wire's direction at its two ends (lab frame; the
 /// body z axis is the direction of the wire there). `roll` is the angle by which each edge has
-/// spun about itself since its frame was taken over.
+/// turned about its axis since its frame was taken over, rad.
 pub fn internal_forces(
     rod: &mut Rod,
     laws: &Laws,
@@ -176,7 +176,7 @@ pub fn internal_forces(
     }
 }
 
-/// Stored (elastic) energy: stretch of edges `from..`, bending and twist of joints `from..`, J.
+/// Stored (elastic) energy of the rod, J: of bending, twist and stretch.
 ///
 /// The end joints count where a clamp is given.
 pub fn stored_energy(rod: &Rod, laws: &Laws, clamp: &[Option<Quat>; 2], twist: bool) -> [f64; 3] {

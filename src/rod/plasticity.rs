@@ -10,13 +10,13 @@ use serde::{Deserialize, Serialize};
 /// A bilinear law: elastic modulus, hardening, yield limit, optional cap on the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
-    /// elastic modulus (force per strain)
+    /// elastic modulus, force per strain: N, or N m^2 for moments over curvatures
     pub modulus: f64,
-    /// hardening modulus H
+    /// hardening modulus H, unit of `modulus`
     pub hardening: f64,
-    /// yield limit of virgin material
+    /// yield limit of virgin material, N or N m
     pub limit: f64,
-    /// the limit never grows past this
+    /// value that the limit never exceeds, N or N m
     pub cap: f64,
 }
 
@@ -75,13 +75,14 @@ impl Law {
 /// Plastic state of a scalar law (stretch, twist).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scalar {
-    /// plastic strain
+    /// plastic strain: stretch, or twist per length in 1/m
     pub strain: f64,
-    /// rise of the yield limit
+    /// rise of the yield limit, N or N m
     pub rise: f64,
 }
 
-/// Force at a total strain, the state after it, and the plastic work done on the way, per length.
+/// Force at a total strain (N, or N m for twist), the plastic state there, and the plastic work
+/// done on the way, J/m.
 #[inline]
 pub fn respond_scalar(law: &Law, state: &Scalar, strain: f64) -> (f64, Scalar, f64) {
     let trial = law.modulus * (strain - state.strain);
@@ -97,17 +98,19 @@ pub fn respond_scalar(law: &Law, state: &Scalar, strain: f64) -> (f64, Scalar, f
     (law.modulus * (strain - next.strain), next, work)
 }
 
-/// Plastic `work` beyond what the mean of the forces `before` and `after` a step does on its `way` of plastic strain, per length.
+/// Plastic `work` of a step (J/m) less the work of the mean of the forces `before` and `after` it
+/// on the increment `way` of plastic strain.
 ///
-/// On the elastic part of the way the mean of the two is exact. Where a step ends yielding that began yielding the other way it is
-/// nothing, and so would be the work.
+/// The energy balance needs it: its sums over a step take forces as that mean, which is exact while
+/// the law is elastic. Where a step ends yielding against the way in which it began, the mean
+/// vanishes although plastic work is done.
 #[inline]
 pub fn beyond<const N: usize>(before: [f64; N], after: [f64; N], way: [f64; N], work: f64) -> f64 {
     let mean = |k: usize| 0.5 * (before[k] + after[k]) * way[k];
     work - (0..N).map(mean).sum::<f64>()
 }
 
-/// Plastic state of bending: curvature in the joint's mid frame, yield on its norm.
+/// Plastic state of bending, in the joint's mid frame; the norm of the moment yields.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Bend {
     /// plastic curvature, 1/m
@@ -116,7 +119,8 @@ pub struct Bend {
     pub rise: f64,
 }
 
-/// Moment at a total curvature, the state after it, and the plastic work per length.
+/// Moment (N m) at a total curvature (1/m), both in the mid frame; the plastic state there, and the
+/// plastic work, J/m.
 #[inline]
 pub fn respond_bend(law: &Law, state: &Bend, curvature: [f64; 2]) -> ([f64; 2], Bend, f64) {
     let trial = [

@@ -10,7 +10,7 @@ pub struct Section {
     pub diameter: f64,
     /// density, kg/m^3
     pub density: f64,
-    /// elastic and plastic stretch rigidity, N
+    /// elastic stretch rigidity, N
     pub ea: f64,
     /// tangent stretch rigidity above yield, N
     pub ea_p: f64,

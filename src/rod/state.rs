@@ -6,7 +6,8 @@ use crate::math::{Quat, V3};
 use crate::math::{align, frame_along, rotate};
 use serde::{Deserialize, Serialize};
 
-/// Arrays over `n + 1` nodes and `n` edges, lab frame.
+/// Positions, velocities, frames and plastic state of a rod of `n + 1` nodes and `n` edges, lab
+/// frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Rod {
     /// node positions, m
@@ -25,7 +26,8 @@ pub struct Rod {
     pub bend: Vec<Bend>,
     /// plastic twist per joint (node)
     pub twist: Vec<Scalar>,
-    /// length that the first joint leaves to the second, m: see [`Rod::refine_clamp`]; no scene has it
+    /// Voronoi length moved from the first joint to the second by [`Rod::refine_clamp`], m; 0 in
+    /// every scene
     #[serde(skip)]
     pub lead: f64,
 }
@@ -54,18 +56,20 @@ impl Rod {
         }
     }
 
-    /// Length of the first edge over that of all others with which a clamp at the start is exact to one order more
-    /// after [`Rod::refine_clamp`].
+    /// Length of the first edge over that of all others with which a clamp at the start is exact to
+    /// one order more after [`Rod::refine_clamp`].
     pub const FIRST_EDGE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-    /// Makes a clamp at the start exact to third order: fourth if the first edge is [`Rod::FIRST_EDGE`] of the next.
+    /// Makes a clamp at the start exact to third order: fourth if the first edge is
+    /// [`Rod::FIRST_EDGE`] of the next.
     ///
-    /// A joint bends the wire as much as the length does that it stands for. So where the wire is clamped its slope and place
-    /// are quadratures over the joints, by the trapezoid rule, whose error is that of the end: `h^2/12` of the
-    /// integrand's slope there, `h^2/6` of the wire's change of curvature as an angle all along the wire. A share of the first
-    /// joint given to the second takes it away (Gregory's rule, with weights 5/12 and 13/12 for even edges), and a
-    /// first edge shorter by `1/sqrt 2` the next term too, from `a + b = l0 + h/2`, `b l0 = (l0^2 + h l0)/2 + h^2/12`,
-    /// `b l0^2 = l0 (l0 + h)(2 l0 + h)/6`.
+    /// A joint bends the wire as much as its Voronoi length. So slope and position of clamped wire
+    /// are quadratures over the joints by the trapezoid rule, whose error comes from the end:
+    /// `h^2/12` of the integrand's slope there, or `h^2/6` of the wire's change of curvature as an
+    /// angle all along the wire. Moving a share of the first joint to the second removes it
+    /// (Gregory's rule, with weights 5/12 and 13/12 for even edges). A first edge shorter by
+    /// `1/sqrt 2` removes the next term too, from `a + b = l0 + h/2`,
+    /// `b l0 = (l0^2 + h l0)/2 + h^2/12`, `b l0^2 = l0 (l0 + h)(2 l0 + h)/6`.
     pub fn refine_clamp(&mut self) {
         if let [first, second, ..] = self.rest[..] {
             self.lead = second * second / (12.0 * first);
@@ -82,8 +86,8 @@ impl Rod {
         self.x.len()
     }
 
-    /// Length that joint `i` stands for: half of each neighbouring edge (at a clamped end only
-    /// the one inside edge), and what the first leaves to the second, m.
+    /// Voronoi length of joint `i`, m: half of each neighbouring edge (at an end of the one edge),
+    /// with [`Rod::lead`] moved from the first joint to the second.
     pub fn voronoi(&self, i: usize) -> f64 {
         let before = if i > 0 { self.rest[i - 1] } else { 0.0 };
         let after = if i < self.edges() { self.rest[i] } else { 0.0 };
@@ -101,7 +105,7 @@ impl Rod {
         d / d.norm()
     }
 
-    /// Sets every frame along its edge again after the nodes were moved by hand.
+    /// Turns every frame onto the present direction of its edge, the shortest way.
     pub fn realign(&mut self) {
         for j in 0..self.edges() {
             let t = self.tangent(j);

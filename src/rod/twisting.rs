@@ -1,14 +1,15 @@
-//! A joint of the rod with twist, for the implicit solver: energy, gradient and Gauss-Newton Hessian.
+//! A joint of the rod with twist, for the implicit solver: energy, gradient and Gauss-Newton
+//! Hessian.
 //!
 //! Energy, laws and plastic state are those of [`super::forces`]: two bending angles and a twist
-//! angle between the material frames of neighbouring edges ([`Joint`]). Unknowns are the edge vectors
-//! and one roll per edge. The frame of an edge is the one it had at the last accepted instant, turned
-//! the shortest way onto the edge and then rolled about it. Where the edge turns by `dt`, its frame
-//! turns by `t x dt + (roll + c . dt) t`: `c` is what the shortest way from a fixed start
-//! adds to the shortest way from here. The Hessian is `J^T C J`, with `J` the derivative of the
-//! three angles and `C` the tangents of their laws. A bending law knows no direction, so `J` may look at
-//! the trial moment from a frame that rolls along with the edges in part. The part is the one with which a joint
-//! whose edges roll alike has the right stiffness: none for elastic wire, which does not feel it.
+//! angle between the material frames of neighbouring edges ([`Joint`]). Unknowns are the edge
+//! vectors and one roll per edge. The frame of an edge is the one it had at the last accepted
+//! instant, turned the shortest way onto the edge and then rolled about it. Where the edge turns by
+//! `dt`, its frame turns by `t x dt + (roll + c . dt) t`: `c` is what the shortest way from a fixed
+//! start adds to the shortest way from here. The Hessian is `J^T C J`, with `J` the derivative of
+//! the three angles and `C` the tangents of their laws. The bending law is isotropic, so `J` may
+//! take the trial moment in a frame that follows a part of the common roll of the edges. That part
+//! gives a joint whose edges roll alike its exact stiffness, which is 0 for elastic wire.
 
 use super::bending::{Bent, Symmetric, add_square, respond};
 use super::forces::Laws;
@@ -27,12 +28,13 @@ pub struct Turned {
     along: V3,
     /// inverse length, 1/m; 0 for a clamp
     inverse: f64,
-    /// see `c` above
+    /// `c` of the module's formula
     detour: V3,
 }
 
 impl Turned {
-    /// An edge of direction `along`, rolled by `roll` since it had the frame `from` and the direction `start`.
+    /// An edge of unit direction `along` and inverse length `inverse` (1/m), rolled by `roll` (rad)
+    /// since it had the frame `from` and the direction `start`.
     #[inline]
     pub fn edge(from: &Quat, start: &V3, along: V3, inverse: f64, roll: f64) -> Self {
         Self {
@@ -53,7 +55,7 @@ impl Turned {
         }
     }
 
-    /// A clamp.
+    /// A clamp with a frame that does not move.
     pub fn clamp(frame: Quat) -> Self {
         Self {
             frame,
@@ -63,7 +65,7 @@ impl Turned {
         }
     }
 
-    /// Its frame.
+    /// Frame of the edge.
     #[cfg(test)]
     pub(super) fn frame(&self) -> Quat {
         self.frame
@@ -91,8 +93,8 @@ impl Turned {
         )
     }
 
-    /// Derivative of an angle with respect to edge vector and roll, where `row` is that with
-    /// respect to the rotation of the frame.
+    /// Derivative of an angle by the edge vector (1/m) and by the roll of the edge; `row` is its
+    /// derivative by the rotation of the frame.
     #[inline]
     pub fn derivative(&self, row: &V3) -> (V3, f64) {
         let roll = row.dot(&self.along);
@@ -101,7 +103,8 @@ impl Turned {
     }
 }
 
-/// The part of a joint that rolls have a share in; index 0 is the edge before, 1 the edge after it.
+/// Derivatives of the energy of a joint in which the rolls of its edges take part; index 0 is the
+/// edge before the joint, 1 the edge after it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rolled {
     /// derivative of the energy with respect to the rolls, N m
@@ -112,7 +115,7 @@ pub struct Rolled {
     pub with: [[V3; 2]; 2],
 }
 
-/// How a joint answers to its angles.
+/// Moments, stiffnesses and energy of a joint at given angles.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Answer {
     pub(super) energy: f64,
@@ -123,13 +126,14 @@ pub(super) struct Answer {
     pub(super) torque: f64,
     /// stiffness against angles along and across the moment, and of twist, N m
     pub(super) stiffness: [f64; 3],
-    /// part of its edges' common roll that the frame the moment is looked at from follows, see above
+    /// part of the common roll of the edges that the frame of the moment follows, see the module
     pub(super) free: f64,
     /// set where the law may change its branch; without derivatives of the angle
     pub(super) yield_branch: Option<YieldBranch>,
 }
 
-/// Answer of a joint that stands for the length `lv` and turns by `angle` and `twist_angle`.
+/// Moments, stiffnesses and energy of a joint of Voronoi length `lv` (m) at the bending angles
+/// `angle` and the twist `twist_angle`, rad.
 #[inline(always)]
 pub(super) fn answer(
     laws: &Laws,
@@ -151,7 +155,8 @@ pub(super) fn answer(
     };
     let n = trial.norm();
     let d = if n > 0.0 { trial * (1.0 / n) } else { V3::x() };
-    // a joint whose edges roll alike sees its curvature turn: the energy curves by `curved (curved - elastic)` there
+    // a joint whose edges roll alike sees its curvature turn: the energy curves by `curved (curved
+    // - elastic)` there
     let curved = (angle[0] * d.x + angle[1] * d.y) * inv;
     let kept = (curved * (curved - n / laws.bend.modulus)).max(0.0).sqrt();
     let free = if n > 0.0 {
@@ -187,7 +192,7 @@ pub(super) fn twist_by([before, after]: [&Turned; 2]) -> [(V3, f64); 2] {
     [(-w0, -r0), (w1, r1)]
 }
 
-/// Bending and twist of a joint that stands for the length `lv`.
+/// Bending and twist of a joint of Voronoi length `lv`, m.
 #[inline]
 pub fn twisted(
     laws: &Laws,
@@ -198,8 +203,8 @@ pub fn twisted(
 ) -> (Bent, Rolled) {
     let joint = Joint::between(&before.frame, &after.frame);
     let law = answer(laws, bend, twist, lv, joint.bend, joint.twist);
-    // derivatives of the angles with respect to the rotation of the edge after against the one before, for bending
-    // along the moment and across it
+    // derivatives of the angles with respect to the rotation of the edge after against the one
+    // before, for bending along the moment and across it
     let rows = joint.rows();
     let (d, free) = (law.along, law.free);
     let turn = before.frame_matrix();
@@ -268,7 +273,8 @@ mod tests {
 
     const LV: f64 = 0.5e-3;
 
-    /// A joint: where its edges were at the last instant, how their frames stand, and its plastic state.
+    /// A joint: where its edges were at the last instant, how their frames stand, and its plastic
+    /// state.
     #[derive(Clone, Copy, Debug)]
     struct Setting {
         frames: [Quat; 2],
@@ -428,7 +434,8 @@ mod tests {
             }
         }
 
-        /// What is minimised is what is committed: the forces of the explicit path at the same place.
+        /// What is minimised is what is committed: the forces of the explicit path at the same
+        /// place.
         #[test]
         fn forces_are_those_of_the_joints(now in [edge(), edge()], was in [edge(), edge()], rolls in prop::array::uniform2(-0.6..0.6f64)) {
             use crate::rod::{ForceParts, Load, Rod, internal_forces, stored_energy};
@@ -453,7 +460,8 @@ mod tests {
             for k in 0..2 {
                 prop_assert!((rolled.torque[k] + load.torque[k]).abs() < 1e-14);
             }
-            // without the detour of the shortest way from the last instant, which the torque does work on
+            // without the detour of the shortest way from the last instant, which the torque does
+            // work on
             let first = bent.before - a.detour * (rolled.torque[0] * a.inverse);
             let last = bent.after - b.detour * (rolled.torque[1] * b.inverse);
             let scale = first.norm() + last.norm();

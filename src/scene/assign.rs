@@ -2,24 +2,23 @@
 
 use super::SceneError;
 use super::key::{Key, resolve};
-use crate::settings::{Place, SceneSettings};
-use crate::signals::Inputs;
+use crate::settings::{Origin, SceneSettings};
 use crate::variables::{Access, Kind, Value, Variable, by_name, parse_scaled, scaled, table};
 
 impl SceneSettings {
     /// Sets a leaf by name, with or without unit: `wire.diameter`, `wire.diameter_mm`.
     /// Leaves everything as it was on an error.
     pub fn set(&mut self, name: &str, value: Value) -> Result<(), SceneError> {
-        self.set_from(name, Given::Value(value), Place::Set)
+        self.set_from(name, Given::Value(value), Origin::Set)
     }
 
-    /// The same from a text, as in `--set NAME=VALUE`.
+    /// Sets a leaf by name from a text, as in `--set NAME=VALUE`.
     pub fn set_text(&mut self, name: &str, text: &str) -> Result<(), SceneError> {
-        self.set_from(name, Given::Text(text), Place::Set)
+        self.set_from(name, Given::Text(text), Origin::Set)
     }
 
-    /// The settings that result from parameters set one by one, in whatever order: defaults, then
-    /// the scene that `scene.file` names, then every other parameter.
+    /// The settings from parameters in any order: defaults, then the scene that `scene.file` names,
+    /// then every other parameter.
     pub fn from_parameters<'a>(
         parameters: impl Iterator<Item = (&'a Variable, Value)> + Clone,
     ) -> Result<Self, SceneError> {
@@ -34,30 +33,16 @@ impl SceneSettings {
         Ok(settings)
     }
 
-    /// Inputs before the first step: core at rest, nozzle where the programme starts, set tension.
-    pub fn start_inputs(&self) -> Inputs {
-        Inputs {
-            spindle_speed: 0.0,
-            nozzle_position: self.nozzle.y_start + self.traverse.lead,
-            tension_setpoint: self.tensioner.tension,
-        }
-    }
-
-    /// Who set a leaf.
-    pub fn place(&self, name: &str) -> Place {
-        self.places.get(name).cloned().unwrap_or_default()
-    }
-
     pub(super) fn set_from(
         &mut self,
         name: &str,
         given: Given<'_>,
-        place: Place,
+        origin: Origin,
     ) -> Result<(), SceneError> {
-        let Key { variable, scale } = resolve(name, &given.to_string(), &place)?;
+        let Key { variable, scale } = resolve(name, &given.to_string(), &origin)?;
         if variable.name == "scene.file" {
             return Err(SceneError::Impossible {
-                place,
+                origin,
                 key: name.into(),
                 value: given.to_string().into(),
                 reason: "a scene is loaded before single values are set".into(),
@@ -65,7 +50,7 @@ impl SceneSettings {
             });
         }
         let wrong_type = |found: &str| SceneError::WrongType {
-            place: place.clone(),
+            origin: origin.clone(),
             key: name.into(),
             value: given.to_string().into(),
             found: found.into(),
@@ -100,7 +85,7 @@ impl SceneSettings {
         };
         if !variable.admits(&value) {
             return Err(SceneError::OutOfRange {
-                place,
+                origin,
                 key: name.into(),
                 value: given.to_string().into(),
                 allowed: variable.allowed().into(),
@@ -108,12 +93,12 @@ impl SceneSettings {
         }
         if let Access::Parameter { set, .. } = variable.access {
             set(self, value);
-            self.places.insert(variable.name, place);
+            self.origins.insert(variable.name, origin);
         }
         Ok(())
     }
 
-    /// A leaf's value in words, with its unit.
+    /// The value of a leaf as text with its unit, for messages.
     pub(super) fn shown(&self, name: &str) -> String {
         match by_name(name).map(|v| (v, v.access)) {
             Some((v, Access::Parameter { get, .. })) => {
@@ -124,7 +109,7 @@ impl SceneSettings {
         }
     }
 
-    /// Checks every leaf against its row, whoever wrote it.
+    /// Checks every leaf against its row of the variable table.
     pub(super) fn check_ranges(&self) -> Result<(), SceneError> {
         for variable in table() {
             let Access::Parameter { get, .. } = variable.access else {
@@ -133,7 +118,7 @@ impl SceneSettings {
             let value = get(self);
             if !variable.admits(&value) {
                 return Err(SceneError::OutOfRange {
-                    place: self.place(variable.name),
+                    origin: self.origin(variable.name),
                     key: variable.name.into(),
                     value: value.to_string().into(),
                     allowed: variable.allowed().into(),

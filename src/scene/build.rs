@@ -2,6 +2,7 @@
 
 use super::error::Warning;
 use super::features::{Decisions, Features, LiveContact};
+use super::impossible::si;
 use super::material::section;
 use super::{Core, Integrator, Preset, Scene, SceneError, Solver};
 use crate::rod::Section;
@@ -11,26 +12,23 @@ use std::path::{Path, PathBuf};
 
 /// Node spacing near the core that goes with a tolerance, m: 0.4 mm to 2e-6 m.
 ///
-/// Above, steps are as the cube root of the tolerance, and both time and space are of second order: a
-/// spacing as that root too keeps the shares of the error that come from either (`fig8` at 1e-5 m and 0.4 mm:
-/// nearly all was from the steps).
+/// Above, steps are as the cube root of the tolerance, and both time and space are of second order:
+/// a spacing as that root too keeps the shares of the error that come from either (`fig8` at 1e-5 m
+/// and 0.4 mm: nearly all was from the steps).
 fn spacing_for(tolerance: f64) -> f64 {
     0.4e-3 * libm::cbrt((tolerance / 2e-6).max(1.0))
 }
 
-/// A length or force for a message: six digits are enough to act on.
-pub(super) fn si(x: f64) -> String {
-    let rounded = format!("{x:.5e}").parse().unwrap_or(x);
-    crate::variables::Value::Real(rounded).to_string()
-}
-
 impl SceneSettings {
-    /// The immutable scene, or the first thing that makes it impossible.
+    /// Checks the settings and derives the scene from them.
+    ///
+    /// # Errors
+    /// Names the first leaf that is out of range or contradicts another.
     pub fn build(&self) -> Result<Scene, SceneError> {
         self.build_with_warnings().map(|(scene, _)| scene)
     }
 
-    /// The scene, and what in it is possible but perhaps not meant.
+    /// [`Self::build`], with warnings of values that are possible but perhaps not meant.
     pub fn build_with_warnings(&self) -> Result<(Scene, Vec<Warning>), SceneError> {
         self.check_ranges()?;
         let mut wire = section(self)?;
@@ -77,22 +75,6 @@ impl SceneSettings {
         self.skip(&mut scene, &mut decisions)?;
         scene.skipped = decisions.0;
         Ok((scene, warnings))
-    }
-
-    /// An error about a leaf, with its place and value filled in.
-    pub(super) fn impossible(
-        &self,
-        key: &str,
-        reason: impl Into<Box<str>>,
-        allowed: impl Into<Box<str>>,
-    ) -> SceneError {
-        SceneError::Impossible {
-            place: self.place(key),
-            key: key.into(),
-            value: self.shown(key).into(),
-            reason: reason.into(),
-            allowed: allowed.into(),
-        }
     }
 
     fn core(&self) -> Result<(Core, Extent), SceneError> {
@@ -261,7 +243,7 @@ impl SceneSettings {
             ));
         }
         if self.friction.kinetic > self.friction.static_ {
-            let kinetic_given = self.places.contains_key("friction.kinetic");
+            let kinetic_given = self.origins.contains_key("friction.kinetic");
             let (key, allowed) = match kinetic_given {
                 true => (
                     "friction.kinetic",
@@ -344,7 +326,8 @@ impl SceneSettings {
         if near > coarsest {
             return Err(self.impossible("solver.spacing_near", "too coarse for this wire", range));
         }
-        // Contact of stiffness 1e10 N/m2 that is wrong by so much pushes harder than most wire is pulled.
+        // Contact of stiffness 1e10 N/m2 that is wrong by so much pushes harder than most wire is
+        // pulled.
         let most = 0.1 * d;
         if solver.tolerance > most * (1.0 + 1e-9) && solver.integrator == Integrator::Implicit {
             return Err(self.impossible(
@@ -382,9 +365,9 @@ impl SceneSettings {
     ) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let mut warn = |key: &'static str, message: String| {
-            let (place, value) = (self.place(key), self.shown(key));
+            let (origin, value) = (self.origin(key), self.shown(key));
             warnings.push(Warning {
-                place,
+                origin,
                 key,
                 value,
                 message,

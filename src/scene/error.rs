@@ -2,7 +2,7 @@
 //!
 //! Texts are `Box<str>`: a `Result` with five of them stays small enough to hand around.
 
-use crate::settings::Place;
+use crate::settings::Origin;
 use std::fmt;
 use thiserror::Error;
 
@@ -31,21 +31,21 @@ pub enum SceneError {
         reason: Box<str>,
     },
     /// The text is not TOML.
-    #[error("{place}: not valid TOML: {message}")]
+    #[error("{origin}: not valid TOML: {message}")]
     Syntax {
         /// file and line
-        place: Place,
+        origin: Origin,
         /// of the parser
         message: Box<str>,
     },
     /// A section that scenes do not have.
     #[error(
-        "{place}: unknown section [{section}]{}; sections are {allowed}",
+        "{origin}: unknown section [{section}]{}; sections are {allowed}",
         also(suggestion)
     )]
     UnknownSection {
         /// file and line
-        place: Place,
+        origin: Origin,
         /// as given
         section: Box<str>,
         /// nearest known section
@@ -55,12 +55,12 @@ pub enum SceneError {
     },
     /// A key that scenes do not have.
     #[error(
-        "{place}: unknown key {key} (value {value}){}; {allowed}",
+        "{origin}: unknown key {key} (value {value}){}; {allowed}",
         also(suggestion)
     )]
     UnknownKey {
         /// file and line
-        place: Place,
+        origin: Origin,
         /// as given, with its section
         key: Box<str>,
         /// as given
@@ -71,10 +71,10 @@ pub enum SceneError {
         allowed: Box<str>,
     },
     /// A known key with the unit of something else.
-    #[error("{place}: {key} = {value}: {stem} cannot have this unit; allowed are {allowed}")]
+    #[error("{origin}: {key} = {value}: {stem} cannot have this unit; allowed are {allowed}")]
     WrongUnit {
         /// file and line
-        place: Place,
+        origin: Origin,
         /// as given
         key: Box<str>,
         /// as given
@@ -86,11 +86,11 @@ pub enum SceneError {
     },
     /// The same leaf given twice in one file, perhaps in two units.
     #[error(
-        "{place}: {key} = {value}: {leaf} was already given as {first}; allowed is one of the two"
+        "{origin}: {key} = {value}: {leaf} was already given as {first}; allowed is one of the two"
     )]
     Repeated {
         /// file and line
-        place: Place,
+        origin: Origin,
         /// as given
         key: Box<str>,
         /// as given
@@ -101,10 +101,10 @@ pub enum SceneError {
         first: Box<str>,
     },
     /// A text where a number belongs, and the like.
-    #[error("{place}: {key} = {value} is {found}; allowed is {allowed}")]
+    #[error("{origin}: {key} = {value} is {found}; allowed is {allowed}")]
     WrongType {
         /// file and line
-        place: Place,
+        origin: Origin,
         /// as given
         key: Box<str>,
         /// as given
@@ -115,10 +115,10 @@ pub enum SceneError {
         allowed: Box<str>,
     },
     /// A value outside the range of its row.
-    #[error("{place}: {key} = {value} is out of range; allowed: {allowed}")]
+    #[error("{origin}: {key} = {value} is out of range; allowed: {allowed}")]
     OutOfRange {
         /// file and line
-        place: Place,
+        origin: Origin,
         /// as given
         key: Box<str>,
         /// as given
@@ -127,10 +127,10 @@ pub enum SceneError {
         allowed: Box<str>,
     },
     /// A value that the rest of the scene makes impossible.
-    #[error("{place}: {key} = {value} is impossible here: {reason}; allowed: {allowed}")]
+    #[error("{origin}: {key} = {value} is impossible here: {reason}; allowed: {allowed}")]
     Impossible {
         /// where the value came from
-        place: Place,
+        origin: Origin,
         /// name in the variable table
         key: Box<str>,
         /// in SI, with unit
@@ -146,7 +146,7 @@ pub enum SceneError {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Warning {
     /// where the value came from
-    pub place: Place,
+    pub origin: Origin,
     /// name in the variable table
     pub key: &'static str,
     /// in SI, with unit
@@ -160,7 +160,7 @@ impl fmt::Display for Warning {
         write!(
             f,
             "{}: {} = {}: {}",
-            self.place, self.key, self.value, self.message
+            self.origin, self.key, self.value, self.message
         )
     }
 }

@@ -3,7 +3,7 @@
 use super::SceneError;
 use super::assign::Given;
 use super::key::{nearest, resolve, sections};
-use crate::settings::Place;
+use crate::settings::Origin;
 use crate::settings::SceneSettings;
 use crate::variables::Value;
 use std::collections::BTreeMap;
@@ -52,16 +52,17 @@ impl SceneSettings {
         Self::from_toml_str(&text, name_or_path, path.parent().unwrap_or(Path::new("")))
     }
 
-    /// Defaults, then what the text gives. `file_name` is what messages call it; paths inside are
-    /// relative to `base_dir`.
+    /// Reads a scene from a TOML text; leaves that it does not give keep their defaults.
+    ///
+    /// Messages name `file_name`; paths in the text are relative to `base_dir`.
     pub fn from_toml_str(text: &str, file_name: &str, base_dir: &Path) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let at = |offset: Option<usize>| Place::File {
+        let at = |offset: Option<usize>| Origin::File {
             file: file_name.into(),
             line: offset.map(|o| 1 + text.bytes().take(o).filter(|&b| b == b'\n').count()),
         };
         let table = DeTable::parse(text).map_err(|error| SceneError::Syntax {
-            place: at(error.span().map(|s| s.start)),
+            origin: at(error.span().map(|s| s.start)),
             message: error.message().into(),
         })?;
 
@@ -75,18 +76,18 @@ impl SceneSettings {
         };
         let mut first_key = BTreeMap::new();
         let mut leaf = |settings: &mut Self, key: &str, offset, value: &DeValue<'_>| {
-            let (place, given) = (at(Some(offset)), given(value));
-            let name = resolve(key, &given.to_string(), &place)?.variable.name;
+            let (origin, given) = (at(Some(offset)), given(value));
+            let name = resolve(key, &given.to_string(), &origin)?.variable.name;
             if let Some(first) = first_key.insert(name, key.to_owned()) {
                 return Err(SceneError::Repeated {
-                    place,
+                    origin,
                     key: key.into(),
                     value: given.to_string().into(),
                     leaf: name.into(),
                     first: first.into(),
                 });
             }
-            settings.set_from(key, given, place)
+            settings.set_from(key, given, origin)
         };
 
         // In the order of the file, so that the first mistake is the one reported.
@@ -101,7 +102,7 @@ impl SceneSettings {
                 }
                 DeValue::Table(_) => {
                     return Err(SceneError::UnknownSection {
-                        place: at(Some(offset)),
+                        origin: at(Some(offset)),
                         section: name.into(),
                         suggestion: nearest(name, sections().into_iter())
                             .map(|s| format!("[{s}]").into()),
@@ -112,7 +113,7 @@ impl SceneSettings {
             }
         }
 
-        if settings.places.contains_key("core.file") && !settings.core.file.is_empty() {
+        if settings.origins.contains_key("core.file") && !settings.core.file.is_empty() {
             settings.core.file = base_dir
                 .join(&settings.core.file)
                 .to_string_lossy()

@@ -1,7 +1,7 @@
 //! Keys as people write them: exact, with a unit, or nearly right.
 
 use super::SceneError;
-use crate::settings::Place;
+use crate::settings::Origin;
 use crate::variables::{
     Causality, Kind, Scale, Variable, by_name, split_suffix, suffixes_of, table,
 };
@@ -16,7 +16,7 @@ pub(super) struct Key {
 }
 
 /// Finds the parameter that `name` means; `value` only serves the message.
-pub(super) fn resolve(name: &str, value: &str, place: &Place) -> Result<Key, SceneError> {
+pub(super) fn resolve(name: &str, value: &str, origin: &Origin) -> Result<Key, SceneError> {
     if let Some(variable) = parameter(name) {
         return Ok(Key {
             variable,
@@ -35,14 +35,14 @@ pub(super) fn resolve(name: &str, value: &str, place: &Place) -> Result<Key, Sce
             .chain(suffixes_of(variable.unit).map(with_unit))
             .collect();
         return Err(SceneError::WrongUnit {
-            place: place.clone(),
+            origin: origin.clone(),
             key: name.into(),
             value: value.into(),
             stem: stem.into(),
             allowed: allowed.join(", ").into(),
         });
     }
-    Err(unknown(name, value, place, split))
+    Err(unknown(name, value, origin, split))
 }
 
 fn parameter(name: &str) -> Option<&'static Variable> {
@@ -78,7 +78,7 @@ pub(super) fn nearest<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> O
 fn unknown(
     name: &str,
     value: &str,
-    place: &Place,
+    origin: &Origin,
     split: Option<(&str, &'static str, Scale)>,
 ) -> SceneError {
     let parameters = || {
@@ -125,7 +125,7 @@ fn unknown(
         format!("keys of [{section}]: {}", siblings.join(", "))
     };
     SceneError::UnknownKey {
-        place: place.clone(),
+        origin: origin.clone(),
         key: name.into(),
         value: value.into(),
         suggestion: suggestion.map(Into::into),
@@ -133,13 +133,14 @@ fn unknown(
     }
 }
 
-/// Whether a row's key may carry a unit at all, for listings.
+/// The unit suffixes that a key of this variable may carry, for listings.
 pub fn unit_suffixes(variable: &Variable) -> Vec<&'static str> {
     if variable.kind != Kind::Real || variable.causality != Causality::Parameter {
         return Vec::new();
     }
     suffixes_of(variable.unit).map(|s| s.0).collect()
 }
+
 /// Name and value of `NAME=VALUE`, as `--set` takes it.
 pub fn assignment(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {

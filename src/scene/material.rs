@@ -1,6 +1,7 @@
 //! From a material's name and a diameter to the rigidities and limits of a round section.
 
-use super::{SceneError, build::si};
+use super::SceneError;
+use super::impossible::si;
 use crate::rod::Section;
 use crate::settings::{SceneSettings, WireSettings};
 use std::f64::consts::PI;
@@ -168,7 +169,7 @@ fn rigidities(
     for (key_p, key, tangent, elastic, unit) in pairs {
         if tangent >= elastic && !wire.elastic {
             // Blame the one the user gave.
-            let (blamed, allowed) = match settings.places.contains_key(key_p) {
+            let (blamed, allowed) = match settings.origins.contains_key(key_p) {
                 true => (key_p, format!("less than {key}, {} {unit}", si(elastic))),
                 false => (key, format!("more than {key_p}, {} {unit}", si(tangent))),
             };

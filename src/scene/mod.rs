@@ -9,6 +9,7 @@ mod build;
 mod error;
 mod features;
 mod file;
+mod impossible;
 mod key;
 mod material;
 mod saved;
@@ -28,7 +29,7 @@ use crate::settings::{
 };
 use std::path::PathBuf;
 
-/// Everything a run needs to know; does not change while it runs.
+/// The description of a run, which does not change while it runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// packed name or file stem
@@ -47,9 +48,9 @@ pub struct Scene {
     pub tensioner: Tensioner,
     /// where the wire begins
     pub start: Start,
-    /// spindle programme of `coilwind run`
+    /// spindle motion profile of `coilwind run`
     pub spindle: Spindle,
-    /// traverse programme of `coilwind run`
+    /// traverse motion profile of `coilwind run`
     pub traverse: Traverse,
     /// contact law
     pub contact: Contact,
@@ -57,7 +58,7 @@ pub struct Scene {
     pub friction: Friction,
     /// solver settings
     pub solver: Solver,
-    /// what was left to the program, and what it does without
+    /// the program's decisions on settings that are `auto`
     pub skipped: Vec<Decision>,
     /// when wire at rest leaves the computation
     pub freeze: Freeze,
@@ -117,7 +118,7 @@ pub enum Integrator {
     Implicit,
 }
 
-/// What became of a setting that left the choice to the program.
+/// The program's decision on a setting that is `auto`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Decision {
     /// name of the setting

@@ -1,22 +1,22 @@
-//! Settings in a saved state: every leaf of the variable table with who set it.
+//! Settings in a saved state: every leaf of the variable table with its origin.
 //!
-//! Numbers in the bits they have, unlike a scene file, and leaves nobody set as well: another version's
-//! defaults may differ.
+//! Numbers are stored by their bits, unlike in a scene file. Leaves at their defaults are stored
+//! too, because another version's defaults may differ.
 
-use crate::settings::Place;
+use crate::settings::Origin;
 use crate::settings::SceneSettings;
 use crate::variables::{Access, Value, by_reference, table};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Name and file, then each leaf with its reference; who set it, unless it was nobody.
-type Saved = (String, String, Vec<(u32, Value, Option<Place>)>);
+/// Name and file, then each leaf with its reference, value and origin, unless it is the default.
+type Saved = (String, String, Vec<(u32, Value, Option<Origin>)>);
 
 impl Serialize for SceneSettings {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let leaves = table().iter().filter_map(|v| match v.access {
             Access::Parameter { get, .. } => {
-                Some((v.reference, get(self), self.places.get(v.name).cloned()))
+                Some((v.reference, get(self), self.origins.get(v.name).cloned()))
             }
             Access::Input { .. } | Access::Output(_) => None,
         });
@@ -29,7 +29,7 @@ impl<'de> Deserialize<'de> for SceneSettings {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let (name, file, leaves) = Saved::deserialize(deserializer)?;
         let mut settings = Self::default();
-        for (reference, value, place) in leaves {
+        for (reference, value, origin) in leaves {
             let variable = by_reference(reference)
                 .ok_or_else(|| D::Error::custom(format!("no parameter {reference}")))?;
             let Access::Parameter { set, .. } = variable.access else {
@@ -43,8 +43,8 @@ impl<'de> Deserialize<'de> for SceneSettings {
                 )));
             }
             set(&mut settings, value);
-            if let Some(place) = place {
-                settings.places.insert(variable.name, place);
+            if let Some(origin) = origin {
+                settings.origins.insert(variable.name, origin);
             }
         }
         (settings.name, settings.file) = (name, file);

@@ -1,14 +1,15 @@
 //! Every leaf of a scene as the user gives it: one flat set, defaults until something is set.
 
-mod place;
+mod origin;
 mod sections;
 
-pub use place::Place;
+pub use origin::Origin;
 pub use sections::{
     Contact, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse,
 };
 
 use crate::measure::DefectLimits;
+use crate::signals::Inputs;
 use std::collections::BTreeMap;
 
 /// The leaves of a scene, in SI units. A rigidity, limit or length of 0 is derived when the
@@ -36,8 +37,8 @@ pub struct SceneSettings {
     pub freeze: Freeze,
     pub defects: DefectLimits,
     pub output: Output,
-    /// who set a leaf, by its name; absent: default
-    pub(crate) places: BTreeMap<&'static str, Place>,
+    /// origin of each leaf that was set, by its name
+    pub(crate) origins: BTreeMap<&'static str, Origin>,
 }
 
 /// `[wire]`; 0 in a rigidity or limit: from the material.
@@ -96,6 +97,23 @@ pub struct SolverSettings {
     pub inertia: String,
     pub coarse_span: String,
     pub coarse_settled: String,
+}
+
+impl SceneSettings {
+    /// Inputs before the first step: core at rest, nozzle where the motion profile starts, set
+    /// tension.
+    pub fn start_inputs(&self) -> Inputs {
+        Inputs {
+            spindle_speed: 0.0,
+            nozzle_position: self.nozzle.y_start + self.traverse.lead,
+            tension_setpoint: self.tensioner.tension,
+        }
+    }
+
+    /// Where the value of a leaf came from, by the name of its variable.
+    pub fn origin(&self, name: &str) -> Origin {
+        self.origins.get(name).cloned().unwrap_or_default()
+    }
 }
 
 /// The scene of Fig. 8 with a section-consistent copper wire, and the settings of this program
@@ -185,7 +203,8 @@ impl Default for SceneSettings {
             freeze: Freeze {
                 enabled: true,
                 window: 1.0,
-                // ten periods of the free span's slowest ringing (60 mm of 0.7 mm wire at 15 N: 1.8 ms)
+                // ten periods of the free span's slowest ringing (60 mm of 0.7 mm wire at 15 N: 1.8
+                // ms)
                 time: 0.02,
                 creep: 2e-6,
                 patience: 0.75,
@@ -205,7 +224,7 @@ impl Default for SceneSettings {
                 history_interval: std::f64::consts::PI / 180.0,
                 directory: String::new(),
             },
-            places: BTreeMap::new(),
+            origins: BTreeMap::new(),
         }
     }
 }

@@ -43,7 +43,7 @@ impl Start {
     }
 }
 
-/// Spindle programme of a native run.
+/// Spindle motion profile of a native run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spindle {
     /// final speed about +y, rad/s
@@ -54,7 +54,7 @@ pub struct Spindle {
     pub turns: f64,
 }
 
-/// Traverse programme of a native run: nozzle y proportional to the core angle.
+/// Traverse motion profile of a native run: nozzle y proportional to the core angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Traverse {
     /// nozzle travel per turn of the spindle, m (sign: direction along y)

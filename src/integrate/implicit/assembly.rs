@@ -6,7 +6,7 @@
 use super::Work;
 use crate::linalg::Banded;
 use crate::math::V3;
-use crate::math::simd::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
+use crate::math::simd::{Columns, Lanes, Lanes3, ROWS, RowBlock, WithSimd, run};
 use crate::rod::YieldBranch;
 use crate::rod::batch::{
     BendingJoints, CROSS, GRADIENT, JOINT, Joints, OWN, ROLL_OWN, ROLL_WITH, TORQUE, TwistingJoints,
@@ -158,8 +158,8 @@ impl<const D: usize, J: Joints, const HESSIAN: bool> WithSimd for Gather<'_, D, 
         let Self(all, mut yield_branches, mut out) = self;
         let blocks = all.blocks();
         let edges = out.gradient.len() - 1;
-        let mut blocks_of_joints = [Block::<JOINT>::default(); 2];
-        let mut blocks_of_edges = [Block::<EDGE>::default(); 2];
+        let mut blocks_of_joints = [RowBlock::<JOINT>::default(); 2];
+        let mut blocks_of_edges = [RowBlock::<EDGE>::default(); 2];
         let [mut joints, mut next] = blocks_of_joints.each_mut();
         let [mut before, mut around] = blocks_of_edges.each_mut();
         // (made once: clearing them is a tenth of the work)
@@ -169,7 +169,7 @@ impl<const D: usize, J: Joints, const HESSIAN: bool> WithSimd for Gather<'_, D, 
             if block + 1 < blocks {
                 all.joints::<S, HESSIAN>(simd, block + 1, next, &mut yield_branches);
             } else {
-                *next = Block::default();
+                *next = RowBlock::default();
             }
             next.follow(joints);
             for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
@@ -200,9 +200,9 @@ impl<const D: usize, J: Joints, const HESSIAN: bool> WithSimd for Gather<'_, D, 
 #[inline(always)]
 fn edge<S: Simd, const HESSIAN: bool>(
     simd: S,
-    (t, stretch, joints): (Lanes3<S>, &Block<PULL>, &Block<JOINT>),
+    (t, stretch, joints): (Lanes3<S>, &RowBlock<PULL>, &RowBlock<JOINT>),
     first: usize,
-    out: &mut Block<EDGE>,
+    out: &mut RowBlock<EDGE>,
 ) {
     let pull = stretch.load(simd, TENSION, first, 1);
     let start = joints.load3(simd, GRADIENT[1], first, 1);
@@ -244,7 +244,7 @@ impl<const D: usize> Out<'_, D> {
     fn node<S: Simd, const HESSIAN: bool>(
         &mut self,
         simd: S,
-        (joints, edges): (&Block<JOINT>, &Block<EDGE>),
+        (joints, edges): (&RowBlock<JOINT>, &RowBlock<EDGE>),
         (row, force): (&mut [[f64; ROWS]; ROW], &mut [[f64; ROWS]; 5]),
         block: usize,
         first: usize,
@@ -315,7 +315,7 @@ impl<const D: usize> Out<'_, D> {
 
 /// What rolls put into the rows of nodes: that of the edge before a joint is an unknown of the node before it.
 #[inline(always)]
-fn rolls<S: Simd>(simd: S, joints: &Block<JOINT>, first: usize, row: &mut [[f64; ROWS]; ROW]) {
+fn rolls<S: Simd>(simd: S, joints: &RowBlock<JOINT>, first: usize, row: &mut [[f64; ROWS]; ROW]) {
     let back = joints.load3(simd, ROLL_WITH[1][0], first, 1);
     let on = joints.load3(simd, ROLL_WITH[1][1], first, 1);
     let from = joints.load3(simd, ROLL_WITH[0][0], first, 2);

@@ -4,7 +4,7 @@
 //! spacing and tight tolerance, since a single run scatters. Made by `coilwind bench W --store FILE`.
 
 use super::BenchError;
-use super::winding::Wound;
+use super::wound::{Extremes, Wound};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -26,18 +26,6 @@ pub struct Converged {
     pub scene: String,
     /// by spindle speed, ascending
     pub speeds: Vec<Speed>,
-}
-
-/// Smallest and largest tension of a turn.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Extremes {
-    /// N
-    #[serde(rename = "min_N")]
-    pub min: f64,
-    /// N
-    #[serde(rename = "max_N")]
-    pub max: f64,
 }
 
 /// Ensemble means at one spindle speed.
@@ -62,22 +50,6 @@ pub struct Speed {
     pub gap_scatter_m: f64,
     /// mean extremes of each turn of the spindle
     pub tension: Vec<Extremes>,
-}
-
-impl Extremes {
-    /// Of no values.
-    pub(super) fn none() -> Self {
-        Self {
-            min: f64::INFINITY,
-            max: f64::NEG_INFINITY,
-        }
-    }
-
-    /// With these as well.
-    pub(super) fn add(&mut self, min: f64, max: f64) {
-        self.min = self.min.min(min);
-        self.max = self.max.max(max);
-    }
 }
 
 impl Speed {

@@ -15,11 +15,12 @@ mod p5;
 mod record;
 mod watch;
 mod winding;
+mod wound;
 
 pub use args::{BenchArgs, Method, Problem};
-pub use converged::{Converged, Extremes, Speed};
+pub use converged::{Converged, Speed};
 pub use record::{Details, Outcome, Record};
-pub use winding::Wound;
+pub use wound::{Extremes, Wound};
 
 use crate::integrate::{
     RK4_LIMIT, SolverStatistics, VERLET_LIMIT, highest_frequency, longest_step,

@@ -1,9 +1,10 @@
 //! W: a whole scene along its own programme, against a converged run kept with it.
 
 use super::args::{BenchArgs, Method};
-use super::converged::{Converged, Extremes, Speed, rms};
+use super::converged::{Converged, Speed, rms};
 use super::record::{Details, Outcome, WindingDetails};
 use super::watch::Watch;
+use super::wound::{Extremes, Wound};
 use super::{BenchError, Problem, iterations, turn_length};
 use crate::measure::STATIONS_PER_TURN;
 use crate::scene::Scene;
@@ -29,17 +30,6 @@ const USUAL: f64 = 1e-5;
 const USUAL_DIAMETER: f64 = 0.7e-3;
 /// Free spacing over that near the core: a power of two, since edges are halved.
 const COARSER: [f64; 2] = [8.0, 2.0];
-
-/// What a run is judged by.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Wound {
-    /// bulge at the stations of turn 2, m; `None` where nothing is measured
-    pub bulge: Vec<Option<f64>>,
-    /// gap to turn 1 there, m; `None` where nothing is measured or no neighbour is found
-    pub gap: Vec<Option<f64>>,
-    /// tension extremes of each turn of the spindle
-    pub tension: Vec<Extremes>,
-}
 
 /// A run, its cost and what stopped it.
 struct Run {

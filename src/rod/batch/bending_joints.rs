@@ -2,7 +2,7 @@
 
 use super::{CROSS, GRADIENT, JOINT, Joints, LEAD, OWN, put_places, series};
 use crate::math::V3;
-use crate::math::simd::{Block, Columns, Lanes, Lanes3, ROWS, WithSimd, run};
+use crate::math::simd::{Columns, Lanes, Lanes3, ROWS, RowBlock, WithSimd, run};
 use crate::rod::bending::{FOLD, SERIES, SLOPE_TERMS, TERMS, angle_over_tangent, respond};
 use crate::rod::plasticity::{Bend, Law};
 use crate::rod::yield_branch::YieldBranch;
@@ -13,15 +13,15 @@ const ALONG: usize = 0;
 const INVERSE: usize = 3;
 const LENGTH: usize = 4;
 
-/// Columns of a joint's angle: curvature binormal over the length, `2/chi`, and what the angle is over its length with
-/// the derivative of that, see [`crate::rod::bent()`].
+/// Columns of a joint's angle: curvature binormal over the length, `2/chi`, and what the angle is
+/// over its length with the derivative of that, see [`crate::rod::bent()`].
 const KB: usize = 0;
 const F: usize = 3;
 const RATIO: usize = 4;
 const SLOPE: usize = 5;
 
-/// Columns of a joint's answer: moment, stiffness across it and how much more there is along it, direction of the moment
-/// where that matters.
+/// Columns of a joint's answer: moment, stiffness across it and how much more there is along it,
+/// direction of the moment where that matters.
 const ANSWER: usize = 8;
 const MOMENT: usize = 0;
 const ACROSS: usize = 3;
@@ -40,7 +40,7 @@ pub struct BendingJoints {
 }
 
 impl BendingJoints {
-    /// Number of edges, and directions of the clamps.
+    /// Takes over the number of edges and the unit directions of the clamps.
     pub fn begin(&mut self, edges: usize, clamps: [Option<V3>; 2]) {
         self.edges = edges;
         self.clamps = clamps;
@@ -51,12 +51,12 @@ impl BendingJoints {
         self.answer.fit(rows);
     }
 
-    /// Edges and angles with the nodes at `q`.
+    /// Computes edges and angles with the nodes at `q`, m.
     pub fn place(&mut self, q: &[V3]) {
         put_places(&mut self.places, q);
         run(Edges(self));
-        // the pass over the edges goes over the far clamp's row; without a clamp there is no joint, and any
-        // direction will do
+        // the pass over the edges goes over the far clamp's row; without a clamp there is no joint,
+        // and any direction will do
         for end in 0..2 {
             let along = self.clamps[end].unwrap_or(V3::z());
             for (k, x) in [along.x, along.y, along.z, 0.0].into_iter().enumerate() {
@@ -79,7 +79,7 @@ impl BendingJoints {
         }
     }
 
-    /// Direction of edge `j`.
+    /// Unit direction of edge `j`.
     #[inline]
     pub fn along(&self, j: usize) -> V3 {
         self.edge.vector(ALONG, j)
@@ -97,8 +97,11 @@ impl BendingJoints {
         self.edge.get(INVERSE, j)
     }
 
-    /// Lets the joints answer; returns their energy. `set` is the plastic curvature of each as a vector, `length` the
-    /// length that it stands for. `knees` gets those joints that may change their branch, for [`Joints::joints`] to complete.
+    /// Computes the moments and stiffnesses of all joints by their law; returns their energy, J.
+    ///
+    /// `set` is the plastic curvature of each joint as a vector, 1/m, `length` its Voronoi length,
+    /// m. Joints that may change their branch are appended to `yield_branches`, for
+    /// [`Joints::joints`] to complete.
     pub fn respond(
         &mut self,
         law: &Law,
@@ -213,7 +216,7 @@ impl Joints for BendingJoints {
         block: usize,
         j: usize,
         near: bool,
-        out: &mut Block<JOINT>,
+        out: &mut RowBlock<JOINT>,
     ) {
         let (edge, angle) = (&self.edge.blocks()[block], &self.angle.blocks()[block]);
         let law = &self.answer.blocks()[block];
@@ -234,7 +237,8 @@ impl Joints for BendingJoints {
         if !HESSIAN {
             return;
         }
-        // S (c I + (c' - c) d d^T) S with S = s I + 2 s' kb kb^T is c1 I + c2 kb kb^T + c3 (S d)(S d)^T
+        // S (c I + (c' - c) d d^T) S with S = s I + 2 s' kb kb^T
+        // is c1 I + c2 kb kb^T + c3 (S d)(S d)^T
         let across = law.load(simd, ACROSS, j, 1);
         let kb2 = kb.dot(kb);
         let c1 = ratio * ratio * across;
@@ -307,8 +311,8 @@ impl Joints for BendingJoints {
     }
 }
 
-/// Derivatives of the binormal by the edge vectors, transposed, on a vector: `kv` is its product with the binormal,
-/// `side` those with the directions.
+/// Derivatives of the binormal by the edge vectors, transposed, on a vector: `kv` is its product
+/// with the binormal, `side` those with the directions.
 #[inline(always)]
 fn on<S: Simd>(
     (mean, f, il): (Lanes3<S>, Lanes<S>, [Lanes<S>; 2]),
@@ -335,12 +339,12 @@ mod tests {
     struct All<'a, const HESSIAN: bool>(&'a BendingJoints, &'a mut [(u32, YieldBranch)]);
 
     impl<const HESSIAN: bool> WithSimd for All<'_, HESSIAN> {
-        type Output = Vec<Block<JOINT>>;
+        type Output = Vec<RowBlock<JOINT>>;
 
         #[inline(always)]
         fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
             let Self(joints, mut yield_branches) = self;
-            let mut all = vec![Block::default(); joints.blocks()];
+            let mut all = vec![RowBlock::default(); joints.blocks()];
             for (block, out) in all.iter_mut().enumerate() {
                 joints.joints::<S, HESSIAN>(simd, block, out, &mut yield_branches);
             }

@@ -1,15 +1,15 @@
-//! Internal forces of a rod, many joints at once: what [`internal_forces`](crate::rod::internal_forces()) does joint by
-//! joint.
+//! Internal forces of a rod, many joints at once: what
+//! [`internal_forces`](crate::rod::internal_forces()) does joint by joint.
 
 use super::{GRADIENT, JOINT, Joints, TORQUE, TwistingJoints};
-use crate::math::simd::{Block, Lanes, ROWS, WithSimd, run};
+use crate::math::simd::{Lanes, ROWS, RowBlock, WithSimd, run};
 use crate::math::{Quat, V3};
 use crate::rod::forces::{ForceParts, Laws, Load};
 use crate::rod::plasticity::{beyond, respond_scalar};
 use crate::rod::state::Rod;
 use pulp::Simd;
 
-/// Forces of a rod; nothing is kept from one call to the next.
+/// Internal forces of a rod; holds working memory only, no state.
 #[derive(Debug, Default)]
 pub struct Forces {
     joints: TwistingJoints,
@@ -24,7 +24,8 @@ impl Clone for Forces {
 }
 
 impl Forces {
-    /// Adds the internal forces of `rod` into a fitted `load`, see [`internal_forces`](crate::rod::internal_forces()).
+    /// Adds the internal forces of `rod` into a fitted `load`, see
+    /// [`internal_forces`](crate::rod::internal_forces()).
     pub fn add(
         &mut self,
         rod: &mut Rod,
@@ -41,7 +42,7 @@ impl Forces {
         // frames go the shortest way from where they are, not from an instant before
         self.joints.begin(&rod.frame, &self.along, *clamp);
         self.joints.place(&rod.x, roll);
-        self.joints.settle(rod, laws, clamp, parts, load);
+        self.joints.respond_explicit(rod, laws, clamp, parts, load);
         for j in 0..edges {
             let length = self.joints.length(j);
             let (tension, state, work) =
@@ -51,7 +52,7 @@ impl Forces {
             load.torque[j] = 0.0;
             load.tangent[j] = self.along[j];
             if parts.commit && work > 0.0 {
-                // (the edge at the nozzle grows: what it takes is booked with that)
+                // (the edge at the nozzle grows: its work is counted there)
                 if j + 1 < edges {
                     let way = state.strain - rod.stretch[j].strain;
                     load.beyond += beyond([was], [tension], [way], work) * rod.rest[j];
@@ -85,7 +86,7 @@ impl WithSimd for Add<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let mut out = Block::<JOINT>::default();
+        let mut out = RowBlock::<JOINT>::default();
         for block in 0..self.joints.blocks() {
             for first in (0..ROWS).step_by(Lanes::<S>::COUNT) {
                 self.joints

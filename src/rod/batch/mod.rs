@@ -1,8 +1,10 @@
-//! All joints of a rod at once, many side by side: with twist ([`RollingJoints`]) what [`super::twisted()`] does for
-//! one, without it ([`PlainJoints`]) what [`super::bent()`] does.
+//! All joints of a rod at once, many side by side.
 //!
-//! Three passes: edges, angles of the joints, then, after every joint has answered by its law,
-//! gradients and Hessians, a block of joints at a time for whoever puts them together ([`Joints`]). The row before
+//! [`TwistingJoints`] compute with twist what [`super::twisted()`] computes for one joint,
+//! [`BendingJoints`] without twist what [`super::bent()`] computes.
+//!
+//! Three passes: edges; angles of the joints; and, after the laws of all joints, gradients and
+//! Hessians, which the assembly asks for a block of joints at a time ([`Joints`]). The row before
 //! the first edge is the clamp there, the row after the last the clamp at the other end.
 
 mod bending_joints;
@@ -11,32 +13,34 @@ mod twisting_joints;
 
 use super::yield_branch::YieldBranch;
 use crate::math::V3;
-use crate::math::simd::{Block, Columns, Lanes, Lanes3, ROWS};
+use crate::math::simd::{Columns, Lanes, Lanes3, ROWS, RowBlock};
 pub use bending_joints::BendingJoints;
 pub use forces::Forces;
 use pulp::Simd;
 pub use twisting_joints::TwistingJoints;
 
-/// Columns of a joint's gradient and Hessian, see [`super::Bent`] and [`super::Rolled`].
+/// Number of columns of a joint's gradient and Hessian; units as in [`super::Bent`] and
+/// [`super::Rolled`].
 pub const JOINT: usize = 52;
-/// Hessian by the edge vector before the joint and after it, lower halves.
+/// Columns of the Hessian by the edge vector before the joint and after it, lower halves.
 pub const OWN: [usize; 2] = [0, 6];
-/// Hessian, rows before, columns after.
+/// Columns of the Hessian, rows before, columns after.
 pub const CROSS: usize = 12;
-/// Hessian, roll by roll: before-before, before-after, after-after.
+/// Columns of the Hessian, roll by roll: before-before, before-after, after-after.
 pub const ROLL_OWN: usize = 21;
-/// Hessian, roll of the edge before or after by either edge vector.
+/// Columns of the Hessian, roll of the edge before or after by either edge vector.
 pub const ROLL_WITH: [[usize; 2]; 2] = [[24, 27], [30, 33]];
-/// Gradient by the edge vectors.
+/// Columns of the gradient by the edge vectors.
 pub const GRADIENT: [usize; 2] = [36, 39];
-/// Gradient by the rolls.
+/// Columns of the gradient by the rolls.
 pub const TORQUE: usize = 42;
 /// Derivative of the angle along the moment by the edge vectors ...
 const LEAD: [usize; 2] = [44, 47];
 /// ... and by the rolls.
 const LEAD_ROLL: usize = 50;
 
-/// Joints whose laws have answered, on their way into whatever puts them together.
+/// Joints whose moments are known, with the gradients and Hessians of their energy for the
+/// assembly.
 pub trait Joints {
     /// Blocks of eight edges or joints.
     fn blocks(&self) -> usize;
@@ -44,24 +48,27 @@ pub trait Joints {
     /// Directions of the edges of `block` from row `first` on.
     fn directions<S: Simd>(&self, simd: S, block: usize, first: usize) -> Lanes3<S>;
 
-    /// Gradients, and Hessians where asked for, of the joints of `block` from row `first` on; `near`: with what knees need.
+    /// Gradients, and Hessians where asked for, of the joints of `block` from row `first` on; with
+    /// `near` also the derivatives that [`YieldBranch`] needs.
     fn derive<S: Simd, const HESSIAN: bool>(
         &self,
         simd: S,
         block: usize,
         first: usize,
         near: bool,
-        out: &mut Block<JOINT>,
+        out: &mut RowBlock<JOINT>,
     );
 
-    /// Gradients and Hessians of the joints of `block`. The first of `knees` that are not complete yet and lie in it
-    /// become so, and go out of the slice.
+    /// Gradients and Hessians of the joints of `block`.
+    ///
+    /// `yield_branches` begins with those of this block: their derivatives are filled in and they
+    /// leave the slice.
     #[inline(always)]
     fn joints<S: Simd, const HESSIAN: bool>(
         &self,
         simd: S,
         block: usize,
-        out: &mut Block<JOINT>,
+        out: &mut RowBlock<JOINT>,
         yield_branches: &mut &mut [(u32, YieldBranch)],
     ) {
         let here = |yield_branches: &[(u32, YieldBranch)]| {
@@ -85,7 +92,7 @@ pub trait Joints {
     }
 }
 
-/// Places of all nodes into the first three of some columns.
+/// Writes the positions of all nodes into three columns.
 fn put_places(columns: &mut Columns<3>, q: &[V3]) {
     columns.put(q, |block, row, p| {
         block.set(0, row, p.x);

@@ -1,12 +1,12 @@
-//! Who gave a value.
+//! Where the value of a leaf came from.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
 /// Where a value came from.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Place {
-    /// nobody gave it; the default of the program
+pub enum Origin {
+    /// the default of the program
     #[default]
     Default,
     /// a scene file or packed scene
@@ -20,7 +20,7 @@ pub enum Place {
     Set,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Origin {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Default => f.write_str("default scene"),

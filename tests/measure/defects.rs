@@ -1,0 +1,276 @@
+//! Gaps, overlaps and bulges that are made on purpose, and what is none.
+
+use crate::coils::{D, limits, on_cylinder, spec, wound};
+use coilwind::measure::{
+    CoilSpec, DefectFlags, DefectLimits, Profile, STATION_STEP, STATIONS_PER_TURN, Verdict,
+};
+use std::f64::consts::{PI, TAU};
+
+#[test]
+fn a_made_gap_is_found_where_it_is() {
+    // Turn 2 steps aside by 0.4 d from 2 to 3 rad of its angle.
+    let aside = |angle: f64| {
+        let within = angle - TAU;
+        D * angle / TAU
+            + if (2.0..3.0).contains(&within) {
+                0.4 * D
+            } else {
+                0.0
+            }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, |angle| (aside(angle), 0.0)));
+    let turn = &coil.turns()[1];
+    assert_eq!(turn.verdict, Verdict::Gap);
+    assert!((turn.gap_max.unwrap() - 0.4 * D).abs() < 2e-3 * D);
+    assert!((turn.gap_run - 1.0 / TAU).abs() < 1.5 / STATIONS_PER_TURN as f64);
+    assert_eq!(
+        coil.flags(),
+        DefectFlags {
+            gap: true,
+            ..DefectFlags::default()
+        }
+    );
+    let place = coil.last_defect().unwrap();
+    assert_eq!(place.turn, 2);
+    // Found when a tenth of a turn is above the limit.
+    assert!(
+        (place.angle - (2.0 + 0.1 * TAU)).abs() < 2.0 * STATION_STEP,
+        "{place:?}"
+    );
+    assert_eq!(coil.defect_count(), 1);
+    assert!((coil.worst().gap_width - 0.4 * D).abs() < 2e-3 * D);
+}
+
+#[test]
+fn a_gap_shorter_than_its_fraction_is_no_defect() {
+    let aside = |angle: f64| {
+        let within = angle - TAU;
+        D * angle / TAU
+            + if (2.0..2.5).contains(&within) {
+                0.4 * D
+            } else {
+                0.0
+            }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, |angle| (aside(angle), 0.0)));
+    assert_eq!(coil.turns()[1].verdict, Verdict::Marginal);
+    assert!(!coil.flags().gap);
+}
+
+#[test]
+fn swapped_turns_overlap() {
+    // Turn 2 lands on the far side of turn 1.
+    let y = |angle: f64| if angle < TAU { 0.0 } else { -1.02 * D };
+    let coil = wound(spec(), &on_cylinder(1.8, 1.0, |angle| (y(angle), 0.0)));
+    let turn = &coil.turns()[1];
+    assert_eq!(turn.verdict, Verdict::Overlap);
+    assert!((turn.overlap_max - 2.02 * D).abs() < 2e-3 * D);
+    assert!(coil.flags().overlap);
+}
+
+#[test]
+fn wire_riding_up_overlaps_and_is_in_the_second_layer() {
+    // Turn 2 lies at 0.3 d from turn 1 and touches it from above, from 2 to 4 rad.
+    let place = |angle: f64| {
+        let within = angle - TAU;
+        if within < 0.0 {
+            (0.0, 0.0)
+        } else if (2.0..4.0).contains(&within) {
+            (0.3 * D, (1.0f64 - 0.09).sqrt() * D)
+        } else {
+            (1.02 * D, 0.0)
+        }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, place));
+    let turn = &coil.turns()[1];
+    assert_eq!(turn.verdict, Verdict::Overlap);
+    assert!((turn.overlap_max - 0.7 * D).abs() < 1e-3 * D);
+    assert_eq!(turn.layer_max, 2);
+    assert!(coil.flags().overlap && !coil.flags().gap);
+    let on_top = coil.stations().nth(STATIONS_PER_TURN + 170).unwrap();
+    assert_eq!(on_top.layer, 2);
+    assert!(on_top.neighbour.unwrap().gap.abs() < 2e-3 * D);
+    let beside = coil.stations().nth(STATIONS_PER_TURN + 300).unwrap();
+    assert_eq!(beside.layer, 1);
+}
+
+#[test]
+fn a_second_layer_after_the_traverse_turned_back_is_no_defect() {
+    // Three turns out, then turns in the valleys above on the way back.
+    let valley = 0.75f64.sqrt() * D;
+    let out = on_cylinder(3.0, 1.0, |angle| (D * (angle / TAU).floor(), 0.0));
+    let all = on_cylinder(5.0, 1.0, |angle| {
+        let turn = (angle / TAU).floor();
+        if turn < 3.0 {
+            (D * turn, 0.0)
+        } else {
+            (D * (4.5 - turn), valley)
+        }
+    });
+    let mut coil = wound(spec(), &out);
+    coil.set_traverse(-1.0);
+    for &node in &all[out.len()..] {
+        coil.settle(node);
+    }
+    assert_eq!(coil.flags(), DefectFlags::default());
+    assert_eq!(coil.layer(), 2);
+    let station = coil.stations().nth(3 * STATIONS_PER_TURN + 100).unwrap();
+    assert_eq!(
+        (station.pass, station.layer, station.neighbour),
+        (2, 2, None)
+    );
+    assert!((station.height - valley).abs() < 1e-9);
+    assert!(station.bulge.abs() < 1e-9, "lies on the wires below");
+    let last = coil.stations().nth(4 * STATIONS_PER_TURN + 100).unwrap();
+    assert!((last.neighbour.unwrap().axial - D).abs() < 1e-6 * D);
+}
+
+#[test]
+fn bulge_is_judged_against_the_quasi_static_height() {
+    let stand_off = |angle: f64| 1.5 * D * libm::sin(angle).powi(2);
+    let profile = Profile::new(
+        (0..720)
+            .map(|k| stand_off(f64::from(k) * TAU / 720.0))
+            .collect(),
+    );
+    let nodes = |share: f64| {
+        on_cylinder(2.0, 1.0, move |angle| {
+            (D * angle / TAU, share * stand_off(angle))
+        })
+    };
+    let quiet = wound(
+        CoilSpec {
+            profile: profile.clone(),
+            ..spec()
+        },
+        &nodes(1.0),
+    );
+    assert!(!quiet.flags().bulge);
+    assert!(
+        (quiet.worst().bulge_height - 1.5 * D).abs() < 1e-3 * D,
+        "reported as it is"
+    );
+    assert!(quiet.turns()[1].bulge_excess_max.unwrap().abs() < 2e-3 * D);
+
+    let fast = wound(
+        CoilSpec {
+            profile: profile.clone(),
+            ..spec()
+        },
+        &nodes(1.5),
+    );
+    assert!(fast.flags().bulge);
+    assert_eq!(fast.turns()[1].verdict, Verdict::Bulge);
+    assert!((fast.turns()[1].bulge_excess_max.unwrap() - 0.75 * D).abs() < 2e-3 * D);
+
+    let no_yardstick = wound(
+        CoilSpec {
+            profile: None,
+            ..spec()
+        },
+        &nodes(1.5),
+    );
+    assert!(!no_yardstick.flags().bulge);
+    assert_eq!(no_yardstick.turns()[1].bulge_excess_max, None);
+    let absolute = DefectLimits {
+        bulge_absolute: 1e-3,
+        ..limits()
+    };
+    assert!(
+        wound(
+            CoilSpec {
+                profile: None,
+                limits: absolute,
+                ..spec()
+            },
+            &nodes(1.0)
+        )
+        .flags()
+        .bulge
+    );
+}
+
+#[test]
+fn bulge_is_given_per_face() {
+    for (face, middle) in [0.0, PI / 2.0, PI, 1.5 * PI].into_iter().enumerate() {
+        for direction in [1.0, -1.0] {
+            let place = |angle: f64| {
+                let from = libm::cos(direction * angle - middle);
+                (D * angle / TAU, if from > 0.9 { D } else { 0.0 })
+            };
+            let coil = wound(
+                CoilSpec {
+                    direction,
+                    ..spec()
+                },
+                &on_cylinder(2.5, direction, place),
+            );
+            let faces = coil.turns()[1].bulge_faces;
+            for (k, &height) in faces.iter().enumerate() {
+                let expected = if k == face { D } else { 0.0 };
+                assert!(
+                    (height - expected).abs() < 1e-9,
+                    "{face} {direction}: {faces:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn one_noisy_station_raises_no_flag() {
+    // Every kind of wrong, over two nodes (3 degrees) each.
+    let place = |angle: f64| {
+        let y = D * angle / TAU;
+        let within = |from: f64| (from..from + 0.06).contains(&(angle - TAU));
+        if within(2.0) {
+            (y + D, 0.0)
+        } else if within(3.0) {
+            (y - 0.5 * D, 0.9 * D)
+        } else if within(4.0) {
+            (y, 2.0 * D)
+        } else {
+            (y, 0.0)
+        }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, place));
+    let noisy = coil
+        .stations()
+        .filter(|s| s.measured && s.bulge > 0.5 * D)
+        .count();
+    assert!(noisy > 0, "the noise is seen");
+    assert_eq!(coil.flags(), DefectFlags::default());
+    assert_eq!(coil.defect_count(), 0);
+}
+
+#[test]
+fn the_neighbourhood_of_the_clamp_is_left_out() {
+    // Wild within 1 rad of the clamp in turns 1 and 2, orderly elsewhere.
+    let place = |angle: f64| {
+        let wild = angle < 2.0 * TAU && angle.rem_euclid(TAU) < 1.0;
+        if wild {
+            (D * (angle / TAU).floor() * 3.0, 3.0 * D)
+        } else {
+            (D * angle / TAU, 0.0)
+        }
+    };
+    let coil = wound(spec(), &on_cylinder(2.0, 1.0, place));
+    assert_eq!(coil.flags(), DefectFlags::default());
+    assert_eq!(coil.turns()[1].verdict, Verdict::Aligned);
+    // Judged from the clamp on, the same wire is bad.
+    let all = DefectLimits {
+        skip_angle: 0.0,
+        ..limits()
+    };
+    assert!(
+        wound(
+            CoilSpec {
+                limits: all,
+                ..spec()
+            },
+            &on_cylinder(2.0, 1.0, place)
+        )
+        .flags()
+        .bulge
+    );
+}

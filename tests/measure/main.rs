@@ -1,0 +1,6 @@
+//! Measures of made coils whose gaps, heights and places are known beforehand.
+
+mod changes;
+mod coils;
+mod defects;
+mod pitch;

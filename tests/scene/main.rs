@@ -1,0 +1,6 @@
+//! Scene files through the front door: what is read, in which order, and what is refused.
+
+mod choices;
+mod common;
+mod reading;
+mod refusals;

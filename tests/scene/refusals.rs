@@ -1,0 +1,275 @@
+//! What is refused or warned of, and what the message says.
+
+use crate::common::{assert_says, parse, refused, unread};
+use coilwind::settings::SceneSettings;
+
+#[test]
+fn unknown_names_come_with_a_suggestion() {
+    for (text, parts) in [
+        (
+            "[wire]\n\n diametr_mm = 0.7",
+            &[
+                "test.toml:3",
+                "wire.diametr_mm",
+                "value 0.7",
+                "wire.diameter_mm?",
+            ][..],
+        ),
+        ("[wire]\ndiametr = 0.7", &["test.toml:2", "wire.diameter?"]),
+        (
+            "[wire]\ntension = 15",
+            &["wire.tension", "tensioner.tension?", "keys of [wire]"],
+        ),
+        (
+            "[spindle]\nspeed_rmp = 15",
+            &["spindle.speed_rmp", "spindle.speed?"],
+        ),
+        (
+            "\n[wier]\ndiameter = 1",
+            &["test.toml:2", "[wier]", "[wire]?", "tensioner"],
+        ),
+        ("presett = 'paper'", &["test.toml:1", "presett", "preset?"]),
+        ("diameter = 0.7", &["diameter", "wire.diameter?"]),
+        ("[scene]\nfile = 'fig8'", &["[scene]"]),
+    ] {
+        assert_says(&unread(text), parts);
+    }
+}
+
+#[test]
+fn wrong_units_types_and_repeats_are_refused() {
+    for (text, parts) in [
+        (
+            "[wire]\ndiameter_rpm = 3",
+            &[
+                "test.toml:2",
+                "wire.diameter_rpm = 3",
+                "wire.diameter_mm, wire.diameter_um",
+            ][..],
+        ),
+        (
+            "[wire]\ndiameter = 'thick'",
+            &["\"thick\" is a text", "2e-5 to 0.005 m"],
+        ),
+        (
+            "[wire]\nelastic = 1",
+            &["wire.elastic = 1 is a number", "true or false"],
+        ),
+        ("[wire]\ndiameter = [1, 2]", &["a list"]),
+        ("[wire.diameter]\nmm = 2", &["a section"]),
+        (
+            "[wire]\ndiameter = 7e-4\ndiameter_mm = 0.7",
+            &[
+                "test.toml:3",
+                "wire.diameter was already given as wire.diameter",
+            ],
+        ),
+        (
+            "[wire]\nmaterial = 'steel'",
+            &["\"steel\"", "copper, table1, custom"],
+        ),
+        ("[wire]\ndiameter = ", &["test.toml:2", "not valid TOML"]),
+        ("wire = 3", &["test.toml:1", "wire"]),
+    ] {
+        assert_says(&unread(text), parts);
+    }
+}
+
+#[test]
+fn numbers_out_of_range_name_their_range() {
+    for (text, parts) in [
+        (
+            "[wire]\ndiameter_mm = -0.7",
+            &["test.toml:2", "= -0.7", "2e-5 to 0.005 m"][..],
+        ),
+        (
+            "[wire]\ndiameter = nan",
+            &["wire.diameter = nan", "2e-5 to 0.005 m"],
+        ),
+        (
+            "[tensioner]\ntension = inf",
+            &["tensioner.tension = inf", "0 to 10000 N"],
+        ),
+        (
+            "[contact]\nrestitution = 1.5",
+            &["contact.restitution = 1.5", "0 to 1"],
+        ),
+        ("[contact]\nrestitution = -0.1", &["allowed: 0 to 1"]),
+        (
+            "[spindle]\nspeed = 0",
+            &["spindle.speed = 0", "0.1 to 2000 rad/s"],
+        ),
+        ("[spindle]\nramp_turns = 0", &["spindle.ramp_turns = 0"]),
+    ] {
+        assert_says(&unread(text), parts);
+    }
+}
+
+#[test]
+fn impossible_scenes_say_what_would_do() {
+    for (text, parts) in [
+        (
+            "[nozzle]\ndistance_mm = 15",
+            &[
+                "test.toml:2",
+                "nozzle.distance = 0.015 m",
+                "inside the circle",
+                "more than 0.016",
+            ][..],
+        ),
+        (
+            "[wire]\ndiameter_mm = 2\n[core]\nlength_y_mm = 1",
+            &[
+                "test.toml:2",
+                "wire.diameter = 0.002 m",
+                "wider than the core is long",
+                "0.001 m",
+            ],
+        ),
+        (
+            "[core]\ncorner_radius_mm = 6.5",
+            &[
+                "test.toml:2",
+                "core.corner_radius = 0.0065 m",
+                "0 to 0.006 m",
+            ],
+        ),
+        (
+            "[friction]\nstatic = 0.1",
+            &[
+                "test.toml:2",
+                "friction.static = 0.1",
+                "at least friction.kinetic, 0.17",
+            ],
+        ),
+        (
+            "[friction]\nkinetic = 0.3",
+            &["friction.kinetic = 0.3", "at most friction.static, 0.23"],
+        ),
+        (
+            "[tensioner]\ntension = 100",
+            &[
+                "test.toml:2",
+                "tensioner.tension = 100 N",
+                "breaks at 84.66",
+                "less than",
+            ],
+        ),
+        (
+            "[solver]\nspacing_near_um = 50",
+            &["too fine", "7e-5 to 0.007 m"],
+        ),
+        (
+            "[wire]\ndiameter_um = 30\n[tensioner]\ntension = 0.1\n[solver]\nspacing_near_mm = 0.4",
+            &["spacing_near", "solver.spacing_near", "too coarse"],
+        ),
+        (
+            "[solver]\nspacing_near_mm = 0.4\nspacing_free_mm = 0.3",
+            &["cannot be finer", "solver.spacing_near, 0.0004 m"],
+        ),
+        ("[solver]\nspacing_free_mm = 20", &["at least three edges"]),
+        (
+            "[spindle]\nturns = 0.1",
+            &[
+                "default scene",
+                "spindle.ramp_turns",
+                "at most spindle.turns, 0.1",
+            ],
+        ),
+        (
+            "[start]\nclamp_y_mm = 15",
+            &["start.clamp_y", "-0.01465 to 0.01465 m"],
+        ),
+        (
+            "[nozzle]\ny_start = 0.2",
+            &["nozzle.y_start", "-0.075 to 0.075 m"],
+        ),
+        (
+            "[wire]\nmaterial = 'table1'\ndiameter_mm = 0.8",
+            &[
+                "test.toml:3",
+                "wire.diameter = 0.0008 m",
+                "table1",
+                "0.0007 m",
+            ],
+        ),
+        (
+            "[wire]\nmaterial = 'custom'\nEA = 1\nEAp = 0.1\nEI = 1\n",
+            &["wire.EIp", "needs every rigidity", "more than 0"],
+        ),
+        (
+            "[wire]\nEIp = 0.5",
+            &["test.toml:2", "wire.EIp = 0.5 N.m2", "less than wire.EI"],
+        ),
+        (
+            "[wire]\nyield_stress_MPa = 300",
+            &["wire.flow_stress", "moment cap", "at least 3e8 Pa"],
+        ),
+        (
+            "[wire]\nmoment_cap = 1e-3",
+            &["wire.moment_cap = 0.001 N.m", "0.00571667"],
+        ),
+        ("[core]\nshape = 'mesh'", &["core.file", "needs a file"]),
+        (
+            "[core]\nshape = 'mesh'\nfile = 'none.stl'",
+            &["test.toml:3", "none.stl", "cannot be opened"],
+        ),
+    ] {
+        assert_says(&refused(text), parts);
+    }
+}
+
+#[test]
+fn fields_written_directly_are_checked_too() {
+    let mut settings = SceneSettings::default();
+    settings.freeze.creep = f64::NAN;
+    assert_says(
+        &settings.build().unwrap_err().to_string(),
+        &["freeze.creep = NaN", "0 to 1 m/rad"],
+    );
+}
+
+#[test]
+fn odd_scenes_build_with_a_warning() {
+    let warnings = |text: &str| -> Vec<String> {
+        let (_, warnings) = parse(text).unwrap().build_with_warnings().unwrap();
+        warnings.iter().map(ToString::to_string).collect()
+    };
+    assert!(warnings("").is_empty());
+    assert_eq!(
+        SceneSettings::default().build_with_warnings().unwrap().1,
+        []
+    );
+    for (text, part) in [
+        ("[nozzle]\ny_start_mm = 20", "starts beside the core"),
+        ("[spindle]\nturns = 25", "ends beside the core"),
+        ("[tensioner]\ntension = 40", "yields in the free span"),
+        (
+            "[core]\ncorner_radius = 0\n",
+            "coarser than the tightest bend",
+        ),
+        ("[contact]\nstiffness = 1e8", "1 % of its diameter"),
+    ] {
+        let found = warnings(text);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert_says(&found[0], &[part]);
+    }
+}
+
+#[test]
+fn scenes_that_are_not_there() {
+    let message = SceneSettings::load("fig9").unwrap_err().to_string();
+    assert_says(
+        &message,
+        &[
+            "fig9",
+            "packed scene (fig8, fig8_gap)",
+            "did you mean fig8?",
+        ],
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let message = SceneSettings::load(folder.path().to_str().unwrap())
+        .unwrap_err()
+        .to_string();
+    assert_says(&message, &["cannot be read"]);
+}
