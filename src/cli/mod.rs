@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+mod choice;
 mod failure;
 mod frames;
 mod progress;
@@ -41,9 +42,9 @@ enum Command {
     /// List every variable: inputs, outputs, diagnostics, parameters
     Variables(variables::VariablesArgs),
     /// Compare exact answers with what the code that winds computes
-    Verify(coilwind::lab::verify::VerifyArgs),
+    Verify(verify::VerifyArgs),
     /// Time a known problem or a whole scene and print error and cost as one line of JSON
-    Bench(coilwind::lab::bench::BenchArgs),
+    Bench(bench::BenchArgs),
     /// Wind random valid scenes, judge them by what must always hold, keep what fails
     Stress(stress::StressArgs),
 }

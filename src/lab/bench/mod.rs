@@ -16,7 +16,7 @@ mod record;
 mod watch;
 mod winding;
 
-pub use args::{BenchArgs, Method, Problem};
+pub use args::{BenchOptions, Method, Problem};
 pub use converged::{Converged, Extremes, Speed};
 pub use record::{Details, Outcome, Record};
 pub use winding::Wound;
@@ -71,10 +71,10 @@ pub enum BenchError {
     },
 }
 
-/// Runs what `args` ask for and returns the line to print.
+/// Runs the problem of `args` and returns its record.
 ///
 /// A computation that fails on the way is no error here: its line says `"ok": false` and why.
-pub fn run(args: &BenchArgs) -> Result<Record, BenchError> {
+pub fn run(args: &BenchOptions) -> Result<Record, BenchError> {
     args.check()?;
     if let Some(lanes) = args.lanes {
         simd::at_most(lanes);

@@ -1,6 +1,6 @@
 //! W: a whole scene along its own programme, against a converged run kept with it.
 
-use super::args::{BenchArgs, Method};
+use super::args::{BenchOptions, Method};
 use super::converged::{Converged, Extremes, Speed, rms};
 use super::record::{Details, Outcome, WindingDetails};
 use super::watch::Watch;
@@ -48,7 +48,7 @@ struct Run {
     details: WindingDetails,
 }
 
-pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
+pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     let name = args.scene.as_deref().unwrap_or("fig8");
     let mut settings = SceneSettings::load(name)?;
     if let Some(omega) = args.omega {
@@ -102,7 +102,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
 }
 
 /// Method, spacing, step and tolerance as asked for, on top of what the scene has.
-pub(super) fn solver(settings: &mut SceneSettings, args: &BenchArgs) -> Result<(), BenchError> {
+pub(super) fn solver(settings: &mut SceneSettings, args: &BenchOptions) -> Result<(), BenchError> {
     if let Some(method) = args.integrator {
         settings.solver.integrator = method.name().to_owned();
     }
@@ -123,7 +123,7 @@ pub(super) fn solver(settings: &mut SceneSettings, args: &BenchArgs) -> Result<(
 
 /// Winds the scene to its end, a turn at a time: what it takes, and what comes of it. A second run that stops
 /// every millisecond tells the dearest of them; the stops themselves cost steps, half as much again at 30 rad/s.
-fn wind(scene: &Scene, args: &BenchArgs) -> Result<Run, BenchError> {
+fn wind(scene: &Scene, args: &BenchOptions) -> Result<Run, BenchError> {
     let start = |reason| BenchError::Start {
         problem: Problem::W,
         reason,
@@ -260,7 +260,10 @@ fn compare(wound: &Wound, speed: &Speed, winding: &mut WindingDetails, outcome: 
 }
 
 /// Winds the ensemble and takes its means.
-fn ensemble(args: &BenchArgs, mut settings: SceneSettings) -> Result<(Speed, Outcome), BenchError> {
+fn ensemble(
+    args: &BenchOptions,
+    mut settings: SceneSettings,
+) -> Result<(Speed, Outcome), BenchError> {
     settings.solver.spacing_near = FINE;
     settings.solver.spacing_free = COARSER[0] * FINE;
     solver(&mut settings, args)?;
@@ -313,8 +316,8 @@ mod tests {
     use super::*;
 
     /// Coarse and loose, at a speed where it does not matter.
-    fn quick() -> BenchArgs {
-        let mut args = BenchArgs::new(Problem::W);
+    fn quick() -> BenchOptions {
+        let mut args = BenchOptions::new(Problem::W);
         (args.n, args.tol, args.omega) = (Some(84), Some(2e-5), Some(30.0));
         args
     }

@@ -31,7 +31,7 @@ mod twist_buckling;
 mod winding_feed;
 mod wire;
 
-pub use command::{Manner, VerifyArgs, run, run_file};
+pub use command::{Manner, VerifyOptions, run, run_file};
 pub use file::{Case, CaseFile, Check};
 pub use report::Record;
 
