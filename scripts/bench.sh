@@ -3,7 +3,8 @@
 #
 #     scripts/bench.sh [--quick]
 #
-# Leaves JSON lines, CSV and pictures in target/bench/, and writes docs/performance.md with its pictures in docs/performance/.
+# Leaves JSON lines, CSV and pictures in target/bench/, and writes the tables docs/validation/tables/performance-*.md and the
+# pictures in docs/validation/performance/.
 # Takes about half an hour, one thread at a time; let the machine do nothing else. --quick: coarsest settings, once each,
 # in less than five minutes, to see that everything works; nothing under docs/ is touched. COILWIND_COMMAND names another binary
 # than target/release/coilwind, COILWIND_FMU another FMU; without them both are built.

@@ -4,9 +4,12 @@
     scripts/fig8.py [--command PATH] [--out target/fig8] [--members 8] [--quick]
 
 Winds `fig8` at every speed, tension, traverse and wire with the nozzle at several distances, +-0.35 mm about the scene's: a
-single run tells little, since the landing is sensitive. Writes members.csv (a row a run), fig8.csv and fig8.md (a row an
-ensemble) and fig8.png. The second part changes one thing at a time about `fig8`: table `factors.md`. Lengths in the tables
-are in wire diameters. Runs that are done already are not run again, so an interrupted study goes on where it stopped.
+single run tells little, since the landing is sensitive. The second part changes one thing at a time about `fig8`. Lengths in
+the tables are in wire diameters.
+
+Leaves members.csv (a row a run) in --out. Writes fig8.csv (a row an ensemble) and fig8.png into docs/validation/fig8/, and
+fig8-grid.md and fig8-factors.md into docs/validation/tables/; with --quick into --out instead. Runs that are done already are
+not run again, so an interrupted study goes on where it stopped.
 """
 
 import argparse
@@ -20,6 +23,8 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 
+import tables
+
 SPEEDS = [30, 100, 300, 500]
 TENSIONS = [5, 10, 15]
 TRAVERSES = [0.35, 0.7]
@@ -27,6 +32,9 @@ WIRES = ["table1", "copper"]
 SPREAD = 0.35
 """Nozzle distances about the scene's, mm: what a machine's set-up leaves open."""
 DIAMETER = 0.7e-3
+MEMBERS = 8
+TURNS = 3.5
+"""Turn 2 is at rest by then."""
 
 # One thing changed at a time about fig8 as given: label, variable, value.
 FACTORS = [
@@ -165,25 +173,33 @@ def cells(e):
     ]
 
 
-def table(headings, rows):
-    lines = ["| " + " | ".join(headings) + " |", "|" + "---|" * len(headings)]
-    lines += ["| " + " | ".join(str(c) for c in row) + " |" for row in rows]
-    return "\n".join(lines) + "\n"
-
-
-def write_tables(folder, found):
+def write_tables(args, tables_to, csv_to, found):
+    command = " ".join(["scripts/fig8.py", *options(args)])
     told = ["mean gap / d", "share of turn above limit", "highest bulge / d", "members"]
-    grid = [e for e in found if e["part"] == "grid"]
-    rows = [[*e["name"].split(","), *cells(e)] for e in grid]
+    note = (
+        f"Turn 2 of ensembles of {args.members} runs of {args.turns:g} turns, default tolerance, nozzle at {SPREAD:g} mm more and less than"
+        " given. Mean and standard deviation over the members; the limit is 0.15 d. Results do not depend on the machine."
+    )
+    grid = [[*e["name"].split(","), *cells(e)] for e in found if e["part"] == "grid"]
     head = ["wire", "tension N", "traverse mm/turn", "rad/s", *told]
-    (folder / "fig8.md").write_text(table(head, rows), encoding="utf-8")
-    factors = [e for e in found if e["part"] == "factor"]
-    rows = [[*e["name"].split(","), *cells(e)] for e in factors]
-    (folder / "factors.md").write_text(table(["changed", "rad/s", *told], rows), encoding="utf-8")
-    with (folder / "fig8.csv").open("w", newline="", encoding="utf-8") as file:
+    title = "Fig. 8 by speed, tension, traverse and wire"
+    yield tables.write(tables_to, "fig8-grid", command, title, note, tables.table(head, grid))
+    factors = [[*e["name"].split(","), *cells(e)] for e in found if e["part"] == "factor"]
+    title = "Fig. 8 with one thing changed about `fig8`"
+    body = tables.table(["changed", "rad/s", *told], factors)
+    yield tables.write(tables_to, "fig8-factors", command, title, note, body)
+    csv_to.mkdir(parents=True, exist_ok=True)
+    with (csv_to / "fig8.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, fieldnames=list(found[0]))
         writer.writeheader()
         writer.writerows(found)
+
+
+def options(args):
+    """What was asked for beyond the default and changes the numbers."""
+    words = [] if args.members == MEMBERS else ["--members", str(args.members)]
+    words += [] if args.turns == TURNS else ["--turns", f"{args.turns:g}"]
+    return [*words, "--quick"] if args.quick else words
 
 
 def draw(folder, found):
@@ -231,8 +247,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--command", default="target/release/coilwind")
     parser.add_argument("--out", type=Path, default=Path("target/fig8"))
-    parser.add_argument("--members", type=int, default=8)
-    parser.add_argument("--turns", type=float, default=3.5, help="turn 2 is at rest by then")
+    parser.add_argument("--members", type=int, default=MEMBERS)
+    parser.add_argument("--turns", type=float, default=TURNS)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--quick", action="store_true", help="two ensembles and a factor, to see that it works")
     args = parser.parse_args()
@@ -269,10 +285,10 @@ def main():
     order = {(c["part"], c["name"], c["member"]): k for k, c in enumerate(cases(args))}
     rows.sort(key=lambda r: order[(r["part"], r["name"], int(r["member"]))])
     found = list(ensembles(rows))
-    write_tables(args.out, found)
-    draw(args.out, found)
-    print((args.out / "fig8.md").read_text(encoding="utf-8"))
-    print((args.out / "factors.md").read_text(encoding="utf-8"))
+    tables_to, pictures_to = (args.out, args.out) if args.quick else (tables.TABLES, tables.VALIDATION / "fig8")
+    for written in write_tables(args, tables_to, pictures_to, found):
+        print(written.read_text(encoding="utf-8"))
+    draw(pictures_to, found)
     failed = sum(r["status"] != "done" for r in rows)
     if failed:
         print(f"{failed} of {len(rows)} runs did not end; see {path}", file=sys.stderr)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Says what a stage needs that this machine does not have, one line each; nothing if it can run.
 #
-#     scripts/missing_tools.sh portable | c | sanitizer | valgrind | wine | importers
+#     scripts/missing_tools.sh portable | c | sanitizer | valgrind | wine | importers | site
 set -euo pipefail
 
 has() { command -v "$1" >/dev/null 2>&1; }
@@ -49,6 +49,10 @@ case ${1-} in
         has valgrind || miss valgrind "on Debian and Ubuntu: apt install valgrind"
         ;;
     importers) linux_x86 "what the importers ship" ;;
+    site)
+        has node || miss node "on Debian and Ubuntu: apt install nodejs"
+        has npm || miss npm "on Debian and Ubuntu: apt install npm"
+        ;;
     *)
         echo "missing_tools.sh: unknown stage ${1-} (see the top of the script)" >&2
         exit 2

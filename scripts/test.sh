@@ -1,87 +1,193 @@
 #!/usr/bin/env bash
-# Every check: format, lints, documentation, packaging, exact answers, random scenes, whether the benchmarks run, Rust tests,
-# tests of the FMU.
+# Every check, or the stages that are named.
 #
-#     scripts/test.sh
+#     scripts/test.sh [STAGE...]
 #
-# Needs Rust, a C linker and Python 3.10 or later. Stages that need more say SKIPPED, with what is
-# missing, where it is not there; scripts/install_tools.sh installs it. Stops at the first failure;
-# the summaries of cargo test and pytest come last.
+#     lint    format, lints of every target and set of features, layout of the sources, documentation of the code
+#     lab     exact answers, random scenes, benchmarks at their coarsest, results as recorded
+#     docs    generated pages, the site, what pages tell a reader to type
+#     rust    tests of the library, of the command and of the packages beside it
+#     fmu     the FMU, the portable FMU, its validation, tests that drive it
+#
+# Without a stage all run, in this order. Needs Rust, a C linker and Python 3.10 or later (the benchmarks 3.11). Parts
+# that need more say SKIPPED, with what is missing, where it is not there; scripts/install_tools.sh installs it. Stops at
+# the first failure. The summaries of cargo test and pytest come last.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-if [ $# -gt 0 ]; then
-    echo "test.sh: unknown option $1 (there are none)" >&2
-    exit 2
-fi
+stages=(lint lab docs rust fmu)
+# with nothing built before, on two cores
+minutes_of() {
+    case $1 in
+        lint) echo 4 ;;
+        lab) echo 8 ;;
+        docs) echo 5 ;;
+        rust) echo 12 ;;
+        fmu) echo 8 ;;
+    esac
+}
+
+case ${1-} in
+    -h | --help)
+        sed -n '2,/^set /{/^#/!d;s/^# \{0,1\}//;p}' scripts/test.sh
+        exit
+        ;;
+esac
+for word in "$@"; do
+    if [ -z "$(minutes_of "$word")" ]; then
+        echo "test.sh: unknown stage $word (there are ${stages[*]})" >&2
+        exit 2
+    fi
+done
+chosen=()
+for stage in "${stages[@]}"; do
+    if [ $# = 0 ] || [[ " $* " = *" $stage "* ]]; then chosen+=("$stage"); fi
+done
 
 target=$(mkdir -p "${CARGO_TARGET_DIR:-target}" && cd "${CARGO_TARGET_DIR:-target}" && pwd)
+command=$target/release/coilwind
+fmu=$target/fmu/CoilWinding.fmu
 began=$SECONDS
 skipped=
 skip() {
     printf '\n== SKIPPED %s, because on this machine\n%s\n' "$1" "$2"
     skipped+=$(printf 'SKIPPED %s:\n%s' "$1" "$2")$'\n'
 }
+# Before the runner whose summary is the last thing that is printed.
+say_what_was_skipped() {
+    if [ -n "$skipped" ] && [ "${chosen[${#chosen[@]} - 1]}" = "$1" ]; then
+        printf '\nNot everything is tested here.\n%s' "$skipped"
+    fi
+}
 step() { printf '\n== %s (at %d s)\n' "$*" $((SECONDS - began)); }
 
-step format
-cargo fmt --all --check
+# What several stages need is built by the first of them.
+command_built=false
+build_command() {
+    if $command_built; then return; fi
+    step command
+    cargo build --locked --release --bin coilwind
+    command_built=true
+}
+fmu_built=false
+build_fmu() {
+    if $fmu_built; then return; fi
+    step FMU
+    scripts/build_fmu.sh
+    fmu_built=true
+}
 
-step lints
-cargo clippy --locked --workspace --all-targets -- -D warnings
+lint() {
+    step format
+    cargo fmt --all --check
 
-step documentation
-RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --document-private-items --quiet
+    step lints
+    cargo clippy --locked --workspace --all-targets -- -D warnings
 
-step command and FMU
-cargo build --locked --release --bin coilwind
-scripts/build_fmu.sh
+    step "lints of the library without its features"
+    cargo clippy --locked --package coilwind --lib --no-default-features -- -D warnings
+    cargo clippy --locked --package coilwind --lib --no-default-features --features lab -- -D warnings
 
-missing=$(scripts/missing_tools.sh portable)
-if [ -z "$missing" ]; then
-    # From here on the FMU is the portable one.
-    step portable FMU
-    scripts/build_fmu.sh --portable
-    step portable FMU from another directory
-    scripts/check_reproducible.sh
-else
-    skip "portable FMU" "$missing"
-fi
+    step documentation of the code
+    RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --document-private-items --quiet
 
-step Python
-python=$(scripts/venv.sh)
-"$python" -m fmpy validate "$target/fmu/CoilWinding.fmu"
-# Where their packages cannot run they need not be fetched; the tests say so.
-importers=
-if [ -z "$(scripts/missing_tools.sh importers)" ]; then importers=$(scripts/venv.sh importers); fi
+    step layout of the sources
+    cargo test --locked --test tidy
+}
 
-step exact answers
-"$target/release/coilwind" verify
-"$target/release/coilwind" verify --preset paper
+lab() {
+    build_command
+    step exact answers
+    "$command" verify
+    "$command" verify --preset paper
 
-step random scenes
-"$target/release/coilwind" stress --count 100 --seed 1 --quiet --out "$target/stress" | tail -n 1
+    step random scenes
+    "$command" stress --count 100 --seed 1 --quiet --out "$target/stress" | tail -n 1
 
-step benchmarks at their coarsest
-log=$target/bench-quick.log
-if ! COILWIND_COMMAND="$target/release/coilwind" COILWIND_FMU="$target/fmu/CoilWinding.fmu" \
-    scripts/bench.sh --quick >"$log" 2>&1; then
-    tail -n 40 "$log"
-    exit 1
-fi
-tail -n 1 "$log"
+    build_fmu
+    step benchmarks at their coarsest
+    local log=$target/bench-quick.log
+    if ! COILWIND_COMMAND=$command COILWIND_FMU=$fmu scripts/bench.sh --quick >"$log" 2>&1; then
+        tail -n 40 "$log"
+        exit 1
+    fi
+    tail -n 1 "$log"
 
-step Rust tests
-cargo test --locked --workspace
+    step results as recorded
+    COILWIND_COMMAND=$command scripts/same_results.sh
+}
 
-step tests of the FMU
-for stage in c sanitizer valgrind wine importers; do
-    missing=$(scripts/missing_tools.sh $stage)
-    if [ -n "$missing" ]; then skip "tests that need: $stage" "$missing"; fi
+docs() {
+    build_command
+    build_fmu
+    local python missing
+    python=$(scripts/venv.sh)
+
+    step generated pages
+    COILWIND_COMMAND=$command "$python" scripts/reference_pages.py --check
+
+    missing=$(scripts/missing_tools.sh site)
+    if [ -z "$missing" ]; then
+        step site
+        scripts/docs.sh
+    else
+        skip site "$missing"
+    fi
+
+    step what pages tell a reader to type
+    "$python" scripts/docs/check_commands.py
+
+    step tests of these checks
+    say_what_was_skipped docs
+    "$python" -m pytest -q -rs tests/docs
+}
+
+rust() {
+    step Rust tests
+    cargo test --locked --workspace
+}
+
+fmu() {
+    build_command
+    build_fmu
+    local python missing needs importers=
+    missing=$(scripts/missing_tools.sh portable)
+    if [ -z "$missing" ]; then
+        # From here on the FMU is the portable one.
+        step portable FMU
+        scripts/build_fmu.sh --portable
+        step portable FMU from another directory
+        scripts/check_reproducible.sh
+    else
+        skip "portable FMU" "$missing"
+    fi
+
+    step validation of the FMU
+    python=$(scripts/venv.sh)
+    "$python" -m fmpy validate "$fmu"
+
+    step tests of the FMU
+    for needs in c sanitizer valgrind wine importers; do
+        missing=$(scripts/missing_tools.sh $needs)
+        if [ -n "$missing" ]; then skip "tests that need: $needs" "$missing"; fi
+    done
+    # Where their packages cannot run they need not be fetched; the tests say so.
+    if [ -z "$(scripts/missing_tools.sh importers)" ]; then importers=$(scripts/venv.sh importers); fi
+    say_what_was_skipped fmu
+    # -rs names the tests that were skipped, with the reason.
+    COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_IMPORTERS_PYTHON=$importers \
+        "$python" -m pytest -q -rs tests/fmpy
+}
+
+echo "Stages, with minutes from nothing on two cores (less where target/ holds builds):"
+all=0
+for stage in "${chosen[@]}"; do
+    printf '  %-5s %2d min\n' "$stage" "$(minutes_of "$stage")"
+    all=$((all + $(minutes_of "$stage")))
 done
-if [ -n "$skipped" ]; then printf '\nNot everything is tested here.\n%s' "$skipped"; fi
-# -rs names the tests that were skipped, with the reason.
-exec env COILWIND_COMMAND="$target/release/coilwind" \
-    COILWIND_FMU="$target/fmu/CoilWinding.fmu" \
-    COILWIND_IMPORTERS_PYTHON="$importers" \
-    "$python" -m pytest -q -rs tests/fmpy
+printf '  %-5s %2d min\n' sum $all
+
+for stage in "${chosen[@]}"; do
+    printf '\n==== %s\n' "$stage"
+    $stage
+done

@@ -1,20 +1,21 @@
 #!/usr/bin/env bash
 # Makes a virtual environment, unless it is there, and prints its Python.
 #
-#     scripts/venv.sh [build | importers | bench]
+#     scripts/venv.sh [build | importers | bench | docs]
 #
 # Without a word: target/venv with requirements.txt (tests and demonstration). build: target/venv-build
 # with requirements-build.txt (the linker of portable libraries). importers: target/venv-importers with
 # requirements-importers.txt (other people's FMU importers, which may want other versions of things).
-# bench: target/venv-bench with requirements-bench.txt (other simulators, likewise).
+# bench: target/venv-bench with requirements-bench.txt (other simulators, likewise). docs: target/venv-docs
+# with requirements-docs.txt (builds the site).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 case ${1-} in
     '') suffix= ;;
-    build | importers | bench) suffix=-$1 ;;
+    build | importers | bench | docs) suffix=-$1 ;;
     *)
-        echo "venv.sh: unknown environment $1 (there are build, importers and bench, or none)" >&2
+        echo "venv.sh: unknown environment $1 (there are build, importers, bench and docs, or none)" >&2
         exit 2
         ;;
 esac

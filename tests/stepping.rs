@@ -39,7 +39,7 @@ fn ramp(next: impl Fn(usize) -> f64) -> Simulation {
     sim
 }
 
-/// The bound of README.md: tension and torque within 5 %, fed wire within 10 um, whatever the communication
+/// The bound of docs/fmu/stepping.md: tension and torque within 5 %, fed wire within 10 um, whatever the communication
 /// step; that is what the solver's own tolerance leaves open where wire lands. Measured: 3 %, 2 um.
 fn is_near(a: &Simulation, b: &Simulation, what: &str) {
     let (o, p) = (a.outputs(), b.outputs());

@@ -1,7 +1,7 @@
 //! What one `fmi2DoStep` costs beyond the step itself.
 //!
-//! The spindle stands and the wire has come to rest, so that a native step costs next to nothing
-//! and the difference of the two rows is the C boundary: `cargo bench -p coilwind-fmu`.
+//! The spindle stands and the wire has come to rest, so that a native step costs next to nothing.
+//! The difference of the two rows is the cost of the C boundary. Run `cargo bench -p coilwind-fmu`.
 #![allow(missing_docs)]
 
 use CoilWinding::exports::{
@@ -17,9 +17,9 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use std::ffi::CString;
 use std::hint::black_box;
 
-/// Communication step, s; a power of two, so that points carry no rounding.
+/// Communication step, s. A power of two, so that communication points carry no rounding.
 const STEP: f64 = 1.0 / 1024.0;
-/// Steps after which everything is at rest.
+/// Number of steps after which everything is at rest.
 const STEPS_TO_REST: usize = 1000;
 
 fn resting_simulation() -> (Simulation, Inputs) {
@@ -39,7 +39,7 @@ fn resting_simulation() -> (Simulation, Inputs) {
     (simulation, inputs)
 }
 
-/// The instance and the step it is at.
+/// Returns an instance with everything at rest, and the number of its next step.
 fn resting_instance() -> (fmi2Component, u64) {
     let guid = CString::new(guid().expect("a description")).expect("no NUL");
     let ok = Status::Ok.code();

@@ -1,63 +1,14 @@
-//! Communication points: the importer's time, which nobody else may drift from.
+//! Communication points, kept in the importer's own numbers so that rounding never adds up.
 
+use crate::error::TimeError;
 use serde::{Deserialize, Serialize};
 
-/// Share of the larger of time and step by which two communication points may differ; importers
-/// add steps up or multiply them, and some round to nanoseconds.
+/// Share of the larger of time and step by which two communication points may differ.
+///
+/// Chosen: importers add steps up or multiply them, and some round to nanoseconds.
 const TOLERANCE: f64 = 1e-9;
 
-/// A time or step that makes no sense, times in s.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub(crate) enum TimeError {
-    /// NaN or infinite
-    #[error("{what} = {value} is not a finite number")]
-    NotFinite {
-        /// name of the argument
-        what: &'static str,
-        /// as given
-        value: f64,
-    },
-    /// the experiment ends before it starts
-    #[error("stopTime = {stop} s is not after startTime = {start} s")]
-    Backwards {
-        /// startTime
-        start: f64,
-        /// stopTime
-        stop: f64,
-    },
-    /// zero or negative
-    #[error("communicationStepSize = {step} s must be above 0")]
-    NoStep {
-        /// communicationStepSize
-        step: f64,
-    },
-    /// time plus step is time
-    #[error("communicationStepSize = {step} s is lost in rounding at {time} s")]
-    TooSmall {
-        /// communicationStepSize
-        step: f64,
-        /// currentCommunicationPoint
-        time: f64,
-    },
-    /// not where the last step ended
-    #[error("currentCommunicationPoint = {given} s, but the last step ended at {expected} s")]
-    Elsewhere {
-        /// currentCommunicationPoint
-        given: f64,
-        /// end of the last step
-        expected: f64,
-    },
-    /// the experiment is over
-    #[error("step would end at {end} s, after stopTime = {stop} s")]
-    PastStop {
-        /// end of the step
-        end: f64,
-        /// stopTime
-        stop: f64,
-    },
-}
-
-/// Start, stop and last communication point, s.
+/// Start time, stop time and last communication point, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Clock {
     start: f64,
@@ -66,7 +17,11 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// Experiment from `start` to `stop`, if there is an end.
+    /// Returns the clock of an experiment from `start` to `stop`, s, at its start.
+    ///
+    /// # Errors
+    ///
+    /// If a time is not finite or the stop time is not after the start time.
     pub(crate) fn new(start: f64, stop: Option<f64>) -> Result<Self, TimeError> {
         finite("startTime", start)?;
         if let Some(stop) = stop {
@@ -82,18 +37,23 @@ impl Clock {
         })
     }
 
-    /// The communication point that the last step ended at.
+    /// Returns the communication point that the last step ended at, s.
     pub(crate) fn now(&self) -> f64 {
         self.now
     }
 
-    /// Whether the experiment has reached its stop time; without one, at any time.
+    /// Tells whether the experiment has reached its stop time. Without a stop time it always has.
     pub(crate) fn is_over(&self) -> bool {
         self.stop
             .is_none_or(|stop| self.now >= stop - TOLERANCE * stop.abs().max(self.now.abs()))
     }
 
-    /// End of a step of `step` from `point`, or why it cannot be taken.
+    /// Returns the end of a step of `step` from `point`, all in s.
+    ///
+    /// # Errors
+    ///
+    /// If the step does not begin at the last communication point, is not above 0, is lost in
+    /// rounding or ends after the stop time.
     pub(crate) fn end_of(&self, point: f64, step: f64) -> Result<f64, TimeError> {
         finite("currentCommunicationPoint", point)?;
         finite("communicationStepSize", step)?;
@@ -118,25 +78,25 @@ impl Clock {
         }
     }
 
-    /// Whether times are what the constructor lets pass; bytes from elsewhere may hold anything.
+    /// Tells whether the constructor could have made these times. Decoded bytes may hold anything.
     pub(crate) fn is_sound(&self) -> bool {
         let sound = Self::new(self.start, self.stop).is_ok() || *self == Self::default();
         sound && self.now.is_finite()
     }
 
-    /// Takes over the importer's number for the end of a step, so that its rounding and ours
-    /// never add up.
+    /// Sets the communication point to the importer's number for the end of a step, s.
     pub(crate) fn set(&mut self, end: f64) {
         self.now = end;
     }
 
-    /// Time of the experiment when `simulated` seconds have passed since its start.
+    /// Returns the time of the experiment, s, when `simulated` s have passed since its start.
     pub(crate) fn experiment_time(&self, simulated: f64) -> f64 {
         self.start + simulated
     }
 }
 
-/// Allowed difference of two times, s; never more than half a step, or a step could be skipped.
+/// Returns the allowed difference of two times, s. More than half a step would let an importer skip
+/// a step.
 fn tolerance(a: f64, b: f64, step: f64) -> f64 {
     (TOLERANCE * a.abs().max(b.abs()).max(step)).min(0.5 * step)
 }

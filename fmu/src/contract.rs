@@ -1,4 +1,4 @@
-//! The C functions as an importer sees them in every state of an instance.
+//! Tests of the C functions as an importer sees them in every state of an instance.
 //!
 //! States are planted, so that a failed step and a lost instance need no failing solver.
 
@@ -10,13 +10,15 @@ use crate::lifecycle::{Function, State};
 use crate::logger::Host;
 use crate::pointers;
 use coilwind_model_description::guid;
-use std::ffi::{CStr, c_void};
+use libc::{c_void, size_t};
+use std::ffi::CStr;
 use std::ptr::{null, null_mut};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Messages of one instance.
 type Log = Vec<(fmi2Status, String, String)>;
 
-/// The fixed-arity twin of the variadic logger.
+/// The logger with its one argument written out, since Rust cannot define variadic functions.
 unsafe extern "C" fn record(
     environment: fmi2ComponentEnvironment,
     _name: fmi2String,
@@ -31,6 +33,25 @@ unsafe extern "C" fn record(
         let owned = |text| CStr::from_ptr(text).to_string_lossy().into_owned();
         (*environment.cast::<Log>()).push((status, owned(category), owned(text)));
     }
+}
+
+/// Number of calls of the callbacks that `modelDescription.xml` promises not to use.
+static UNWANTED: AtomicUsize = AtomicUsize::new(0);
+
+unsafe extern "C" fn counted_calloc(number: size_t, size: size_t) -> *mut c_void {
+    UNWANTED.fetch_add(1, Ordering::Relaxed);
+    // SAFETY: any number and size are allowed.
+    unsafe { libc::calloc(number, size) }
+}
+
+unsafe extern "C" fn counted_free(data: *mut c_void) {
+    UNWANTED.fetch_add(1, Ordering::Relaxed);
+    // SAFETY: NULL or from `counted_calloc`, as FMI demands of the FMU.
+    unsafe { libc::free(data) }
+}
+
+unsafe extern "C" fn counted_step(_: fmi2ComponentEnvironment, _: fmi2Status) {
+    UNWANTED.fetch_add(1, Ordering::Relaxed);
 }
 
 fn callbacks(log: &mut Log) -> fmi2CallbackFunctions {
@@ -52,10 +73,10 @@ fn callbacks(log: &mut Log) -> fmi2CallbackFunctions {
     };
     fmi2CallbackFunctions {
         logger: Some(logger),
-        allocateMemory: null(),
-        freeMemory: null(),
-        stepFinished: null(),
-        componentEnvironment: std::ptr::from_mut(log).cast::<c_void>(),
+        allocateMemory: Some(counted_calloc),
+        freeMemory: Some(counted_free),
+        stepFinished: Some(counted_step),
+        componentEnvironment: std::ptr::from_mut(log).cast(),
     }
 }
 
@@ -124,7 +145,7 @@ unsafe fn call(function: Function, c: fmi2Component) -> fmi2Status {
     }
 }
 
-/// Served where allowed; `fmi2Discard` and "not supported" are answers, too.
+/// Returns the status of a call that the state allows.
 fn expected(function: Function) -> fmi2Status {
     use Function as F;
     match function {
@@ -168,6 +189,7 @@ fn every_function_in_every_state() {
             }
         }
     }
+    assert_eq!(UNWANTED.load(Ordering::Relaxed), 0);
 }
 
 #[test]

@@ -1,19 +1,22 @@
-//! The frame round every exported call: is it allowed, did it panic, what is there to tell.
+//! The frame round every exported call: checks that the call is allowed, catches panics and
+//! delivers messages.
 
+use crate::error::Error;
 use crate::ffi::{Status, fmi2Component, fmi2Status};
 use crate::instance::Instance;
 use crate::lifecycle::Function;
-use crate::logger::{Host, Message};
+use crate::logger::Host;
+use crate::message::Message;
 use crate::pointers;
 use crate::pointers::Component;
-use crate::refusal::Refusal;
 use coilwind_model_description::Category;
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Runs `body` on the instance behind `c` if its state allows `function`.
+/// Runs `body` on the instance behind `c` if its state allows `function`, and returns the status.
 ///
-/// Messages are delivered when the borrow of the instance has ended.
+/// Messages are delivered when the borrow of the instance has ended. NULL gives `fmi2Error`
+/// without a message, since there is no logger to tell.
 ///
 /// # Safety
 ///
@@ -21,7 +24,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 pub(crate) unsafe fn call(
     c: fmi2Component,
     function: Function,
-    body: impl FnOnce(&mut Instance) -> Result<(), Refusal>,
+    body: impl FnOnce(&mut Instance) -> Result<(), Error>,
 ) -> fmi2Status {
     // SAFETY: passed on to the caller.
     let Some(component) = (unsafe { pointers::component(c) }) else {
@@ -33,22 +36,23 @@ pub(crate) unsafe fn call(
     status.code()
 }
 
-/// Makes an instance and hands it over, or tells why not and returns NULL.
+/// Makes an instance and gives it to the importer. Where that fails, logs the reason and returns
+/// NULL.
 pub(crate) fn instantiate(
     host: Host,
-    body: impl FnOnce() -> Result<Instance, Refusal>,
+    body: impl FnOnce() -> Result<Instance, Error>,
 ) -> fmi2Component {
     let name = "fmi2Instantiate";
     let message = match catch_unwind(AssertUnwindSafe(body)) {
         Ok(Ok(instance)) => return pointers::give(Component { instance, host }),
-        Ok(Err(refusal)) => message_of(name, &refusal),
+        Ok(Err(error)) => message_of(name, &error),
         Err(panic) => message_of_panic(name, panic),
     };
     host.deliver(&[message]);
     std::ptr::null_mut()
 }
 
-/// Frees an instance, in whatever state; NULL is fine.
+/// Frees an instance in any state. NULL is allowed.
 ///
 /// # Safety
 ///
@@ -68,10 +72,11 @@ pub(crate) unsafe fn free(c: fmi2Component) {
     host.deliver(&messages);
 }
 
+/// Runs `body`, and returns the status with the messages that the importer wants.
 fn run(
     instance: &mut Instance,
     function: Function,
-    body: impl FnOnce(&mut Instance) -> Result<(), Refusal>,
+    body: impl FnOnce(&mut Instance) -> Result<(), Error>,
 ) -> (Status, Vec<Message>) {
     let state = instance.state();
     if !function.allowed_in(state) {
@@ -86,8 +91,8 @@ fn run(
         };
         return (Status::Error, vec![message]);
     }
-    // A panic may leave the instance half changed; it is fatal from then on and never read again,
-    // so unwinding through the reference is safe.
+    // A panic may leave the instance half changed. It is fatal from then on and never read again,
+    // so that unwinding through the reference is safe.
     let outcome = catch_unwind(AssertUnwindSafe(|| {
         instance.begin_call();
         let result = body(instance);
@@ -95,8 +100,8 @@ fn run(
     }));
     match outcome {
         Ok((Ok(()), messages)) => (Status::Ok, messages),
-        Ok((Err(refusal), mut messages)) => {
-            let message = message_of(function.name(), &refusal);
+        Ok((Err(error), mut messages)) => {
+            let message = message_of(function.name(), &error);
             let status = message.status;
             if instance.wants(&message) {
                 messages.push(message);
@@ -113,12 +118,12 @@ fn run(
     }
 }
 
-fn message_of(function: &str, refusal: &Refusal) -> Message {
-    let (status, category) = refusal.status();
+fn message_of(function: &str, error: &Error) -> Message {
+    let (status, category) = error.status();
     Message {
         status,
         category,
-        text: format!("{function}: {refusal}"),
+        text: format!("{function}: {error}"),
     }
 }
 
@@ -164,7 +169,7 @@ mod tests {
     #[test]
     fn a_panic_says_what_happened() {
         let mut instance = Instance::for_tests();
-        let body = |_: &mut Instance| -> Result<(), Refusal> { panic!("reason {}", 7) };
+        let body = |_: &mut Instance| -> Result<(), Error> { panic!("reason {}", 7) };
         let (status, messages) = run(&mut instance, Function::SetReal, body);
         assert_eq!((status, messages[0].status), (Status::Fatal, Status::Fatal));
         assert!(
@@ -185,7 +190,7 @@ mod tests {
     #[test]
     fn calls_out_of_state_never_reach_the_body() {
         let mut instance = Instance::for_tests();
-        let body = |_: &mut Instance| -> Result<(), Refusal> { panic!("must not run") };
+        let body = |_: &mut Instance| -> Result<(), Error> { panic!("must not run") };
         let (status, messages) = run(&mut instance, Function::DoStep, body);
         assert_eq!(status, Status::Error);
         assert_eq!(

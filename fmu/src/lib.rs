@@ -1,18 +1,28 @@
 //! FMI 2.0 for co-simulation: the C boundary of coilwind, and the only crate with `unsafe`.
 //!
-//! `exports` holds the C functions, a few lines each: pointers are read in `pointers`, the call
-//! runs inside `guard`, which asks `lifecycle` whether it is allowed, catches panics and
-//! delivers messages through `logger`. Everything behind that is safe: `instance` with its
-//! `parameters` and `clock`, and `state`, a copy of it.
+//! | module | holds |
+//! |---|---|
+//! | [`ffi`] | the C types of the standard |
+//! | [`exports`] | the C functions, a few lines each |
+//! | `pointers` | all work with the importer's pointers |
+//! | `guard` | the frame round every call: is it allowed, did it panic, deliver the messages |
+//! | `lifecycle` | the table of calls that each state allows |
+//! | `message`, `logger` | messages, the importer's filter and its callback |
+//! | `error` | every reason why a call fails |
+//! | `instance` | what the calls mean, in safe Rust |
+//! | `parameters`, `clock`, `recording` | parts of an instance |
+//! | `state` | a saved state in memory and as bytes |
+//! | `scalar`, `resources` | variables by type, the folder of the unpacked FMU |
 //!
 //! # Invariants
 //!
 //! * A refused call returns `fmi2Error`, says why, and leaves the instance as it was.
-//! * No panic crosses the boundary; after one the instance is fatal and can only be freed.
-//! * A saved state continues to the bit; bytes of one carry magic, version, GUID and checksum.
-//! * No globals but the GUID: instances share nothing and may live in different threads.
-//! * The importer's logger is called when no reference into the instance is alive, so it may call
-//!   back.
+//! * No panic crosses the boundary. After one the instance is fatal and can only be freed.
+//! * A saved state continues to the bit. Its bytes carry magic, version, GUID and checksum.
+//! * The GUID is the only global. Instances share nothing and may live in different threads.
+//! * The importer's logger is called when no reference into the instance is alive, so that it may
+//!   call back.
+//! * The importer's allocator is never called. Each side frees what it has allocated.
 // The library's file name is the model identifier, which FMI wants equal in three places.
 #![allow(non_snake_case)]
 #![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
@@ -20,16 +30,17 @@
 mod clock;
 #[cfg(test)]
 mod contract;
+mod error;
 pub mod exports;
 pub mod ffi;
 mod guard;
 mod instance;
 mod lifecycle;
 mod logger;
+mod message;
 mod parameters;
 mod pointers;
 mod recording;
-mod refusal;
 mod resources;
 #[cfg(test)]
 mod saving;

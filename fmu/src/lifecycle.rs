@@ -1,4 +1,4 @@
-//! Which call is allowed in which state: one table (FMI 2.0.5, section 4.2.4).
+//! The table of calls that each state of an instance allows (FMI 2.0.5, section 4.2.4).
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -6,21 +6,21 @@ use std::fmt;
 /// State of an instance between two calls.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum State {
-    /// after `fmi2Instantiate` or `fmi2Reset`
+    /// After `fmi2Instantiate` or `fmi2Reset`.
     Instantiated,
-    /// between `fmi2EnterInitializationMode` and `fmi2ExitInitializationMode`
+    /// Between `fmi2EnterInitializationMode` and `fmi2ExitInitializationMode`.
     Initialization,
-    /// at a communication point
+    /// At a communication point.
     StepComplete,
-    /// the solver gave up inside a step
+    /// After a step in which the solver gave up.
     StepFailed,
-    /// after `fmi2Terminate`
+    /// After `fmi2Terminate`.
     Terminated,
-    /// a panic was caught; nothing about the instance can be trusted
+    /// After a caught panic. Nothing about the instance can be trusted.
     Fatal,
 }
 
-/// One bit per state.
+// One bit per state, in the order of `State`.
 const I: u8 = 1;
 const M: u8 = 1 << 1;
 const C: u8 = 1 << 2;
@@ -77,7 +77,7 @@ macro_rules! functions {
             #[cfg(test)]
             pub(crate) const ALL: &[Function] = &[$(Function::$function),*];
 
-            /// Name in C.
+            /// Returns the name in C.
             pub(crate) fn name(self) -> &'static str {
                 match self { $(Function::$function => $name),* }
             }
@@ -125,7 +125,7 @@ functions! {
 }
 
 impl Function {
-    /// Whether the standard allows the call in that state.
+    /// Tells whether the standard allows the call in that state.
     pub(crate) fn allowed_in(self, state: State) -> bool {
         self.states() & state.bit() != 0
     }

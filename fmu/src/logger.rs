@@ -1,29 +1,22 @@
-//! Messages to the importer: which ones it wants and how they reach its callback.
+//! The way of messages to the importer: which ones it wants, and the call of its logger.
 
+use crate::error::Error;
 use crate::ffi::{Status, fmi2CallbackFunctions, fmi2CallbackLogger, fmi2ComponentEnvironment};
-use crate::refusal::Refusal;
+use crate::message::Message;
 use coilwind_model_description::Category;
 use std::ffi::CString;
 use std::sync::Arc;
 
-/// Something to tell, collected during a call and delivered at its end.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(crate) struct Message {
-    pub(crate) status: Status,
-    pub(crate) category: Category,
-    pub(crate) text: String,
-}
-
-/// Which messages the importer asked for.
+/// The messages that the importer asked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Filter {
     on: bool,
-    /// `None`: all of them
+    /// The categories that are on; `None` stands for all of them.
     categories: Option<Vec<Category>>,
 }
 
 impl Filter {
-    /// `loggingOn` of `fmi2Instantiate`.
+    /// Returns the filter of `loggingOn` in `fmi2Instantiate`, for all categories.
     pub(crate) fn new(on: bool) -> Self {
         Self {
             on,
@@ -31,13 +24,17 @@ impl Filter {
         }
     }
 
-    /// Arguments of `fmi2SetDebugLogging`; no names stand for all categories.
-    pub(crate) fn with(on: bool, names: &[String]) -> Result<Self, Refusal> {
+    /// Returns the filter of the arguments of `fmi2SetDebugLogging`. No names stand for all
+    /// categories.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::UnknownCategory`] for a name that is not declared.
+    pub(crate) fn with(on: bool, names: &[String]) -> Result<Self, Error> {
         let categories = names
             .iter()
             .map(|name| {
-                Category::by_name(name)
-                    .ok_or_else(|| Refusal::UnknownCategory { name: name.clone() })
+                Category::by_name(name).ok_or_else(|| Error::UnknownCategory { name: name.clone() })
             })
             .collect::<Result<Vec<_>, _>>()?;
         let all = categories.is_empty() || categories.contains(&Category::All);
@@ -47,8 +44,10 @@ impl Filter {
         })
     }
 
-    /// Errors and discarded steps always pass: without the reason nobody can act on the status. The rest is
-    /// for debugging, and passes where it was switched on.
+    /// Tells whether a message goes to the importer.
+    ///
+    /// Errors and discarded steps always do, since nobody can act on the status without the
+    /// reason. Other messages do where their category is on.
     pub(crate) fn passes(&self, message: &Message) -> bool {
         message.status >= Status::Discard
             || self.on
@@ -68,7 +67,7 @@ pub(crate) struct Host {
 }
 
 impl Host {
-    /// Callbacks as given to `fmi2Instantiate`.
+    /// Keeps the name and the callbacks that `fmi2Instantiate` got.
     ///
     /// # Safety
     ///
@@ -83,7 +82,7 @@ impl Host {
         }
     }
 
-    /// Calls the logger once per message; does nothing where the importer has none.
+    /// Calls the logger once per message, if the importer has one.
     pub(crate) fn deliver(&self, messages: &[Message]) {
         let Some(logger) = self.logger else { return };
         for message in messages {
@@ -104,7 +103,7 @@ impl Host {
     }
 }
 
-/// A C string; NULs inside are left out.
+/// Returns a C string. NULs inside the text are left out.
 pub(crate) fn c_string(text: &str) -> CString {
     let bytes: Vec<u8> = text.bytes().filter(|byte| *byte != 0).collect();
     CString::new(bytes).unwrap_or_default()

@@ -1,6 +1,6 @@
-//! What the importer set before the start, and the scene that follows from it.
+//! The parameters that the importer set, and the scene that follows from them.
 
-use crate::refusal::Refusal;
+use crate::error::Error;
 use crate::resources;
 use coilwind::scene::{Scene, Warning};
 use coilwind::settings::SceneSettings;
@@ -9,40 +9,47 @@ use coilwind::variables::{Access, Value, Variable, by_reference};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Name of the parameter that the others are laid over.
+/// Name of the parameter that names the scene under all others.
 const SCENE_FILE: &str = "scene.file";
 
-/// `scene.file`, what it held, and what was set explicitly.
+/// What a saved state holds of parameters: `scene.file`, the scene that it held, and what was set
+/// explicitly, by value reference.
 pub(crate) type SavedParameters = (String, SceneSettings, BTreeMap<u32, Value>);
 
-/// Parameters with their precedence: defaults, then `scene.file`, then every parameter set
-/// explicitly, in whatever order.
+/// The parameters with their precedence.
+///
+/// Defaults come first, then `scene.file`, then every parameter that was set explicitly. The order
+/// of the calls does not matter.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters {
-    /// as the importer set it; empty: default scene
+    /// `scene.file` as the importer set it; empty for the default scene.
     file: String,
-    /// the scene of `file`, nothing laid over
+    /// The scene of `file` alone.
     base: SceneSettings,
-    /// by reference, so that the order of calls cannot matter
+    /// What was set explicitly, by value reference, so that the order of calls cannot matter.
     explicit: BTreeMap<u32, Value>,
-    /// `base` with `explicit` over it
+    /// `base` with `explicit` laid over it.
     settings: SceneSettings,
 }
 
 impl Parameters {
-    /// What a saved state holds of them; [`Self::restored`] is the way back.
+    /// Returns what a saved state holds. [`Self::restored`] is the inverse.
     pub(crate) fn saved(&self) -> SavedParameters {
         (self.file.clone(), self.base.clone(), self.explicit.clone())
     }
 
-    /// Parameters of a saved state: `scene.file` as it was read then, whatever has become of the file.
-    pub(crate) fn restored(saved: SavedParameters) -> Result<Self, Refusal> {
+    /// Returns the parameters of a saved state. The scene is the one that `scene.file` held when
+    /// it was read; the file itself is not read again.
+    ///
+    /// # Errors
+    ///
+    /// If a reference is unknown or a value is not valid.
+    pub(crate) fn restored(saved: SavedParameters) -> Result<Self, Error> {
         let (file, base, explicit) = saved;
         let mut settings = base.clone();
         for (reference, value) in &explicit {
             let reference = *reference;
-            let variable =
-                by_reference(reference).ok_or(Refusal::UnknownReference { reference })?;
+            let variable = by_reference(reference).ok_or(Error::UnknownReference { reference })?;
             settings.set(variable.name, value.clone())?;
         }
         Ok(Self {
@@ -53,7 +60,7 @@ impl Parameters {
         })
     }
 
-    /// The default scene.
+    /// Returns the parameters of the default scene.
     pub(crate) fn new() -> Self {
         Self {
             file: String::new(),
@@ -63,12 +70,17 @@ impl Parameters {
         }
     }
 
-    /// These parameters with some more set; the values have passed their rows' limits.
+    /// Returns these parameters with `changes` laid over. The caller has checked the values against
+    /// the limits of their variables. `resources` is the folder of the unpacked FMU.
+    ///
+    /// # Errors
+    ///
+    /// If a new `scene.file` cannot be loaded or a value is not valid.
     pub(crate) fn with(
         &self,
         changes: &[(&'static Variable, Value)],
         resources: Option<&Path>,
-    ) -> Result<Self, Refusal> {
+    ) -> Result<Self, Error> {
         let mut next = self.clone();
         for (variable, value) in changes {
             match value {
@@ -92,7 +104,7 @@ impl Parameters {
         Ok(next)
     }
 
-    /// Value of a parameter; `None` for inputs and results.
+    /// Returns the value of a parameter, or `None` for inputs and results.
     pub(crate) fn get(&self, variable: &Variable) -> Option<Value> {
         match variable.access {
             Access::Parameter { .. } if variable.name == SCENE_FILE => {
@@ -103,17 +115,21 @@ impl Parameters {
         }
     }
 
-    /// Every leaf of the scene with the explicit ones laid over.
+    /// Returns every setting of the scene, the explicit ones laid over.
     pub(crate) fn settings(&self) -> &SceneSettings {
         &self.settings
     }
 
-    /// The scene they make together, and what is odd about it.
-    pub(crate) fn scene(&self) -> Result<(Scene, Vec<Warning>), Refusal> {
+    /// Builds the scene of all parameters, with warnings about it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Scene`] if the parameters do not make a valid scene.
+    pub(crate) fn scene(&self) -> Result<(Scene, Vec<Warning>), Error> {
         Ok(self.settings.build_with_warnings()?)
     }
 
-    /// Inputs of that scene before the first step.
+    /// Returns the inputs of that scene at the start.
     pub(crate) fn start_inputs(&self) -> Inputs {
         self.settings.start_inputs()
     }

@@ -1,9 +1,12 @@
-//! All work with pointers of the importer. Nothing here keeps one.
+//! All work with the importer's pointers. Nothing here keeps one beyond its call.
+//!
+//! Instances and saved states are boxes that the importer holds as opaque pointers and gives back
+//! to be freed. No other memory crosses the boundary.
 
+use crate::error::Error;
 use crate::ffi::{fmi2CallbackFunctions, fmi2Component, fmi2FMUstate, fmi2String};
 use crate::instance::Instance;
 use crate::logger::Host;
-use crate::refusal::Refusal;
 use crate::state::Snapshot;
 use std::ffi::CStr;
 
@@ -16,7 +19,8 @@ pub(crate) struct Component {
 /// What an `fmi2FMUstate` points to.
 pub(crate) struct Saved {
     pub(crate) snapshot: Snapshot,
-    /// from the question for their number to the copying, so that they are made once
+    /// The bytes of the snapshot, kept between `fmi2SerializedFMUstateSize` and
+    /// `fmi2SerializeFMUstate` so that they are made once.
     pub(crate) bytes: Option<Vec<u8>>,
 }
 
@@ -29,24 +33,24 @@ impl From<Snapshot> for Saved {
     }
 }
 
-/// Hands an instance over to the importer; [`take`] is the way back.
+/// Turns an instance into a handle for the importer. [`take`] is the inverse.
 pub(crate) fn give(component: Component) -> fmi2Component {
     Box::into_raw(Box::new(component)).cast()
 }
 
-/// The instance behind a handle; `None` for NULL.
+/// Returns the instance behind a handle, or `None` for NULL.
 ///
 /// # Safety
 ///
 /// `c` is NULL or came from [`give`] and was not taken back, and the importer makes no second
-/// call on it while the borrow lives (FMI 2.0.5, section 2.1.5: calls on one instance are made one
-/// after the other).
+/// call on it while the borrow lives. FMI 2.0.5, section 2.1.5, demands that calls on one instance
+/// are made one after the other.
 pub(crate) unsafe fn component<'a>(c: fmi2Component) -> Option<&'a mut Component> {
     // SAFETY: a pointer from `give` is aligned, initialised and, by the contract above, unshared.
     unsafe { c.cast::<Component>().as_mut() }
 }
 
-/// Takes an instance back; `None` for NULL.
+/// Takes an instance back from the importer, or returns `None` for NULL.
 ///
 /// # Safety
 ///
@@ -56,22 +60,24 @@ pub(crate) unsafe fn take(c: fmi2Component) -> Option<Box<Component>> {
     (!c.is_null()).then(|| unsafe { Box::from_raw(c.cast()) })
 }
 
-/// Hands a saved state over to the importer; [`take_state`] is the way back.
+/// Turns a saved state into a handle for the importer. [`take_state`] is the inverse.
 pub(crate) fn give_state(state: Saved) -> fmi2FMUstate {
     Box::into_raw(Box::new(state)).cast()
 }
 
-/// A saved state behind the importer's handle; `None` for NULL.
+/// Returns the saved state behind a handle, or `None` for NULL.
 ///
 /// # Safety
 ///
-/// `state` is NULL or came from [`give_state`], was not taken back, and is used by one call at a time.
+/// `state` is NULL or came from [`give_state`], was not taken back, and is used by one call at a
+/// time.
 pub(crate) unsafe fn state<'a>(state: fmi2FMUstate) -> Option<&'a mut Saved> {
-    // SAFETY: a pointer from `give_state` is aligned, initialised and, by the contract above, unshared.
+    // SAFETY: a pointer from `give_state` is aligned, initialised and, by the contract above,
+    // unshared.
     unsafe { state.cast::<Saved>().as_mut() }
 }
 
-/// Takes a saved state back; `None` for NULL.
+/// Takes a saved state back from the importer, or returns `None` for NULL.
 ///
 /// # Safety
 ///
@@ -81,7 +87,8 @@ pub(crate) unsafe fn take_state(state: fmi2FMUstate) -> Option<Box<Saved>> {
     (!state.is_null()).then(|| unsafe { Box::from_raw(state.cast()) })
 }
 
-/// Puts a state where the importer wants it: over the one that is there, or in a new place.
+/// Stores a state where the importer's pointer leads to: over the state that is there, or in a new
+/// box if it is NULL.
 ///
 /// # Safety
 ///
@@ -94,7 +101,7 @@ pub(crate) unsafe fn put_state(target: &mut fmi2FMUstate, saved: Saved) {
     }
 }
 
-/// `n` values of the importer; with `n = 0` the pointer is not looked at.
+/// Returns `n` values of the importer. With `n = 0` the pointer is not used.
 ///
 /// # Safety
 ///
@@ -103,16 +110,16 @@ pub(crate) unsafe fn slice<'a, T>(
     argument: &'static str,
     data: *const T,
     n: usize,
-) -> Result<&'a [T], Refusal> {
+) -> Result<&'a [T], Error> {
     match (n, data.is_null()) {
         (0, _) => Ok(&[]),
-        (_, true) => Err(Refusal::Null { argument }),
+        (_, true) => Err(Error::Null { argument }),
         // SAFETY: not NULL, and by the contract good for `n` values.
         (_, false) => Ok(unsafe { std::slice::from_raw_parts(data, n) }),
     }
 }
 
-/// Room for `n` values; with `n = 0` the pointer is not looked at.
+/// Returns the importer's room for `n` values. With `n = 0` the pointer is not used.
 ///
 /// # Safety
 ///
@@ -121,16 +128,16 @@ pub(crate) unsafe fn slice_mut<'a, T>(
     argument: &'static str,
     data: *mut T,
     n: usize,
-) -> Result<&'a mut [T], Refusal> {
+) -> Result<&'a mut [T], Error> {
     match (n, data.is_null()) {
         (0, _) => Ok(&mut []),
-        (_, true) => Err(Refusal::Null { argument }),
+        (_, true) => Err(Error::Null { argument }),
         // SAFETY: not NULL, and by the contract good for `n` values and unshared.
         (_, false) => Ok(unsafe { std::slice::from_raw_parts_mut(data, n) }),
     }
 }
 
-/// Room for one value.
+/// Returns the importer's room for one value.
 ///
 /// # Safety
 ///
@@ -138,28 +145,28 @@ pub(crate) unsafe fn slice_mut<'a, T>(
 pub(crate) unsafe fn target<'a, T>(
     argument: &'static str,
     data: *mut T,
-) -> Result<&'a mut T, Refusal> {
+) -> Result<&'a mut T, Error> {
     // SAFETY: passed on to the caller.
-    unsafe { data.as_mut() }.ok_or(Refusal::Null { argument })
+    unsafe { data.as_mut() }.ok_or(Error::Null { argument })
 }
 
-/// A copy of a string.
+/// Returns a copy of a string.
 ///
 /// # Safety
 ///
 /// `text` is NULL or ends with a NUL.
-pub(crate) unsafe fn string(argument: &'static str, text: fmi2String) -> Result<String, Refusal> {
+pub(crate) unsafe fn string(argument: &'static str, text: fmi2String) -> Result<String, Error> {
     if text.is_null() {
-        return Err(Refusal::Null { argument });
+        return Err(Error::Null { argument });
     }
     // SAFETY: not NULL, and by the contract NUL-terminated.
     let text = unsafe { CStr::from_ptr(text) };
     text.to_str()
         .map(str::to_owned)
-        .map_err(|_| Refusal::Encoding { argument })
+        .map_err(|_| Error::Encoding { argument })
 }
 
-/// Copies of `n` strings.
+/// Returns copies of `n` strings.
 ///
 /// # Safety
 ///
@@ -168,7 +175,7 @@ pub(crate) unsafe fn strings(
     argument: &'static str,
     data: *const fmi2String,
     n: usize,
-) -> Result<Vec<String>, Refusal> {
+) -> Result<Vec<String>, Error> {
     // SAFETY: passed on to the caller.
     let texts = unsafe { slice(argument, data, n) }?;
     // SAFETY: passed on to the caller.
@@ -178,7 +185,7 @@ pub(crate) unsafe fn strings(
         .collect()
 }
 
-/// The importer's side of a new instance; a name that cannot be read is replaced.
+/// Returns the importer's side of a new instance. A name that cannot be read is replaced.
 ///
 /// # Safety
 ///
@@ -203,7 +210,7 @@ mod tests {
             assert!(slice::<f64>("vr", null(), 0).is_ok_and(<[f64]>::is_empty));
             assert!(matches!(
                 slice::<f64>("vr", null(), 1),
-                Err(Refusal::Null { argument: "vr" })
+                Err(Error::Null { argument: "vr" })
             ));
             assert!(slice_mut::<f64>("value", null_mut(), 0).is_ok_and(|s| s.is_empty()));
             assert!(slice_mut::<f64>("value", null_mut(), 2).is_err());
@@ -217,7 +224,7 @@ mod tests {
 
     #[test]
     fn strings_are_copied_and_checked() {
-        let bad = [b'a' as i8, -1_i8, 0].map(|byte| byte as std::ffi::c_char);
+        let bad = [b'a' as i8, -1_i8, 0].map(|byte| byte as libc::c_char);
         let good = c"Wicklung \xc3\xbc";
         let list = [good.as_ptr(), c"".as_ptr()];
         // SAFETY: all of them end with a NUL or are NULL.
@@ -225,11 +232,11 @@ mod tests {
             assert_eq!(string("s", good.as_ptr()).expect("UTF-8"), "Wicklung ü");
             assert!(matches!(
                 string("s", bad.as_ptr()),
-                Err(Refusal::Encoding { argument: "s" })
+                Err(Error::Encoding { argument: "s" })
             ));
             assert!(matches!(
                 string("s", null()),
-                Err(Refusal::Null { argument: "s" })
+                Err(Error::Null { argument: "s" })
             ));
             assert_eq!(
                 strings("s", list.as_ptr(), 2).expect("two"),

@@ -1,42 +1,28 @@
-//! Files of a run: a row per communication point, results at the end, in `output.directory`.
+//! The files of a run in `output.directory`: a row per communication point, results at the end.
 
-use coilwind::output::{Ending, History, Mark, OutputError, Snapshot, write_results};
+use crate::error::RecordError;
+use coilwind::output::{Ending, History, Mark, Snapshot, write_results};
 use coilwind::settings::SceneSettings;
-use coilwind::simulation::{SimError, Simulation};
+use coilwind::simulation::Simulation;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// What kept files from being written.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum RecordError {
-    /// the folder or the scene in it
-    #[error("cannot write {}: {source}", path.display())]
-    Folder {
-        /// folder or file
-        path: PathBuf,
-        /// what the system said
-        source: std::io::Error,
-    },
-    /// a result file
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// the core's surface, wanted for the picture
-    #[error(transparent)]
-    Core(#[from] SimError),
-}
-
-/// The open files of a run.
+/// The open files of a run, and the time that the solver took so far.
 #[derive(Debug)]
 pub(crate) struct Recording {
     directory: PathBuf,
-    /// `None` once a row could not be written: a table with holes would mislead
+    /// `None` after a row could not be written, since a table with holes would mislead.
     history: Option<History>,
     snapshot: Snapshot,
     computed: Duration,
 }
 
 impl Recording {
-    /// Makes the folder, leaves the scene in it and opens the history.
+    /// Makes the folder, writes the scene to it and opens the history.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be written or the core's surface cannot be made.
     pub(crate) fn start(
         settings: &SceneSettings,
         simulation: &Simulation,
@@ -58,13 +44,21 @@ impl Recording {
         })
     }
 
-    /// Where the history stands; `None` if it broke off.
+    /// Puts all rows on disk and returns where the history stands, or `None` if it broke off.
+    ///
+    /// # Errors
+    ///
+    /// If the rows cannot be written.
     pub(crate) fn mark(&mut self) -> Result<Option<Mark>, RecordError> {
         Ok(self.history.as_mut().map(History::mark).transpose()?)
     }
 
-    /// Takes the files of a restored state up again: the history is cut back to the mark. Where the file is not
-    /// the one that the mark was made in, a new one begins; the flag says so.
+    /// Opens the files of a restored state and cuts the history back to the mark. Where the file is
+    /// not the one that the mark was made in, a new one begins, and the flag is true.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::start`].
     pub(crate) fn resume(
         settings: &SceneSettings,
         simulation: &Simulation,
@@ -84,13 +78,17 @@ impl Recording {
         Ok((recording, false))
     }
 
-    /// Counts time spent in the solver.
+    /// Adds time that the solver took.
     pub(crate) fn computed(&mut self, duration: Duration) {
         self.computed += duration;
     }
 
-    /// Adds a communication point, `time` in s of the experiment. After a failure, told once, the
-    /// history ends there.
+    /// Adds a communication point at `time`, s of the experiment.
+    ///
+    /// # Errors
+    ///
+    /// If the row cannot be written. The history ends there, and later rows are left out without
+    /// an error.
     pub(crate) fn row(&mut self, time: f64, simulation: &Simulation) -> Result<(), RecordError> {
         let Some(history) = &mut self.history else {
             return Ok(());
@@ -102,7 +100,11 @@ impl Recording {
         Ok(written?)
     }
 
-    /// Writes what describes the run and closes the files.
+    /// Writes the results of the run and closes the files.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be written.
     pub(crate) fn finish(
         mut self,
         simulation: &Simulation,

@@ -1,13 +1,13 @@
-//! Where the unpacked FMU keeps its resources, from the URI that importers hand over.
+//! The folder in which the unpacked FMU keeps its resources, and scene files in it.
 
 use percent_encoding::percent_decode_str;
 use std::path::{Path, PathBuf};
 
-/// Path of a `file:` URI, or of a plain path, which some importers pass; `None` when it names no
-/// local directory.
+/// Returns the path of a `file:` URI, or `None` when it names no local directory.
 ///
-/// Accepts `file:///path`, `file://localhost/path`, `file:/path`, each percent-encoded or not. A
-/// `%` that starts no code stands for itself, so unencoded names survive.
+/// Accepts `file:///path`, `file://localhost/path`, `file:/path`, each percent-encoded or not, and
+/// the plain path that some importers pass. A `%` that starts no code stands for itself, so that
+/// unencoded names work.
 pub(crate) fn directory(uri: &str) -> Option<PathBuf> {
     let rest = match uri.get(..5) {
         Some(scheme) if scheme.eq_ignore_ascii_case("file:") => &uri[5..],
@@ -32,7 +32,7 @@ pub(crate) fn directory(uri: &str) -> Option<PathBuf> {
     Some(PathBuf::from(without_slash_before_drive(&decoded)))
 }
 
-/// `/C:/x` is `C:/x`.
+/// Turns `/C:/x` into `C:/x`.
 fn without_slash_before_drive(path: &str) -> &str {
     match path.as_bytes() {
         [b'/', drive, b':', ..] if drive.is_ascii_alphabetic() => &path[1..],
@@ -40,8 +40,10 @@ fn without_slash_before_drive(path: &str) -> &str {
     }
 }
 
-/// What to load for a `scene.file` of that name: a file among the resources if there is one, else
-/// the name itself, which is a packed name or a path.
+/// Returns what to load for a `scene.file` of that name.
+///
+/// That is a file of that name in `resources` or `resources/scenes` if there is one. Else it is the
+/// name itself, which is a packed name or a path.
 pub(crate) fn scene(name: &str, resources: Option<&Path>) -> String {
     let Some(resources) = resources else {
         return name.to_owned();

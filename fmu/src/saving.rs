@@ -1,11 +1,11 @@
-//! Saved states at the instance: continuation to the bit, refusals, files.
+//! Tests of saved states: continuation to the bit, bytes that are refused, files.
 
+use crate::error::{BytesError, Error};
 use crate::ffi;
 use crate::ffi::Status;
 use crate::instance::Instance;
 use crate::lifecycle::State;
-use crate::refusal::Refusal;
-use crate::state::{BytesError, Snapshot};
+use crate::state::Snapshot;
 use coilwind::variables::by_name;
 use coilwind_model_description::guid;
 
@@ -19,7 +19,7 @@ fn set(instance: &mut Instance, name: &str, value: f64) {
     instance.set(&[reference(name)], [value]).expect("set");
 }
 
-/// An instance at its first communication point, with something of everything set.
+/// Returns an instance at its first communication point, with parameters and inputs set.
 fn started() -> Instance {
     let mut instance = Instance::for_tests();
     instance.setup_experiment(1.0, None).expect("an experiment");
@@ -50,7 +50,7 @@ fn bytes(snapshot: &Snapshot) -> Vec<u8> {
         .expect("bytes")
 }
 
-fn read(data: &[u8]) -> Result<Snapshot, Refusal> {
+fn read(data: &[u8]) -> Result<Snapshot, Error> {
     Snapshot::from_bytes(data, guid().expect("a description"))
 }
 
@@ -62,17 +62,17 @@ fn an_instance_goes_on_from_a_copy_from_bytes_and_after_a_reset() {
     let data = bytes(&saved);
     wind(&mut instance, 150, 250);
     let end = bytes(&instance.snapshot());
-    // back and forth again
+    // Back to the saved state, and forth again.
     instance.restore(&saved);
     assert!(bytes(&instance.snapshot()) == data);
     wind(&mut instance, 150, 250);
     assert!(bytes(&instance.snapshot()) == end);
-    // after a reset, from bytes
+    // After a reset, from bytes.
     instance.reset().expect("resets");
     instance.restore(&read(&data).expect("a state"));
     wind(&mut instance, 150, 250);
     assert!(bytes(&instance.snapshot()) == end);
-    // in an instance that never started
+    // In an instance that never started.
     let mut other = Instance::for_tests();
     other.restore(&read(&data).expect("a state"));
     wind(&mut other, 150, 250);
@@ -115,7 +115,7 @@ fn other_bytes_are_refused_with_the_reason() {
     wind(&mut instance, 0, 3);
     let good = bytes(&instance.snapshot());
     let refused = |data: &[u8]| match read(data) {
-        Err(Refusal::Bytes(error)) => error,
+        Err(Error::Bytes(error)) => error,
         other => panic!("{other:?}"),
     };
     assert!(matches!(refused(b""), BytesError::Foreign { size: 0 }));
@@ -126,7 +126,13 @@ fn other_bytes_are_refused_with_the_reason() {
         refused(&data)
     };
     assert!(matches!(changed(0), BytesError::Foreign { .. }));
-    assert!(matches!(changed(8), BytesError::Version { found: 0 }));
+    assert!(matches!(
+        changed(8),
+        BytesError::Version {
+            found: 0,
+            expected: 1
+        }
+    ));
     assert!(matches!(changed(20), BytesError::Guid { .. }));
     assert!(matches!(changed(good.len() - 1), BytesError::Damaged));
     assert!(matches!(changed(200), BytesError::Damaged));
@@ -138,7 +144,7 @@ fn other_bytes_are_refused_with_the_reason() {
         );
         assert!(short, "{size}: {error}");
     }
-    // what an importer's buffer holds beyond the state does not matter
+    // What an importer's buffer holds beyond the state does not matter.
     let mut long = good.clone();
     long.extend([9; 10]);
     assert!(read(&long).is_ok());
@@ -159,13 +165,13 @@ fn derivatives_are_checked_before_anything_changes() {
         assert!(both.is_err());
     }
     assert!(bytes(&instance.snapshot()) == before);
-    // a ramp that would end outside of the range is refused by the step, which changes nothing
+    // A ramp that would end outside of the range is refused by the step, which changes nothing.
     let setpoint = reference("tension_setpoint");
     instance
         .set_input_derivatives(&[setpoint], &[1], &[-1e6])
         .expect("finite");
     let error = instance.do_step(1.0, STEP).expect_err("negative tension");
-    assert!(matches!(error, Refusal::LeavesRange { .. }), "{error}");
+    assert!(matches!(error, Error::LeavesRange { .. }), "{error}");
     assert_eq!(instance.state(), State::StepComplete);
     instance
         .set_input_derivatives(&[setpoint], &[1], &[0.0])
@@ -190,12 +196,12 @@ fn inputs_follow_their_derivatives_for_one_step() {
         .output_derivatives(&[angle], &[1])
         .expect("order 1");
     assert_eq!(slope, [1.0]);
-    // held from now on
+    // The inputs are held from now on.
     instance.do_step(1.001, 1e-3).expect("a step");
     assert_eq!(instance.get::<f64>(&inputs).expect("inputs"), now);
 }
 
-/// History, rows before and after: the file is as if the way taken back had never been gone.
+/// The history of a run that went back to a saved state is that of a run that never left it.
 #[test]
 fn the_history_is_cut_back() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -210,7 +216,7 @@ fn the_history_is_cut_back() {
         instance.enter_initialization_mode().expect("enters");
         instance.exit_initialization_mode().expect("exits");
         work(&mut instance);
-        // puts the history on disk; without an end no pictures are drawn
+        // A snapshot puts the history on disk. Without an end no pictures are drawn.
         instance.snapshot();
         let messages = instance.end_call();
         let text = std::fs::read(directory.join("history.csv")).expect("a history");
@@ -234,7 +240,7 @@ fn the_history_is_cut_back() {
         wind(i, 8, 20);
     });
     assert!(plain == other && messages.is_empty(), "{messages:?}");
-    // another file is in its place: a new one begins, and the importer is told
+    // Another file is in its place: a new one begins, and the importer is told.
     let (anew, messages) = record("anew", &|i| {
         wind(i, 0, 8);
         let data = bytes(&i.snapshot());
@@ -248,8 +254,8 @@ fn the_history_is_cut_back() {
     assert!(messages[0].text.contains("begins anew"), "{messages:?}");
 }
 
-/// A step longer than any solver could take, and no shorter one allowed: `fmi2Discard`, outputs and clock of what
-/// was reached, and a saved state to go on from.
+/// A step that the solver cannot take gives `fmi2Discard`. Outputs and clock are those of what was
+/// reached, and a saved state can be gone on from.
 #[test]
 fn a_failed_step_can_be_taken_back() {
     let mut instance = Instance::for_tests();
@@ -260,7 +266,7 @@ fn a_failed_step_can_be_taken_back() {
     instance.do_step(1.0, 0.02).expect("standing is easy");
     let saved = instance.snapshot();
     set(&mut instance, "spindle_speed", 300.0);
-    // half a turn a step cannot go on
+    // Half a turn a step cannot go on.
     let (mut time, size) = (1.02, 0.013);
     let error = loop {
         match instance.do_step(time, size) {
@@ -288,7 +294,7 @@ fn a_failed_step_can_be_taken_back() {
         "{angle} at {reached}"
     );
     assert_eq!(instance.boolean_status(ffi::TERMINATED).ok(), Some(true));
-    // back, and another way
+    // Back to the saved state, and another way.
     instance.restore(&saved);
     assert_eq!(instance.state(), State::StepComplete);
     assert_eq!(

@@ -1,4 +1,4 @@
-//! Random calls: whatever an importer does, nothing crashes, and a refused call changes nothing.
+//! Tests with random calls: nothing crashes, and a refused call changes nothing.
 
 use crate::exports::*;
 use crate::ffi::*;
@@ -26,7 +26,7 @@ const REFERENCES: [&str; 9] = [
 const VALUES: [f64; 7] = [0.0, 0.3e-3, 0.25, 20.0, -1e9, f64::NAN, f64::INFINITY];
 const STEPS: [f64; 6] = [1e-5, 1e-5, 3e-6, 0.0, -1e-5, f64::NAN];
 
-/// A call; numbers choose arguments from the lists above and one of two saved states.
+/// A call. Its numbers choose arguments from the lists above, and one of two saved states.
 #[derive(Clone, Copy, Debug)]
 enum Call {
     Setup,
@@ -84,7 +84,8 @@ fn reference(which: usize) -> u32 {
     coilwind::variables::by_name(REFERENCES[which]).map_or(u32::MAX, |v| v.reference)
 }
 
-/// The instance as bytes. What is made of the same settings when first asked for does not count.
+/// Returns the instance as bytes. Before the start the simulation is left out, since a getter may
+/// make it from the same settings.
 fn bytes(c: fmi2Component) -> Vec<u8> {
     // SAFETY: the component is alive and nobody else looks at it.
     let component = unsafe { pointers::component(c) };
@@ -149,7 +150,7 @@ fn perform(call: Call, c: fmi2Component, states: &mut [fmi2FMUstate; 2]) -> fmi2
     }
 }
 
-/// Carries a state over as bytes, which get lost or damaged on the way unless `damage` is 0.
+/// Copies a state by way of its bytes, which are cut or damaged unless `damage` is 0.
 unsafe fn carry(
     c: fmi2Component,
     states: &mut [fmi2FMUstate; 2],

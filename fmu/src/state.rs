@@ -1,16 +1,23 @@
-//! A saved state of an instance: a copy in memory, and the bytes of one.
+//! A saved state of an instance, as a copy in memory and as bytes.
 //!
-//! ```text
-//! magic, 8 bytes | version, 4 | GUID, 38 | length of the rest, 8 | CRC-32 of the rest, 4 | the rest
-//! ```
+//! The bytes are a header and the contents:
 //!
-//! Numbers in the header have the low byte first. The checksum finds damage, not forgery; what is
-//! decoded is checked all the same before it is used.
+//! | field | bytes |
+//! |---|---|
+//! | magic | 8 |
+//! | version of the format | 4 |
+//! | GUID of the FMU | 38 |
+//! | length of the contents | 8 |
+//! | CRC-32 of the contents | 4 |
+//! | contents, encoded with postcard | the rest |
+//!
+//! Numbers in the header have the low byte first. The checksum finds damage, not forgery, so that
+//! decoded contents are checked before they are used.
 
 use crate::clock::Clock;
+use crate::error::{BytesError, Error};
 use crate::lifecycle::State;
 use crate::parameters::{Parameters, SavedParameters};
-use crate::refusal::Refusal;
 use coilwind::output::Mark;
 use coilwind::signals::Inputs;
 use coilwind::simulation::Simulation;
@@ -18,64 +25,36 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 const MAGIC: &[u8; 8] = b"\x89CoilFMU";
-/// Changes whenever the bytes of the same state do.
+/// Version of the format. It changes whenever the bytes of the same state do.
 const VERSION: u32 = 1;
-/// A GUID with its braces.
+/// Bytes of a GUID with its braces.
 const GUID: usize = 38;
 const HEADER: usize = 8 + 4 + GUID + 8 + 4;
 
-/// Bytes that are no state of an instance of this FMU.
-#[derive(Debug, thiserror::Error)]
-pub(crate) enum BytesError {
-    /// other magic, or too short for a header
-    #[error("these {size} bytes are not a state of this FMU")]
-    Foreign { size: usize },
-    /// of another version of the format
-    #[error("the state is of version {found}, this FMU reads version {VERSION}")]
-    Version { found: u32 },
-    /// of an FMU with other variables
-    #[error("the state is of the FMU {found}, this one is {expected}")]
-    Guid {
-        found: String,
-        expected: &'static str,
-    },
-    /// the end is missing
-    #[error("the state takes {needed} bytes, {size} are there")]
-    Truncated { size: usize, needed: u64 },
-    /// changed on the way
-    #[error("the state is damaged: its checksum is wrong")]
-    Damaged,
-    /// what it says cannot be
-    #[error("the state contradicts itself: {0}")]
-    Impossible(&'static str),
-    /// cannot be decoded or encoded
-    #[error("the state cannot be read: {0}")]
-    Code(#[from] postcard::Error),
-}
-
-/// What an instance is between two calls, without name, logging and open files.
+/// Everything that an instance is between two calls, except name, logging and open files.
 #[derive(Clone, Debug)]
 pub(crate) struct Snapshot {
     pub(crate) state: State,
     pub(crate) clock: Clock,
     pub(crate) parameters: Parameters,
-    /// inputs and their derivatives set before the start, by reference
+    /// Inputs set before the start, by value reference.
     pub(crate) start_inputs: BTreeMap<u32, f64>,
+    /// Derivatives of inputs set before the start, per s, by value reference.
     pub(crate) start_rates: BTreeMap<u32, f64>,
     pub(crate) run: Option<SavedRun>,
 }
 
-/// A started simulation. Its settled wire is shared with the instance and with other copies.
+/// A started simulation. Settled wire shares its memory with the instance and with other copies.
 #[derive(Clone, Debug)]
 pub(crate) struct SavedRun {
     pub(crate) simulation: Simulation,
     pub(crate) inputs: Inputs,
     pub(crate) rates: Inputs,
-    /// place in the history, where one is written
+    /// Place in the history, if one is written.
     pub(crate) mark: Option<Mark>,
 }
 
-/// The same as bytes have it.
+/// A snapshot in the form that is encoded.
 #[derive(Serialize, Deserialize)]
 struct Contents {
     state: State,
@@ -87,8 +66,12 @@ struct Contents {
 }
 
 impl Snapshot {
-    /// As bytes, for an FMU with this GUID.
-    pub(crate) fn to_bytes(&self, guid: &str) -> Result<Vec<u8>, Refusal> {
+    /// Returns the bytes of the state, for an FMU with this GUID.
+    ///
+    /// # Errors
+    ///
+    /// If the state cannot be encoded.
+    pub(crate) fn to_bytes(&self, guid: &str) -> Result<Vec<u8>, Error> {
         let run = match &self.run {
             Some(run) => {
                 let simulation = run.simulation.to_bytes()?;
@@ -115,8 +98,13 @@ impl Snapshot {
         Ok(bytes)
     }
 
-    /// The other way round; nothing of the instance is needed for it.
-    pub(crate) fn from_bytes(bytes: &[u8], guid: &'static str) -> Result<Self, Refusal> {
+    /// Returns the state of bytes that an FMU with this GUID wrote. [`Self::to_bytes`] is the
+    /// inverse.
+    ///
+    /// # Errors
+    ///
+    /// If the bytes are not a state of this FMU, or one that no instance is ever in.
+    pub(crate) fn from_bytes(bytes: &[u8], guid: &'static str) -> Result<Self, Error> {
         let contents = open(bytes, guid)?;
         let (contents, rest) =
             postcard::take_from_bytes::<Contents>(contents).map_err(BytesError::Code)?;
@@ -154,14 +142,14 @@ impl Snapshot {
     }
 }
 
-/// Text in a field of fixed length.
+/// Returns a GUID in its field of the header.
 fn fixed(text: &str) -> [u8; GUID] {
     let mut field = [0; GUID];
     field.iter_mut().zip(text.bytes()).for_each(|(f, b)| *f = b);
     field
 }
 
-/// What is behind the header, once that is right.
+/// Checks the header and the checksum, and returns the contents.
 fn open<'a>(bytes: &'a [u8], guid: &'static str) -> Result<&'a [u8], BytesError> {
     let size = bytes.len();
     let foreign = || BytesError::Foreign { size };
@@ -176,7 +164,10 @@ fn open<'a>(bytes: &'a [u8], guid: &'static str) -> Result<&'a [u8], BytesError>
     };
     let version = number(0, 4) as u32;
     if version != VERSION {
-        return Err(BytesError::Version { found: version });
+        return Err(BytesError::Version {
+            found: version,
+            expected: VERSION,
+        });
     }
     let found = &header[4..4 + GUID];
     if found != fixed(guid) {

@@ -1,4 +1,4 @@
-//! Bytes that are no state, given to `fmi2DeSerializeFMUstate`: the entry of the fuzz target.
+//! Random bytes are given to `fmi2DeSerializeFMUstate`, by the function that the fuzz target calls.
 #![allow(non_snake_case)]
 
 use proptest::prelude::*;

@@ -1,24 +1,24 @@
 //! Categories of log messages, declared in the XML and used by the C boundary.
 
-/// One category that an importer can switch on by name.
+/// A category of log messages, which an importer can switch on by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
-    /// what happens to the wire: turn laid, layer closed, defect found
+    /// What happens to the wire: a turn laid, a layer closed, a defect found.
     Events,
-    /// things that are not quite right
+    /// A call was served, and something about scene, wire, solver or files needs a look.
     Warning,
-    /// a step or a question that cannot be served
+    /// A step failed, or a status that was asked for is not available.
     Discard,
-    /// refused calls and failed steps
+    /// A call was refused.
     Error,
-    /// the instance is lost
+    /// The instance is lost and can only be freed.
     Fatal,
-    /// all of them; never the category of a message
+    /// All categories together, never the category of a message.
     All,
 }
 
 /// Every category with its standard name (FMI 2.0.5, table in section 2.2.4) and description.
-pub const CATEGORIES: [(Category, &str, &str); 6] = [
+pub(crate) const CATEGORIES: [(Category, &str, &str); 6] = [
     (
         Category::Events,
         "logEvents",
@@ -48,7 +48,7 @@ pub const CATEGORIES: [(Category, &str, &str); 6] = [
 ];
 
 impl Category {
-    /// The name that stands in the XML and goes to the importer's logger.
+    /// Returns the name that stands in the XML and goes to the importer's logger.
     pub fn name(self) -> &'static str {
         CATEGORIES
             .iter()
@@ -56,7 +56,7 @@ impl Category {
             .map_or("logAll", |row| row.1)
     }
 
-    /// The category of that name.
+    /// Returns the category of a name, or `None` if the name is not declared.
     pub fn by_name(name: &str) -> Option<Self> {
         CATEGORIES.iter().find(|row| row.1 == name).map(|row| row.0)
     }

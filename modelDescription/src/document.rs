@@ -1,14 +1,16 @@
-//! `documentation/index.html`: what the FMU models, and every variable with unit and meaning.
+//! `documentation/index.html`: what the FMU models, how to use it, and a table of every variable.
 
-use crate::{DescriptionError, guid, variables};
+use crate::description::guid;
+use crate::error::DescriptionError;
+use crate::variables::variables;
 use coilwind::settings::SceneSettings;
 use coilwind::variables::{Causality, Unit, Variability, Variable, units};
 use std::fmt::Write;
 
-/// What does not depend on the table: the model in words and pictures, hints for use.
+/// The part of the page that does not depend on the table: the model, and how to use it.
 const INTRODUCTION: &str = include_str!("../documentation/introduction.html");
 
-/// Pictures that the page shows, by file name beside it.
+/// Pictures that the page shows, with their file names beside it.
 pub(crate) const PICTURES: [(&str, &[u8]); 1] =
     [("coil.png", include_bytes!("../../docs/coil.png"))];
 
@@ -17,15 +19,19 @@ line-height:1.4}img,svg{max-width:100%;height:auto}table{border-collapse:collaps
 td,th{border:1px solid #bbb;padding:.2em .5em;text-align:left;vertical-align:top}\
 th{background:#eee}td.number{white-space:nowrap}figure{margin:1em 0}figcaption{color:#555}";
 
-/// The whole page; well-formed XML, so that any browser and any test can read it.
+/// Returns the whole page. It is well-formed XML, so that any browser and any test can read it.
+///
+/// # Errors
+///
+/// If there is no GUID to print.
 pub fn document() -> Result<String, DescriptionError> {
     let settings = SceneSettings::default();
     let mut page = format!(
         "<!DOCTYPE html>\n<html xmlns=\"http://www.w3.org/1999/xhtml\" lang=\"en\">\n<head>\n\
          <meta charset=\"utf-8\"/>\n<title>CoilWinding</title>\n<style>{STYLE}</style>\n</head>\n\
          <body>\n<h1>CoilWinding</h1>\n{INTRODUCTION}\n<h2>Variables</h2>\n\
-         <p>Values are in the unit given; people usually read them in the one in brackets. Numbers \
-         in brackets after a name are value references.</p>\n"
+         <p>All values are in the first unit of a row, the SI unit. The unit in brackets is the \
+         display unit. The number in brackets after a name is the value reference.</p>\n"
     );
     for (title, causality) in [
         ("Inputs", Causality::Input),
@@ -44,15 +50,16 @@ pub fn document() -> Result<String, DescriptionError> {
     let _ = write!(
         page,
         "<h2>This FMU</h2>\n<p>coilwind {}, FMI 2.0 for co-simulation, GUID {}. Licences: \
-         <a href=\"licenses/license.txt\">coilwind</a>, <a href=\"licenses/third-party.txt\">what it \
-         is linked with</a>.</p>\n</body>\n</html>\n",
+         <a href=\"licenses/license.txt\">coilwind</a>, <a href=\"licenses/third-party.txt\">linked \
+         software</a>.</p>\n</body>\n</html>\n",
         env!("CARGO_PKG_VERSION"),
         escaped(guid()?)
     );
     Ok(page)
 }
 
-/// Sections of the scene file, in the order of the table.
+/// Returns the groups of parameters, which are the sections of the scene file, in the order of the
+/// table.
 fn groups() -> Vec<&'static str> {
     let mut groups = Vec::new();
     for variable in variables().filter(|variable| variable.causality == Causality::Parameter) {
@@ -106,7 +113,7 @@ fn section(
     page.push_str("</table>\n");
 }
 
-/// What may be set; of what the FMU computes, the type.
+/// Returns what may be set, or the type of what the FMU computes.
 fn allowed(variable: &Variable) -> String {
     match variable.causality {
         Causality::Input | Causality::Parameter => variable.allowed(),
@@ -114,7 +121,7 @@ fn allowed(variable: &Variable) -> String {
     }
 }
 
-/// `m (1 m = 1000 mm)`; for what is no Real, its type.
+/// Returns the unit with the display unit, `m (mm)`, or the type of what is not a Real.
 fn unit_of(variable: &Variable) -> String {
     if variable.unit.is_empty() {
         return variable.kind.as_str().to_owned();

@@ -1,37 +1,38 @@
 //! What an importer reads before it loads the FMU: `modelDescription.xml` and the archive round it.
 //!
-//! Everything is derived from the core's variable table, so the XML cannot disagree with the
-//! getters and setters of the C boundary. The boundary uses this crate for the two names both must
-//! know: the [`guid()`] and the [`CATEGORIES`] of log messages.
+//! | module | holds |
+//! |---|---|
+//! | `variables`, `categories` | the variables and log categories that importers see |
+//! | `format` | values as the XML writes them |
+//! | `units`, `structure`, `xml` | parts of `modelDescription.xml` and the whole file |
+//! | `guid`, `description` | the identity of the file, and the file with it |
+//! | `document` | the page for people |
+//! | `licenses` | the licences of linked crates |
+//! | `pack` | the archive |
+//! | `error` | what can go wrong |
+//!
+//! Everything is derived from the core's variable table, so that the XML cannot disagree with the
+//! getters and setters of the C boundary. The boundary uses this crate for what both must know:
+//! the [`guid()`], the [`variables()`] and the [`Category`] of a log message.
 #![forbid(unsafe_code)]
 
 mod categories;
+mod description;
 mod document;
 mod error;
+mod format;
 mod guid;
 mod licenses;
 mod pack;
 mod structure;
 mod units;
+mod variables;
 mod xml;
 
-pub use categories::{CATEGORIES, Category};
+pub use categories::Category;
+pub use description::{guid, model_description};
 pub use document::document;
-pub use error::{DescriptionError, PackError};
-pub use guid::guid;
-pub use licenses::{LicenseError, third_party};
-pub use pack::{Contents, pack, platform_of};
-pub use xml::model_description;
-
-use coilwind::variables::{Variable, table};
-
-/// Name of the shared library inside the FMU, without extension; prefix of nothing else, as the
-/// functions of a binary FMU 2.0 carry no prefix.
-pub const MODEL_IDENTIFIER: &str = "CoilWinding";
-
-/// The rows of the variable table that importers see.
-///
-/// The programmes of `coilwind run` are not among them: speed and traverse are inputs here.
-pub fn variables() -> impl Iterator<Item = &'static Variable> {
-    table().iter().filter(|variable| !variable.native_only)
-}
+pub use error::{DescriptionError, LicenseError, PackError};
+pub use licenses::third_party;
+pub use pack::{Contents, pack};
+pub use variables::variables;

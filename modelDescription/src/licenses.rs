@@ -1,15 +1,17 @@
-//! Licences of everything that is linked into the libraries, collected from the crates' sources.
+//! Licences of everything that is linked into the shared libraries.
 
+use crate::error::LicenseError;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// What is linked in besides crates: the standard library and what the linkers add.
+/// Licences of what is linked in besides crates: the standard library and the linkers' runtimes.
 const RUNTIME: &str = include_str!("../licenses/runtime.txt");
 
-/// Crates that come without a text, and the crate of the same repository and licence that has it.
+/// Crates that come without a licence text, and the crate of the same repository and licence that
+/// has it.
 const TEXT_OF: [(&str, &str); 2] = [
     ("pulp-wasm-simd-flag", "pulp"),
     ("winapi-x86_64-pc-windows-gnu", "winapi"),
@@ -17,36 +19,6 @@ const TEXT_OF: [(&str, &str); 2] = [
 
 /// Beginnings of the names of licence files, in lower case.
 const FILE_NAMES: [&str; 5] = ["license", "licence", "copying", "unlicense", "notice"];
-
-/// Why the licences could not be collected.
-#[derive(Debug, thiserror::Error)]
-pub enum LicenseError {
-    /// what `cargo metadata` printed is not what it should be
-    #[error("cargo metadata: {0}")]
-    Metadata(#[from] serde_json::Error),
-    /// the crate to start from is not among them
-    #[error("cargo metadata names no package {name}")]
-    NoRoot {
-        /// name of the package
-        name: String,
-    },
-    /// a crate has no licence file
-    #[error("{package} has no licence file in {directory}")]
-    NoText {
-        /// name and version
-        package: String,
-        /// where its sources are
-        directory: PathBuf,
-    },
-    /// a file could not be read
-    #[error("{path}: {source}")]
-    File {
-        /// which file
-        path: PathBuf,
-        /// what the system says
-        source: std::io::Error,
-    },
-}
 
 #[derive(Deserialize)]
 struct Metadata {
@@ -60,7 +32,7 @@ struct Package {
     name: String,
     version: String,
     license: Option<String>,
-    /// `None` for the crates of this workspace
+    /// `None` for the crates of this workspace.
     source: Option<String>,
     manifest_path: PathBuf,
     targets: Vec<Target>,
@@ -90,7 +62,7 @@ struct Dependency {
 
 #[derive(Deserialize)]
 struct DependencyKind {
-    /// `None`: of the library itself, not of its tests or build script
+    /// `None` if the library itself depends on it, not its tests or its build script.
     kind: Option<String>,
 }
 
@@ -109,11 +81,16 @@ impl Package {
     }
 }
 
-/// One text for all that is linked into `root` and not ours, from the JSON of `cargo metadata`.
+/// Returns one text with the licences of all foreign crates that are linked into package `root`.
 ///
-/// First a table of crates with the numbers of their texts, then each different text once, then
-/// what the standard library and the linkers bring. Sorted by name, so the same crates give the
-/// same bytes.
+/// `metadata` is the JSON of `cargo metadata`. The text holds a table of crates with the numbers of
+/// their licence texts, then each different text once, then those of the standard library and the
+/// linkers' runtimes. Crates are sorted by name, so that the same crates give the same bytes.
+///
+/// # Errors
+///
+/// If the JSON is not that of `cargo metadata`, names no package `root`, or lists a crate whose
+/// licence file is missing or cannot be read.
 pub fn third_party(metadata: &str, root: &str) -> Result<String, LicenseError> {
     let metadata: Metadata = serde_json::from_str(metadata)?;
     let packages: BTreeMap<&str, &Package> = metadata
@@ -168,7 +145,7 @@ fn document(table: &str, texts: &[String]) -> String {
     document
 }
 
-/// Ids of what `root` is linked from, itself included.
+/// Returns the ids of the packages that `root` is linked from, itself included.
 fn linked_ids<'a>(
     metadata: &'a Metadata,
     packages: &BTreeMap<&str, &'a Package>,
@@ -203,7 +180,8 @@ fn linked_ids<'a>(
     Ok(linked)
 }
 
-/// Texts of a crate's licence files, by rising file name, with line ends and margins made equal.
+/// Returns the texts of a crate's licence files, by rising file name. Line ends are `\n`, and there
+/// are no empty lines at either end.
 fn texts_of(package: &Package, all: &[Package]) -> Result<Vec<String>, LicenseError> {
     let lender = TEXT_OF.iter().find(|entry| entry.0 == package.name);
     let owner = lender
@@ -247,8 +225,9 @@ fn texts_of(package: &Package, all: &[Package]) -> Result<Vec<String>, LicenseEr
 mod tests {
     use super::*;
 
-    /// A workspace crate `ours` that links `near` and, through it, `far`; `tool` only builds it,
-    /// `derive` runs in the compiler, and what that needs is not linked.
+    /// Returns metadata of a workspace crate `ours` that links `near` and, through it, `far`.
+    /// `tool` is only needed to build it. `derive` runs in the compiler, so that neither it nor its
+    /// dependency is linked.
     fn sample(directory: &Path) -> String {
         let package = |name: &str, source: &str, kind: &str| {
             let manifest = directory.join(name).join("Cargo.toml");

@@ -1,7 +1,9 @@
-//! The FMU: a zip archive that depends on nothing but its contents.
+//! The FMU: a zip archive whose bytes depend on nothing but its contents.
 
+use crate::description::model_description;
 use crate::document::{PICTURES, document};
-use crate::{MODEL_IDENTIFIER, PackError, model_description};
+use crate::error::PackError;
+use crate::xml::MODEL_IDENTIFIER;
 use std::fs;
 use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
@@ -11,17 +13,17 @@ use zip::{CompressionMethod, DateTime, ZipWriter};
 /// The licence of coilwind itself.
 const LICENSE: &str = include_str!("../../LICENSE");
 
-/// What importers show for the model.
+/// The icon that importers show for the model.
 const ICON: &[u8] = include_bytes!("../documentation/model.png");
 
 /// What goes into the archive besides description and documentation.
 #[derive(Clone, Debug, Default)]
 pub struct Contents {
-    /// shared libraries, one per platform; the extension tells which
+    /// Shared libraries, one per platform, which the extension tells.
     pub libraries: Vec<PathBuf>,
-    /// directory whose `*.toml` become `resources/scenes/`; left out when it does not exist
+    /// Folder whose `*.toml` become `resources/scenes/`. One that does not exist is left out.
     pub scenes: Option<PathBuf>,
-    /// licences of what is linked in, see [`third_party`](crate::third_party)
+    /// Licences of what is linked in, see [`third_party`](crate::third_party).
     pub third_party: String,
 }
 
@@ -42,8 +44,8 @@ impl Entry {
     }
 }
 
-/// FMI's name of a library's platform and the library's extension, from its file name.
-pub fn platform_of(library: &Path) -> Option<(&'static str, &'static str)> {
+/// Returns FMI's name of a library's platform and the extension, or `None` for another extension.
+fn platform_of(library: &Path) -> Option<(&'static str, &'static str)> {
     match library.extension()?.to_str()? {
         "so" => Some(("linux64", "so")),
         "dll" => Some(("win64", "dll")),
@@ -52,10 +54,15 @@ pub fn platform_of(library: &Path) -> Option<(&'static str, &'static str)> {
     }
 }
 
-/// Writes the FMU; the same contents give the same bytes.
+/// Writes the FMU to the file `out`. The same contents give the same bytes.
 ///
-/// Names are sorted after the description, times are the zip format's first day, permissions are
-/// fixed. The file appears under its name only when complete.
+/// The description comes first, then the other entries sorted by name. Times are the first day of
+/// the zip format, and permissions are fixed. The file appears under its name only when complete.
+///
+/// # Errors
+///
+/// If the extension of a library is unknown, two libraries are for one platform, or a file cannot
+/// be read or written.
 pub fn pack(contents: &Contents, out: &Path) -> Result<(), PackError> {
     let mut entries = libraries(&contents.libraries)?;
     if let Some(directory) = contents
@@ -76,7 +83,7 @@ pub fn pack(contents: &Contents, out: &Path) -> Result<(), PackError> {
     write_whole(out, &bytes)
 }
 
-/// What people read: the page with its pictures, the licences, the icon.
+/// Returns what people look at: the page with its pictures, the licences, the icon.
 fn documentation(third_party: &str) -> Result<Vec<Entry>, PackError> {
     let mut entries = vec![
         Entry::file("documentation/index.html", document()?),
@@ -151,7 +158,7 @@ fn archive(entries: &[Entry]) -> Result<Vec<u8>, zip::result::ZipError> {
     Ok(zip.finish()?.into_inner())
 }
 
-/// Writes beside the target and renames, so that no importer opens half an archive.
+/// Writes to a file beside `out` and renames it, so that no importer opens half an archive.
 fn write_whole(out: &Path, bytes: &[u8]) -> Result<(), PackError> {
     let failed = |source| PackError::File {
         path: out.to_owned(),

@@ -1,16 +1,16 @@
-//! `ModelStructure`: which variables are results and what they follow from.
+//! `ModelStructure`: which variables are outputs and what they depend on.
 
-use crate::variables;
+use crate::variables::variables;
 use coilwind::variables::{Causality, Variable};
 use quick_xml::Writer;
 use std::io;
 
 /// Writes the element `ModelStructure`.
 ///
-/// In step mode an output is a result of the last step; writing an input at a communication point
-/// changes none of them before the next step, so `dependencies` is empty and importers need not
-/// look for algebraic loops through the FMU. At the start every output may follow from the inputs
-/// and from every parameter of the scene.
+/// In step mode an output is a result of the last step. An input that is set at a communication
+/// point changes no output before the next step. `dependencies` is therefore empty, and importers
+/// need not look for algebraic loops through the FMU. At the start every output may follow from
+/// the inputs and from every parameter of the scene.
 pub(crate) fn write(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
     let outputs = indices(|variable| variable.causality == Causality::Output);
     let knowns = indices(shapes_the_start);
@@ -40,13 +40,14 @@ pub(crate) fn write(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
     Ok(())
 }
 
-/// Where files go does not move the wire; everything else that can be set does.
+/// Tells whether outputs at the start may depend on a variable. The folder of the results is the
+/// only thing to set that does not move the wire.
 fn shapes_the_start(variable: &Variable) -> bool {
     matches!(variable.causality, Causality::Input | Causality::Parameter)
         && !variable.name.starts_with("output.")
 }
 
-/// Positions in `ModelVariables`, counted from 1 as FMI does.
+/// Returns the positions in `ModelVariables`, counted from 1 as FMI does.
 fn indices(wanted: fn(&Variable) -> bool) -> Vec<usize> {
     (1..)
         .zip(variables())

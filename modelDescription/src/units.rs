@@ -1,6 +1,6 @@
 //! `UnitDefinitions`: every unit of the table with its SI exponents and display units.
 
-use crate::xml::number;
+use crate::format::number;
 use coilwind::variables::{Unit, units};
 use quick_xml::Writer;
 use std::io;

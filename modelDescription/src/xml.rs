@@ -1,15 +1,25 @@
 //! `modelDescription.xml` (FMI 2.0.5, section 2.2) from the variable table.
 
-use crate::{CATEGORIES, DescriptionError, MODEL_IDENTIFIER, guid, structure, units, variables};
+use crate::categories::CATEGORIES;
+use crate::error::DescriptionError;
+use crate::format::{number, text};
+use crate::variables::variables;
+use crate::{structure, units};
 use coilwind::settings::SceneSettings;
-use coilwind::variables::{Causality, Kind, Value, Variable};
+use coilwind::variables::{Causality, Kind, Variable};
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 use std::io;
 
+/// Name of the model and of the shared library inside the FMU, without extension.
+///
+/// Functions of a binary FMU 2.0 carry no prefix, so that their names do not contain it.
+pub(crate) const MODEL_IDENTIFIER: &str = "CoilWinding";
+
 /// What the FMU can do, as attributes of `CoSimulation`.
 ///
-/// Only what the C boundary keeps: a flag turns true together with the code behind it.
+/// They announce what the C boundary does. A flag becomes true in the same commit as the code
+/// behind it.
 const CAPABILITIES: [(&str, &str); 11] = [
     ("modelIdentifier", MODEL_IDENTIFIER),
     ("needsExecutionTool", "false"),
@@ -24,12 +34,11 @@ const CAPABILITIES: [(&str, &str); 11] = [
     ("providesDirectionalDerivative", "true"),
 ];
 
-/// The whole file.
-pub fn model_description() -> Result<String, DescriptionError> {
-    render(guid()?)
-}
-
-/// The file with a given `guid`; the empty one is what the GUID is computed from.
+/// Returns the file with a given `guid` attribute.
+///
+/// # Errors
+///
+/// If the XML cannot be written.
 pub(crate) fn render(guid: &str) -> Result<String, DescriptionError> {
     let settings = SceneSettings::default();
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
@@ -82,23 +91,6 @@ pub(crate) fn render(guid: &str) -> Result<String, DescriptionError> {
     let mut text = String::from_utf8_lossy(&writer.into_inner()).into_owned();
     text.push('\n');
     Ok(text)
-}
-
-/// A number as `xs:double`: the shortest decimal that reads back to the same bits.
-pub(crate) fn number(x: f64) -> String {
-    if x.is_infinite() {
-        return if x > 0.0 { "INF" } else { "-INF" }.to_owned();
-    }
-    x.to_string()
-}
-
-fn text(value: Value) -> String {
-    match value {
-        Value::Real(x) => number(x),
-        Value::Integer(i) => i.to_string(),
-        Value::Boolean(b) => b.to_string(),
-        Value::String(s) => s,
-    }
 }
 
 fn write_categories(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
@@ -203,24 +195,6 @@ mod tests {
                 "{}: display unit {}",
                 variable.name,
                 variable.display_unit
-            );
-        }
-    }
-
-    #[test]
-    fn numbers_in_the_xml_read_back_exactly() {
-        for x in [
-            7e-4,
-            1e10,
-            1.0 / 3.0,
-            9.549_296_585_513_72,
-            f64::MIN_POSITIVE,
-        ] {
-            let text = number(x);
-            assert!(!text.contains(['e', 'E']));
-            assert_eq!(
-                text.parse::<f64>().expect("a number").to_bits(),
-                x.to_bits()
             );
         }
     }

@@ -1,4 +1,6 @@
-//! The copy of the description in the repository shows in review what a change does to importers.
+//! The copy of `modelDescription.xml` in the repository is current.
+//!
+//! It shows in a review what a change does to importers.
 
 use coilwind_model_description::model_description;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! The archive holds what FMI wants where FMI wants it, and its bytes depend on nothing else.
+//! The archive has the layout of FMI, and its bytes depend on nothing but its contents.
 
 use coilwind_model_description::{Contents, PackError, document, model_description, pack};
 use std::fs;

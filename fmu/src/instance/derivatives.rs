@@ -1,19 +1,26 @@
-//! Derivatives with respect to time: of inputs, for the next step, and of outputs.
+//! Derivatives: of inputs and outputs by time, and of outputs by inputs.
 
-use super::{Instance, find, write_input, wrong_type};
+use super::Instance;
+use super::run::write_input;
+use crate::error::Error;
 use crate::lifecycle::State;
-use crate::refusal::Refusal;
+use crate::scalar::{find, wrong_type};
 use coilwind::signals::{Inputs, Outputs};
 use coilwind::variables::{Access, Causality, Value};
 
 impl Instance {
-    /// `fmi2SetRealInputDerivatives`: all of them or none; they hold for the next step.
+    /// `fmi2SetRealInputDerivatives`: sets all of the derivatives or none, in the unit of each
+    /// input per s. They hold for the next step.
+    ///
+    /// # Errors
+    ///
+    /// If a variable is not an input, an order is not 1, or a value is not finite.
     pub(crate) fn set_input_derivatives(
         &mut self,
         references: &[u32],
         orders: &[i32],
         values: &[f64],
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), Error> {
         for ((reference, order), value) in references.iter().zip(orders).zip(values) {
             let variable = find::<f64>(*reference)?;
             let name = variable.name;
@@ -21,7 +28,7 @@ impl Instance {
                 return Err(no_derivative(
                     name,
                     *order,
-                    "only inputs have one to be set",
+                    "only the derivatives of inputs can be set",
                 ));
             }
             if *order != 1 {
@@ -29,7 +36,7 @@ impl Instance {
             }
             if !value.is_finite() {
                 let value = *value;
-                return Err(Refusal::DerivativeNotFinite { name, value });
+                return Err(Error::DerivativeNotFinite { name, value });
             }
         }
         for (reference, value) in references.iter().zip(values) {
@@ -48,12 +55,16 @@ impl Instance {
         Ok(())
     }
 
-    /// `fmi2GetRealOutputDerivatives`
+    /// `fmi2GetRealOutputDerivatives`: one value per reference, in the unit of the output per s.
+    ///
+    /// # Errors
+    ///
+    /// If a variable is not a Real output or an order is not 1.
     pub(crate) fn output_derivatives(
         &mut self,
         references: &[u32],
         orders: &[i32],
-    ) -> Result<Vec<f64>, Refusal> {
+    ) -> Result<Vec<f64>, Error> {
         let run = self.start()?;
         let both = references.iter().zip(orders);
         both.map(|(reference, order)| {
@@ -66,21 +77,25 @@ impl Instance {
                 (Access::Output(_), _) => {
                     Err(no_derivative(variable.name, *order, "outputs have order 1"))
                 }
-                _ => Err(no_derivative(variable.name, *order, "it is no output")),
+                _ => Err(no_derivative(variable.name, *order, "it is not an output")),
             }
         })
         .collect()
     }
-}
 
-impl Instance {
-    /// `fmi2GetDirectionalDerivative`: of outputs by inputs, over the solver's next step.
+    /// `fmi2GetDirectionalDerivative` over the solver's next step: the change of each unknown when
+    /// the knowns change by `changes`, in the units of the variables.
+    ///
+    /// # Errors
+    ///
+    /// If an unknown is not a Real output, a known is not an input, a change is not finite, or the
+    /// solver's next step has no solution.
     pub(crate) fn directional_derivative(
         &mut self,
         unknowns: &[u32],
         knowns: &[u32],
         changes: &[f64],
-    ) -> Result<Vec<f64>, Refusal> {
+    ) -> Result<Vec<f64>, Error> {
         let mut direction = Inputs::HELD;
         for (reference, change) in knowns.iter().zip(changes) {
             let variable = find::<f64>(*reference)?;
@@ -91,9 +106,9 @@ impl Instance {
             };
             if !change.is_finite() {
                 let value = *change;
-                return Err(Refusal::DerivativeNotFinite { name, value });
+                return Err(Error::DerivativeNotFinite { name, value });
             }
-            // a known that is named twice counts twice
+            // A known that is named twice counts twice.
             let sum = get(&direction) + change;
             write_input(&mut direction, *reference, sum);
         }
@@ -110,7 +125,7 @@ impl Instance {
         }
         let run = self.start()?;
         let slopes = run.simulation.sensitivities(run.inputs);
-        let slopes = slopes.map_err(Refusal::NoTangent)?;
+        let slopes = slopes.map_err(Error::NoTangent)?;
         let along = [
             direction.spindle_speed,
             direction.nozzle_position,
@@ -130,29 +145,10 @@ impl Instance {
     }
 }
 
-fn no_derivative(name: &'static str, order: i32, reason: &'static str) -> Refusal {
-    Refusal::NoDerivative {
+fn no_derivative(name: &'static str, order: i32, reason: &'static str) -> Error {
+    Error::NoDerivative {
         name,
         order,
         reason,
     }
-}
-
-/// Inputs stay in their ranges until the end of the step; where they change evenly, both ends tell.
-pub(super) fn check_way(inputs: &Inputs, rates: &Inputs, step: f64) -> Result<(), Refusal> {
-    let end = inputs.after(rates, step);
-    for variable in coilwind_model_description::variables() {
-        let Access::Input { get, .. } = variable.access else {
-            continue;
-        };
-        let value = get(&end);
-        if get(rates) != 0.0 && !variable.admits(&Value::Real(value)) {
-            return Err(Refusal::LeavesRange {
-                name: variable.name,
-                value,
-                allowed: variable.allowed(),
-            });
-        }
-    }
-    Ok(())
 }

@@ -1,15 +1,16 @@
-//! Saved states: what they take along, and going back to one.
+//! Saved states: taking one of an instance, going back to one, and the bytes of one.
 
-use super::{Instance, Run, not_written};
-use crate::ffi::Status;
-use crate::logger::Message;
+use super::Instance;
+use super::run::Run;
+use crate::error::Error;
+use crate::message::Message;
 use crate::recording::Recording;
-use crate::refusal::Refusal;
 use crate::state::{SavedRun, Snapshot};
-use coilwind_model_description::{Category, guid};
+use coilwind_model_description::guid;
 
 impl Instance {
-    /// `fmi2GetFMUstate`
+    /// `fmi2GetFMUstate`. What stands in the files of the run is on disk afterwards. Where that
+    /// fails, the importer gets a warning and the state has no place in the history.
     pub(crate) fn snapshot(&mut self) -> Snapshot {
         let mut trouble = None;
         let run = self.run.as_mut().map(|run| {
@@ -17,7 +18,7 @@ impl Instance {
             let mark = match recording.map(Recording::mark).transpose() {
                 Ok(mark) => mark.flatten(),
                 Err(reason) => {
-                    trouble = Some(not_written(&reason));
+                    trouble = Some(Message::not_written(reason));
                     None
                 }
             };
@@ -39,15 +40,15 @@ impl Instance {
         }
     }
 
-    /// `fmi2SetFMUstate`: name, resources and logging stay. The history in `output.directory` is cut back to
-    /// where it stood; other files are written at the end of the run as ever.
+    /// `fmi2SetFMUstate`. Name, resources and logging stay. The history in `output.directory` is
+    /// cut back to where it stood; the end of the run writes the other files.
     pub(crate) fn restore(&mut self, saved: &Snapshot) {
-        // what is written is on disk before it is read
+        // Buffered rows must be on disk before the file is read again.
         if let Some(run) = &mut self.run
             && let Some(mut recording) = run.recording.take()
             && let Err(reason) = recording.mark()
         {
-            self.messages.push(not_written(&reason));
+            self.messages.push(Message::not_written(reason));
         }
         let saved = saved.clone();
         self.state = saved.state;
@@ -66,7 +67,7 @@ impl Instance {
                         Some(recording)
                     }
                     Err(reason) => {
-                        self.messages.push(not_written(&reason));
+                        self.messages.push(Message::not_written(reason));
                         None
                     }
                 }
@@ -80,24 +81,29 @@ impl Instance {
         });
     }
 
-    /// `fmi2SerializeFMUstate`
-    pub(crate) fn bytes_of(&self, saved: &Snapshot) -> Result<Vec<u8>, Refusal> {
+    /// `fmi2SerializeFMUstate`: the bytes of a saved state.
+    ///
+    /// # Errors
+    ///
+    /// If the state cannot be encoded.
+    pub(crate) fn bytes_of(&self, saved: &Snapshot) -> Result<Vec<u8>, Error> {
         saved.to_bytes(guid()?)
     }
 
-    /// `fmi2DeSerializeFMUstate`
-    pub(crate) fn snapshot_from(&self, bytes: &[u8]) -> Result<Snapshot, Refusal> {
+    /// `fmi2DeSerializeFMUstate`: the saved state of bytes. The instance does not change.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Bytes`] or [`Error::State`] if the bytes are not a state of this FMU.
+    pub(crate) fn snapshot_from(&self, bytes: &[u8]) -> Result<Snapshot, Error> {
         Snapshot::from_bytes(bytes, guid()?)
     }
 }
 
-/// The rows before a restored state are not there to be gone on with.
+/// Warns that the history lacks the rows before `time`, s.
 fn history_anew(time: f64) -> Message {
-    Message {
-        status: Status::Warning,
-        category: Category::Warning,
-        text: format!(
-            "output.directory: history.csv is not the one of the restored state and begins anew after {time} s"
-        ),
-    }
+    Message::warning(format_args!(
+        "output.directory: history.csv is not the one of the restored state and begins anew after \
+         {time} s; leave the file in place until the state is restored to keep earlier rows"
+    ))
 }

@@ -1,19 +1,20 @@
-//! `pack-fmu OUT.fmu LIBRARY...`: the last step of `scripts/build_fmu.sh`, run at the root of the
-//! sources.
+//! `pack-fmu OUT.fmu LIBRARY...` packs shared libraries into an FMU.
+//!
+//! It is the last step of `scripts/build_fmu.sh` and runs at the root of the sources.
 
 use coilwind_model_description::{Contents, pack, third_party};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// Where the packed scenes are.
+/// Folder of the packed scenes.
 const SCENES: &str = "src/scene/packed";
 
 /// The package that the libraries are built from.
 const LINKED: &str = "coilwind-fmu";
 
-/// Platforms whose crates are listed. All of them whatever is packed: a licence too many does no
-/// harm.
+/// Platforms whose crates are listed. All of them are listed whatever is packed, since a licence too
+/// many does no harm.
 const TRIPLES: [&str; 2] = ["x86_64-unknown-linux-gnu", "x86_64-pc-windows-gnu"];
 
 fn main() -> ExitCode {
@@ -43,7 +44,7 @@ fn run(out: &Path, libraries: &[PathBuf]) -> Result<(), Box<dyn Error>> {
     Ok(pack(&contents, out)?)
 }
 
-/// What cargo knows about the packages of the lock file.
+/// Returns what cargo knows about the packages of the lock file, as JSON.
 fn metadata() -> Result<String, Box<dyn Error>> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);

@@ -51,8 +51,10 @@ pub fn case(seed: u64, number: u64) -> Result<Case, String> {
 
 /// A scene that is likely valid, and the mesh it needs.
 fn scene(case_random: &mut CaseRandom) -> (SceneSettings, Option<Prism>) {
-    let mut s = SceneSettings::default();
-    s.name = "stress".to_owned();
+    let mut s = SceneSettings {
+        name: "stress".to_owned(),
+        ..SceneSettings::default()
+    };
     wire(case_random, &mut s);
     let d = s.wire.diameter;
     let (turning_radius, perimeter, prism) = core(case_random, &mut s);

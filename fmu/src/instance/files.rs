@@ -1,0 +1,42 @@
+//! Files of a run in `output.directory`. One that cannot be written is a warning, not an error.
+
+use super::Instance;
+use crate::message::Message;
+use crate::recording::Recording;
+use coilwind::output::Ending;
+
+impl Instance {
+    /// Opens the files and writes the first row, if `output.directory` names a folder.
+    pub(super) fn record(&mut self) {
+        let Some(run) = &mut self.run else { return };
+        let settings = self.parameters.settings();
+        if settings.output.directory.is_empty() {
+            return;
+        }
+        match Recording::start(settings, &run.simulation) {
+            Ok(recording) => run.recording = Some(recording),
+            Err(reason) => self.messages.push(Message::not_written(reason)),
+        }
+        self.record_row();
+    }
+
+    /// Adds the present communication point to the files, if there are any.
+    pub(super) fn record_row(&mut self) {
+        if let Some(run) = &mut self.run
+            && let Some(recording) = &mut run.recording
+            && let Err(reason) = recording.row(self.clock.now(), &run.simulation)
+        {
+            self.messages.push(Message::not_written(reason));
+        }
+    }
+
+    /// Writes the results and closes the files, if any are open.
+    pub(super) fn finish_recording(&mut self, ending: &Ending) {
+        if let Some(run) = &mut self.run
+            && let Some(recording) = run.recording.take()
+            && let Err(reason) = recording.finish(&run.simulation, ending)
+        {
+            self.messages.push(Message::not_written(reason));
+        }
+    }
+}

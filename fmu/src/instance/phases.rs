@@ -1,0 +1,69 @@
+//! From instantiation to the end: the calls that move an instance from state to state.
+
+use super::Instance;
+use crate::clock::Clock;
+use crate::error::Error;
+use crate::lifecycle::State;
+use coilwind::output::Ending;
+
+impl Instance {
+    /// `fmi2SetupExperiment`, times in s. A step controls its own error, so that the importer's
+    /// tolerance is not used.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Time`] if a time is not finite or the stop time is not after the start time.
+    pub(crate) fn setup_experiment(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
+        self.clock = Clock::new(start, stop)?;
+        Ok(())
+    }
+
+    /// `fmi2EnterInitializationMode`. Parameters may still change, so that nothing is validated
+    /// yet. Never fails.
+    pub(crate) fn enter_initialization_mode(&mut self) -> Result<(), Error> {
+        self.state = State::Initialization;
+        Ok(())
+    }
+
+    /// `fmi2ExitInitializationMode`
+    ///
+    /// # Errors
+    ///
+    /// If the scene is not valid or has no valid start.
+    pub(crate) fn exit_initialization_mode(&mut self) -> Result<(), Error> {
+        self.start()?;
+        self.record();
+        self.state = State::StepComplete;
+        Ok(())
+    }
+
+    /// `fmi2Terminate`. Never fails.
+    pub(crate) fn terminate(&mut self) -> Result<(), Error> {
+        let ending = if self.clock.is_over() {
+            Ending::Done
+        } else {
+            Ending::Interrupted
+        };
+        self.finish_recording(&ending);
+        self.state = State::Terminated;
+        Ok(())
+    }
+
+    /// `fmi2Reset`: a fresh instance with the same name, resources and logging. Never fails.
+    pub(crate) fn reset(&mut self) -> Result<(), Error> {
+        self.finish_recording(&Ending::Interrupted);
+        let messages = std::mem::take(&mut self.messages);
+        *self = Self {
+            messages,
+            ..Self::fresh(self.identity.clone())
+        };
+        Ok(())
+    }
+
+    /// `fmi2FreeInstance`. A run that nobody terminated leaves its results as well.
+    pub(crate) fn close(&mut self) {
+        if self.state != State::Fatal {
+            self.finish_recording(&Ending::Interrupted);
+        }
+    }
+}

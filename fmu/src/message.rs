@@ -1,0 +1,46 @@
+//! What the importer reads in its log, collected during a call and delivered at its end.
+
+use crate::ffi::Status;
+use coilwind::signals::{Event, EventKind};
+use coilwind_model_description::Category;
+use std::fmt::Display;
+
+/// One message to the importer.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Message {
+    pub(crate) status: Status,
+    pub(crate) category: Category,
+    pub(crate) text: String,
+}
+
+impl Message {
+    /// Returns the message about an event of the simulation.
+    pub(crate) fn of_event(event: &Event) -> Self {
+        let (status, category) = match event.kind {
+            EventKind::Turn | EventKind::Defect => (Status::Ok, Category::Events),
+            // The wire is still computed, but a machine would have stopped.
+            EventKind::Slack | EventKind::Break | EventKind::Solver => {
+                (Status::Warning, Category::Warning)
+            }
+        };
+        Self {
+            status,
+            category,
+            text: event.to_string(),
+        }
+    }
+
+    /// Returns a warning: the call is served, and there is something to look at.
+    pub(crate) fn warning(text: impl Display) -> Self {
+        Self {
+            status: Status::Warning,
+            category: Category::Warning,
+            text: text.to_string(),
+        }
+    }
+
+    /// Returns the warning that files in `output.directory` are missing. The run does not need them.
+    pub(crate) fn not_written(reason: impl Display) -> Self {
+        Self::warning(format_args!("output.directory: {reason}"))
+    }
+}

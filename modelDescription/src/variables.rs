@@ -1,0 +1,10 @@
+//! The rows of the core's variable table that the FMU has.
+
+use coilwind::variables::{Variable, table};
+
+/// Returns the variables that importers see, in the order of the table.
+///
+/// The motion profile of `coilwind run` is not among them: speed and traverse are inputs here.
+pub fn variables() -> impl Iterator<Item = &'static Variable> {
+    table().iter().filter(|variable| !variable.native_only)
+}
