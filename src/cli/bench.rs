@@ -2,7 +2,7 @@
 
 use super::choice::one_of;
 use super::failure::Failure;
-use super::print;
+use super::terminal::print;
 use clap::Args;
 use coilwind::lab::bench::{BenchOptions, Method, Problem, run};
 use coilwind::math::simd::Width;

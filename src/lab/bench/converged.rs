@@ -3,8 +3,7 @@
 //! One file per scene, one entry per spindle speed: means over an ensemble of runs with fine
 //! spacing and tight tolerance, since a single run scatters. Made by `coilwind bench W --store FILE`.
 
-use super::BenchError;
-use super::winding::Wound;
+use super::error::BenchError;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -61,6 +60,17 @@ pub struct Speed {
     /// see `bulge_scatter_m`
     pub gap_scatter_m: f64,
     /// mean extremes of each turn of the spindle
+    pub tension: Vec<Extremes>,
+}
+
+/// What a run is judged by.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wound {
+    /// bulge at the stations of turn 2, m; `None` where nothing is measured
+    pub bulge: Vec<Option<f64>>,
+    /// gap to turn 1 there, m; `None` where nothing is measured or no neighbour is found
+    pub gap: Vec<Option<f64>>,
+    /// tension extremes of each turn of the spindle
     pub tension: Vec<Extremes>,
 }
 

@@ -5,10 +5,11 @@
 //! extrapolates the path of equilibria, and each step of it is as long as Newton's method takes well.
 //! Error: distance of the tip from that of the extensible elastica, over the length.
 
-use super::args::BenchOptions;
+use super::error::BenchError;
+use super::options::BenchOptions;
 use super::record::{Details, Outcome};
+use super::setup::{along_x, cantilever, clamped_edges, elastic_wire};
 use super::watch::Watch;
-use super::{BenchError, along_x, cantilever, clamped_edges, elastic_wire};
 use crate::integrate::{Implicit, Scheme};
 use crate::math::V3;
 use crate::rod::Section;

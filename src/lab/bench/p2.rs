@@ -3,12 +3,12 @@
 //! Released from the mode's shape, the tip follows `A cos(omega_1 t)`. Error: its largest deviation
 //! from that over the amplitude. What the step does to the amplitude is told on its own.
 
-use super::args::{BenchOptions, Method};
+use super::error::BenchError;
+use super::options::BenchOptions;
+use super::problem::Method;
 use super::record::{Details, Outcome};
+use super::setup::{along_x, cantilever, clamped_edges, elastic_wire, iterations, stable_step};
 use super::watch::Watch;
-use super::{
-    BenchError, along_x, cantilever, clamped_edges, elastic_wire, iterations, stable_step,
-};
 use crate::integrate::{Implicit, Scheme, rk4, verlet};
 use crate::math::V3;
 use crate::rod::Section;

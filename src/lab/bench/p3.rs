@@ -4,10 +4,11 @@
 //! and is free across it. Error: ratio of the end forces against `exp(mu pi)`, relative. Bending at
 //! a thousandth of its stiffness takes 1e-4 off that ratio.
 
-use super::args::BenchOptions;
+use super::error::BenchError;
+use super::options::BenchOptions;
 use super::record::{Details, Outcome};
+use super::setup::elastic_wire;
 use super::watch::Watch;
-use super::{BenchError, elastic_wire};
 use crate::contact::{ContactLaw, LineContact};
 use crate::geometry::Shape;
 use crate::integrate::{Implicit, Scheme};

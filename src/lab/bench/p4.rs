@@ -2,10 +2,12 @@
 //!
 //! Error: wire drawn in against the converged value, relative.
 
-use super::args::{BenchOptions, Method};
+use super::error::BenchError;
+use super::options::BenchOptions;
+use super::problem::{Method, Problem};
 use super::record::{Details, Outcome};
+use super::setup::{iterations, solver, turn_length};
 use super::watch::Watch;
-use super::{BenchError, Problem, iterations};
 use crate::scene::Scene;
 use crate::settings::SceneSettings;
 use crate::simulation::Simulation;
@@ -29,7 +31,7 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     };
     let mut simulation = Simulation::new(&scene).map_err(start)?;
     let mut outcome = Outcome {
-        n: Some((super::turn_length(&scene)? / scene.solver.spacing_near).round() as usize),
+        n: Some((turn_length(&scene)? / scene.solver.spacing_near).round() as usize),
         dt: args.dt,
         tol: (method == Method::Implicit).then_some(scene.solver.tolerance),
         ..Outcome::default()
@@ -70,7 +72,7 @@ fn scene(args: &BenchOptions, omega: f64) -> Result<Scene, BenchError> {
     s.tensioner.line_length = 0.0;
     s.spindle.speed = omega;
     s.spindle.turns = 2.0;
-    super::winding::solver(&mut s, args)?;
+    solver(&mut s, args)?;
     Ok(s.build()?)
 }
 

@@ -2,10 +2,12 @@
 //!
 //! Error: relative drift of its energy over the run.
 
-use super::args::{BenchOptions, Method};
+use super::error::BenchError;
+use super::options::BenchOptions;
+use super::problem::Method;
 use super::record::{Details, Outcome};
+use super::setup::{elastic_wire, iterations, stable_step};
 use super::watch::Watch;
-use super::{BenchError, elastic_wire, iterations, stable_step};
 use crate::integrate::{Implicit, Scheme, rk4, verlet};
 use crate::math::V3;
 use crate::rod::Rod;

@@ -1,10 +1,12 @@
 //! W: a whole scene along its own programme, against a converged run kept with it.
 
-use super::args::{BenchOptions, Method};
-use super::converged::{Converged, Extremes, Speed, rms};
+use super::converged::{Converged, Extremes, Speed, Wound, rms};
+use super::error::BenchError;
+use super::options::BenchOptions;
+use super::problem::{Method, Problem};
 use super::record::{Details, Outcome, WindingDetails};
+use super::setup::{COARSER, iterations, solver, turn_length};
 use super::watch::Watch;
-use super::{BenchError, Problem, iterations, turn_length};
 use crate::measure::STATIONS_PER_TURN;
 use crate::scene::Scene;
 use crate::settings::SceneSettings;
@@ -24,22 +26,9 @@ const SPREAD: f64 = 0.35e-3;
 const TIGHT: f64 = 2e-7;
 const FINE: f64 = 0.25e-3;
 /// Tolerance unless something else is asked for, m, and for wire thinner than this in proportion: the verdict of ensembles of `fig8` is
-/// the converged one up to 300 rad/s there. Scenes have a fifth of it, for the sake of their energy books.
+/// the converged one up to 300 rad/s there. Scenes have a fifth of it, for the sake of their energy balance.
 const USUAL: f64 = 1e-5;
 const USUAL_DIAMETER: f64 = 0.7e-3;
-/// Free spacing over that near the core: a power of two, since edges are halved.
-const COARSER: [f64; 2] = [8.0, 2.0];
-
-/// What a run is judged by.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Wound {
-    /// bulge at the stations of turn 2, m; `None` where nothing is measured
-    pub bulge: Vec<Option<f64>>,
-    /// gap to turn 1 there, m; `None` where nothing is measured or no neighbour is found
-    pub gap: Vec<Option<f64>>,
-    /// tension extremes of each turn of the spindle
-    pub tension: Vec<Extremes>,
-}
 
 /// A run, its cost and what stopped it.
 struct Run {
@@ -99,26 +88,6 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
         ..details
     };
     Ok(outcome)
-}
-
-/// Method, spacing, step and tolerance as asked for, on top of what the scene has.
-pub(super) fn solver(settings: &mut SceneSettings, args: &BenchOptions) -> Result<(), BenchError> {
-    if let Some(method) = args.integrator {
-        settings.solver.integrator = method.name().to_owned();
-    }
-    if let Some(n) = args.n {
-        let turn = turn_length(&settings.build()?)?;
-        let coarser = COARSER[usize::from(args.method() != Method::Implicit)];
-        settings.solver.spacing_near = turn / n as f64;
-        settings.solver.spacing_free = coarser * settings.solver.spacing_near;
-    }
-    if let Some(dt) = args.dt {
-        settings.solver.step = dt;
-    }
-    if let Some(tol) = args.tol {
-        settings.solver.tolerance = tol;
-    }
-    Ok(())
 }
 
 /// Winds the scene to its end, a turn at a time: what it takes, and what comes of it. A second run that stops

@@ -1,5 +1,8 @@
 //! Banded linear equations, Gaussian elimination with row pivoting.
 
+/// Unknowns per node: three coordinates and the roll of the edge after it.
+pub(crate) const PER_NODE: usize = 4;
+
 /// A square matrix whose entries vanish beyond `half` places from the diagonal.
 #[derive(Clone, Debug)]
 pub(crate) struct Band {

@@ -12,7 +12,7 @@ mod plastic_tangent;
 
 use crate::math::V3;
 use crate::system::System;
-use band::Band;
+use band::{Band, PER_NODE};
 
 /// How closely and how long to seek equilibrium.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,8 +85,6 @@ pub enum RelaxError {
     },
 }
 
-/// Unknowns per node: three coordinates and the roll of the edge after it.
-pub(crate) const PER_NODE: usize = 4;
 /// Farthest unknown that a force depends on: the last coordinate of the node two further on.
 const HALF_BAND: usize = 2 * PER_NODE + 2;
 /// Nodes this far apart share no force.

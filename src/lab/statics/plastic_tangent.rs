@@ -5,8 +5,7 @@
 //! of an elastic joint come from differences of forces under the elastic law; this file takes the
 //! missing `B^T (C_elastic - C) B lv` off where the law yields.
 
-use super::PER_NODE;
-use super::band::Band;
+use super::band::{Band, PER_NODE};
 use crate::math::Quat;
 use crate::math::align;
 use crate::rod::{Bend, Joint, Laws, Scalar, Section, respond_bend, respond_scalar};

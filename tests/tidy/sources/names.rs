@@ -66,7 +66,7 @@ impl Names {
         let mut found: Vec<Mention> = module
             .imports
             .iter()
-            .filter(|import| !import.public || module.count(&import.alias) > 1)
+            .filter(|import| !import.public || module.uses(&import.alias))
             .map(|import| Mention {
                 path: import.path.clone(),
                 line: import.line,
@@ -178,8 +178,18 @@ impl Module {
         }
     }
 
-    fn count(&self, word: &str) -> usize {
-        self.tokens.iter().filter(|t| t.text == word).count()
+    /// Whether the file itself uses a name that it imports.
+    fn uses(&self, name: &str) -> bool {
+        let mut in_use = false;
+        let mut before = "";
+        for token in &self.tokens {
+            in_use = token.text == "use" || in_use && token.text != ";";
+            if !in_use && token.text == name && !["::", "."].contains(&before) {
+                return true;
+            }
+            before = &token.text;
+        }
+        false
     }
 }
 
