@@ -10,7 +10,7 @@ mod tokens;
 use names::Names;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-pub use tokens::{Token, tokens};
+pub use tokens::tokens;
 
 /// One file, its path relative to the workspace and with `/` on every system.
 #[derive(Clone, Debug)]
