@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What the machine tells the simulator.
+/// What the machine tells the simulator: its inputs at one moment.
+///
+/// The core turns about +y of the frame of the laboratory; the nozzle stands on +x.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// core angular velocity about +y, rad/s
@@ -31,43 +33,76 @@ impl Inputs {
     }
 }
 
-/// What the simulator tells the machine at a communication point. Units in the variable table.
+/// What the simulator tells the machine at a communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[allow(missing_docs)]
 pub struct Outputs {
+    /// tension in the free span at the nozzle exit, N
     pub wire_tension: f64,
+    /// smallest wire_tension since the last communication point, N
     pub wire_tension_min: f64,
+    /// largest wire_tension since the last communication point, N
     pub wire_tension_max: f64,
+    /// wire stands off a face of the core by more than allowed
     pub defect_bulge: bool,
+    /// neighbouring turns lie apart by more than allowed
     pub defect_gap: bool,
+    /// a turn has climbed on its neighbour or changed places with it
     pub defect_overlap: bool,
+    /// tension above the strength of the wire
     pub defect_break: bool,
+    /// tension fell to zero
     pub defect_slack: bool,
+    /// bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16
     pub defect_code: i32,
+    /// defects found so far
     pub defect_count: i32,
+    /// turn of the last defect
     pub defect_turn: f64,
+    /// polar angle of the last defect within its turn, rad
     pub defect_angle: f64,
+    /// largest height over the core or the layer below, last settled turn, m
     pub bulge_height: f64,
+    /// widest gap to the neighbouring turn, last settled turn, m
     pub gap_width: f64,
+    /// deepest overlap with the neighbouring turn, last settled turn, m
     pub overlap_depth: f64,
+    /// turns laid, counted from the clamp
     pub turns_wound: f64,
+    /// turns come to rest; falls on reversal
     pub turns_settled: f64,
+    /// layer being wound, from 1
     pub layer: i32,
+    /// core angle from the start position, rad
     pub spindle_angle: f64,
+    /// moment of the wire on the core about +y, N m; negative when it resists positive speed
     pub spindle_torque: f64,
+    /// speed of the wire leaving the nozzle, m/s
     pub feed_speed: f64,
+    /// wire that has left the nozzle since the start, m
     pub fed_length: f64,
+    /// wire between lift-off and nozzle, m
     pub free_length: f64,
+    /// where the wire meets the coil, along y, m
     pub layon_position: f64,
+    /// where the wire meets the coil, polar angle in the core frame, rad
     pub layon_angle: f64,
+    /// extent of the settled wire along y, m
     pub coil_width: f64,
+    /// mean axial advance per turn of the settled wire, m
     pub mean_pitch: f64,
+    /// wire section over the winding section it takes up, settled wire
     pub fill_factor: f64,
+    /// largest plastic stretch of the last settled turn
     pub wire_strain: f64,
+    /// time steps taken
     pub solver_steps: f64,
+    /// time steps rejected
     pub solver_rejects: f64,
+    /// nodes still computed
     pub live_nodes: i32,
+    /// deepest penetration in contact since the last communication point, m
     pub penetration_max: f64,
+    /// error of the energy balance since the start, J
     pub energy_residual: f64,
 }
 

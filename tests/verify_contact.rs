@@ -1,13 +1,14 @@
 //! Contact, friction and feed against exact answers: the packed reference cases, by the production
 //! method and by the paper's.
 
-use coilwind::lab::verify::{VerifyArgs, run};
+use coilwind::lab::verify::{VerifyOptions, run};
+use coilwind::scene::Preset;
 
-fn all_right(kind: &str, preset: &str) {
-    let args = VerifyArgs {
+fn all_right(kind: &str, preset: Preset) {
+    let args = VerifyOptions {
         kinds: vec![kind.to_owned()],
-        preset: preset.to_owned(),
-        ..VerifyArgs::default()
+        preset,
+        ..VerifyOptions::default()
     };
     let mut table = String::new();
     let right = run(&args, |line| {
@@ -18,18 +19,21 @@ fn all_right(kind: &str, preset: &str) {
 }
 
 macro_rules! kinds {
-    ($preset:ident: $($kind:ident),* $(,)?) => {
+    ($preset:ident = $value:expr; $($kind:ident),* $(,)?) => {
         mod $preset {
+            use coilwind::scene::Preset;
+
             $(#[test]
             fn $kind() {
-                super::all_right(stringify!($kind), stringify!($preset));
+                super::all_right(stringify!($kind), $value);
             })*
         }
     };
 }
 
 kinds!(
-    default: capstan,
+    default = Preset::Default;
+    capstan,
     groove_seat,
     shoulder_drop,
     shoulder_static,
@@ -39,7 +43,8 @@ kinds!(
 );
 
 kinds!(
-    paper: capstan,
+    paper = Preset::Paper;
+    capstan,
     groove_seat,
     // counts for this preset only
     penalty_impact,

@@ -1,17 +1,18 @@
 //! The rod against exact answers: the packed reference cases, and the modes stepped in time.
 
 use coilwind::integrate::{highest_frequency, rk4, verlet};
-use coilwind::lab::verify::{CaseFile, Manner, Record, VerifyArgs, run, run_file};
+use coilwind::lab::verify::{CaseFile, Manner, Record, VerifyOptions, run, run_file};
 use coilwind::math::V3;
 use coilwind::rod::{Rod, Section};
+use coilwind::scene::Preset;
 use coilwind::system::{Loads, Support, System};
 use std::f64::consts::PI;
 
-fn all_right(kind: &str, preset: &str) {
-    let args = VerifyArgs {
+fn all_right(kind: &str, preset: Preset) {
+    let args = VerifyOptions {
         kinds: vec![kind.to_owned()],
-        preset: preset.to_owned(),
-        ..VerifyArgs::default()
+        preset,
+        ..VerifyOptions::default()
     };
     let mut table = String::new();
     let right = run(&args, |line| {
@@ -26,7 +27,7 @@ macro_rules! kinds {
     ($($kind:ident),* $(,)?) => {
         $(#[test]
         fn $kind() {
-            for preset in ["default", "paper"] {
+            for preset in [Preset::Default, Preset::Paper] {
                 all_right(stringify!($kind), preset);
             }
         })*
@@ -56,9 +57,9 @@ fn packed(kind: &str) -> CaseFile {
 
 /// Error of a quantity of the first case at a node spacing, m.
 fn error_at(kind: &str, quantity: &str, spacing: f64) -> f64 {
-    let args = VerifyArgs {
+    let args = VerifyOptions {
         set: vec![format!("solver.spacing_near={spacing}")],
-        ..VerifyArgs::default()
+        ..VerifyOptions::default()
     };
     let manner: Manner = args.manner().expect("a known setting");
     let mut file = packed(kind);

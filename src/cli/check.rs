@@ -1,7 +1,8 @@
 //! `coilwind check`: is this scene possible?
 
 use super::failure::Failure;
-use super::{SceneArgs, print};
+use super::scene::SceneArgs;
+use super::terminal::print;
 use clap::Args;
 use coilwind::simulation::Simulation;
 

@@ -2,22 +2,20 @@
 
 mod bench;
 mod check;
+mod choice;
 mod failure;
 mod frames;
 mod progress;
 mod run;
+mod scene;
 mod signals;
 mod stress;
+mod terminal;
 mod variables;
 mod verify;
 
-use clap::{Args, Parser, Subcommand};
-use coilwind::scene::{SceneError, assignment};
-use coilwind::settings::SceneSettings;
-use failure::Failure;
+use clap::{Parser, Subcommand};
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Simulation of wire winding: an elastic-plastic rod on a turning core.
 ///
@@ -41,32 +39,11 @@ enum Command {
     /// List every variable: inputs, outputs, diagnostics, parameters
     Variables(variables::VariablesArgs),
     /// Compare exact answers with what the code that winds computes
-    Verify(coilwind::lab::verify::VerifyArgs),
+    Verify(verify::VerifyArgs),
     /// Time a known problem or a whole scene and print error and cost as one line of JSON
-    Bench(coilwind::lab::bench::BenchArgs),
+    Bench(bench::BenchArgs),
     /// Wind random valid scenes, judge them by what must always hold, keep what fails
     Stress(stress::StressArgs),
-}
-
-/// A scene and what to change in it.
-#[derive(Args, Debug)]
-struct SceneArgs {
-    /// Scene file (TOML), or the name of a packed scene such as fig8
-    scene: String,
-    /// Set a parameter, with or without its unit: wire.diameter=7e-4, wire.diameter_mm=0.7
-    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
-    set: Vec<(String, String)>,
-}
-
-impl SceneArgs {
-    /// Defaults, then the scene, then every `--set` in its order.
-    fn settings(&self) -> Result<SceneSettings, SceneError> {
-        let mut settings = SceneSettings::load(&self.scene)?;
-        for (name, value) in &self.set {
-            settings.set_text(name, value)?;
-        }
-        Ok(settings)
-    }
 }
 
 /// Parses the arguments, runs the command and turns its failure into an exit code.
@@ -85,32 +62,5 @@ pub(crate) fn main() -> ExitCode {
             eprintln!("coilwind: {failure}");
             failure.exit_code()
         }
-    }
-}
-
-/// A flag that Ctrl-C raises; a second Ctrl-C ends the program at once.
-fn stop_flag() -> Arc<AtomicBool> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&flag);
-    let handler = ctrlc::set_handler(move || {
-        if raised.swap(true, Ordering::SeqCst) {
-            std::process::exit(130);
-        }
-    });
-    if handler.is_err() {
-        eprintln!("warning: Ctrl-C will end the run without results");
-    }
-    flag
-}
-
-/// Writes to standard output; a reader that has seen enough (`| head`) is no failure.
-fn print(text: &str) -> Result<(), Failure> {
-    use std::io::{ErrorKind, Write};
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::write("standard output", error))
-        }
-        _ => Ok(()),
     }
 }

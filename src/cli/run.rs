@@ -3,8 +3,9 @@
 use super::failure::Failure;
 use super::frames::Frames;
 use super::progress::Progress;
+use super::scene::SceneArgs;
 use super::signals::{Grid, Signals};
-use super::{SceneArgs, print, stop_flag};
+use super::terminal::{print, stop_flag};
 use clap::Args;
 use coilwind::output::{Ending, History, OutputError, Snapshot, write_results};
 use coilwind::scene::Scene;

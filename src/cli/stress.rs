@@ -1,7 +1,7 @@
 //! `coilwind stress`: random scenes, a line each, totals by region, files of what failed.
 
 use super::failure::Failure;
-use super::{print, stop_flag};
+use super::terminal::{print, stop_flag};
 use clap::Args;
 use coilwind::lab::stress::case_files::Files;
 use coilwind::lab::stress::invariants::judge;

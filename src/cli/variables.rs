@@ -1,7 +1,7 @@
 //! `coilwind variables`: the variable table, for people or as JSON.
 
 use super::failure::Failure;
-use super::print;
+use super::terminal::print;
 use clap::Args;
 use coilwind::scene::unit_suffixes;
 use coilwind::settings::SceneSettings;

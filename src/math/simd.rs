@@ -13,16 +13,13 @@ use std::ops::{Add, AddAssign, Mul, Neg, Sub};
 use std::sync::atomic::{AtomicU8, Ordering};
 
 /// How many numbers one instruction works on.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 pub enum Width {
     /// one: any machine
-    #[value(name = "1")]
     One = 1,
     /// four: AVX2
-    #[value(name = "4")]
     Four = 4,
     /// eight: AVX-512
-    #[value(name = "8")]
     Eight = 8,
 }
 

@@ -17,25 +17,38 @@ use std::collections::BTreeMap;
 ///
 /// Leaves may be written directly; [`build`](Self::build) checks all of them again.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct SceneSettings {
     /// packed name or file stem
     pub name: String,
     /// `scene.file`: what was loaded; empty: default scene
     pub file: String,
+    /// `default` or `paper`: which solver set-up
     pub preset: String,
+    /// wire section, material and limits
     pub wire: WireSettings,
+    /// shape and size of the core
     pub core: CoreSettings,
+    /// where the wire comes from
     pub nozzle: Nozzle,
+    /// pull and inertia of the tensioner
     pub tensioner: Tensioner,
+    /// where the wire begins
     pub start: Start,
+    /// motion of the spindle in a native run
     pub spindle: Spindle,
+    /// motion of the nozzle in a native run
     pub traverse: Traverse,
+    /// stiffness and damping of contact
     pub contact: Contact,
+    /// coefficients of friction
     pub friction: Friction,
+    /// method, spacing, steps and tolerance
     pub solver: SolverSettings,
+    /// when wire at rest leaves the computation
     pub freeze: Freeze,
+    /// limits of the defect flags
     pub defects: DefectLimits,
+    /// what is recorded
     pub output: Output,
     /// origin of each leaf that was set, by its name
     pub(crate) origins: BTreeMap<&'static str, Origin>,
@@ -43,59 +56,94 @@ pub struct SceneSettings {
 
 /// `[wire]`; 0 in a rigidity or limit: from the material.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct WireSettings {
+    /// copper: section-consistent; table1: the paper's wire of 0.7 mm; custom: every rigidity given (one of `copper`, `table1`, `custom`)
     pub material: String,
+    /// true: no yield, no moment cap, and no break unless wire.strength is given
     pub elastic: bool,
+    /// diameter of the bare round wire, m
     pub diameter: f64,
+    /// density, kg/m^3
     pub density: f64,
+    /// stress at first yield, Pa; makes N_y, M_y and T_y where those are 0
     pub yield_stress: f64,
+    /// stress at the end of hardening, Pa; makes strength and copper's moment cap where those are 0
     pub flow_stress: f64,
+    /// stretch rigidity, N; 0: of the material
     pub ea: f64,
+    /// stretch rigidity beyond yield, N; 0: of the material
     pub ea_p: f64,
+    /// bending rigidity, N m^2; 0: of the material
     pub ei: f64,
+    /// bending rigidity beyond yield, N m^2; 0: of the material
     pub ei_p: f64,
+    /// torsional rigidity, N m^2; 0: of the material
     pub gj: f64,
+    /// torsional rigidity beyond yield, N m^2; 0: of the material
     pub gj_p: f64,
+    /// axial force at yield, N; 0: yield_stress times area
     pub n_y: f64,
+    /// bending moment at yield, N m; 0: yield_stress d^3/6
     pub m_y: f64,
+    /// torque at yield, N m; 0: yield_stress/sqrt(3) pi d^3/12
     pub t_y: f64,
+    /// largest bending moment, N m; 0: flow_stress d^3/6 for copper, none for the others
     pub moment_cap: f64,
+    /// tension at break, N; 0: flow_stress times area
     pub strength: f64,
 }
 
 /// `[core]`; a shape reads its own leaves only.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct CoreSettings {
+    /// shape of the core (one of `rounded-box`, `cylinder`, `mesh`)
     pub shape: String,
+    /// rounded box: full width along x, m
     pub width_x: f64,
+    /// rounded box: full height along z, m
     pub height_z: f64,
+    /// rounded box and cylinder: full length along the axis, m
     pub length_y: f64,
+    /// rounded box: radius of the four long edges, m
     pub corner_radius: f64,
+    /// cylinder: radius, m
     pub radius: f64,
-    /// already resolved against the folder of the scene file
+    /// mesh: path of the STL file, already resolved against the folder of the scene file; axis along y
     pub file: String,
+    /// mesh: unit of the STL file (one of `m`, `mm`, `um`, `inch`)
     pub unit: String,
 }
 
 /// `[solver]`.
 #[derive(Clone, Debug, PartialEq)]
-#[allow(missing_docs)]
 pub struct SolverSettings {
+    /// time integrator; auto: rk4 for preset paper, else implicit (one of `auto`, `implicit`, `rk4`, `verlet`)
     pub integrator: String,
+    /// how the wire's twist is carried; auto: the least that matters; dynamic with the explicit methods (one of `auto`, `off`, `quasi-static`, `dynamic`)
     pub twist: String,
+    /// node spacing near the core, m; 0: 0.5 mm explicit, implicit 0.4 mm to a tolerance of 2 um and beyond as its cube root
     pub spacing_near: f64,
+    /// node spacing in the free span, m; 0: 1 mm explicit, eight times that near the core implicit
     pub spacing_free: f64,
+    /// distance from the core at which free-span edges are split, m; 0: 3 mm implicit, 6 mm explicit
     pub refine_distance: f64,
+    /// time step as a share of the stability limit
     pub step_share: f64,
+    /// fixed time step, s; 0: from the error (implicit) or the stability limit
     pub step: f64,
+    /// estimated error that a step of the implicit method may have, root mean square over the wire, m
     pub tolerance: f64,
+    /// contact of live wire with live wire; auto: from half a live turn on (one of `auto`, `on`, `off`)
     pub live_contact: String,
+    /// plastic state of the wire; auto: where it can yield; off: elastic wire (one of `auto`, `on`, `off`)
     pub plasticity: String,
+    /// friction; auto: where a coefficient is not 0 (one of `auto`, `on`, `off`)
     pub friction: String,
+    /// mass of the wire; auto: on; off: the wire goes through states of rest (one of `auto`, `on`, `off`)
     pub inertia: String,
+    /// coarser spacing in the free span; auto: where solver.spacing_free is more than solver.spacing_near (one of `auto`, `on`, `off`)
     pub coarse_span: String,
+    /// coarser spacing of settled live wire; auto: with the implicit method (one of `auto`, `on`, `off`)
     pub coarse_settled: String,
 }
 

@@ -49,6 +49,8 @@ fn metadata() -> Result<String, Box<dyn Error>> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);
     command.args(["metadata", "--locked", "--format-version", "1"]);
+    // As the FMU is linked: without what the command line of the library brings in.
+    command.arg("--no-default-features");
     for triple in TRIPLES {
         command.args(["--filter-platform", triple]);
     }

@@ -3,8 +3,7 @@
 //! One file per scene, one entry per spindle speed: means over an ensemble of runs with fine
 //! spacing and tight tolerance, since a single run scatters. Made by `coilwind bench W --store FILE`.
 
-use super::BenchError;
-use super::wound::{Extremes, Wound};
+use super::error::BenchError;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -26,6 +25,18 @@ pub struct Converged {
     pub scene: String,
     /// by spindle speed, ascending
     pub speeds: Vec<Speed>,
+}
+
+/// Smallest and largest tension of a turn.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Extremes {
+    /// N
+    #[serde(rename = "min_N")]
+    pub min: f64,
+    /// N
+    #[serde(rename = "max_N")]
+    pub max: f64,
 }
 
 /// Ensemble means at one spindle speed.
@@ -50,6 +61,33 @@ pub struct Speed {
     pub gap_scatter_m: f64,
     /// mean extremes of each turn of the spindle
     pub tension: Vec<Extremes>,
+}
+
+/// What a run is judged by.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Wound {
+    /// bulge at the stations of turn 2, m; `None` where nothing is measured
+    pub bulge: Vec<Option<f64>>,
+    /// gap to turn 1 there, m; `None` where nothing is measured or no neighbour is found
+    pub gap: Vec<Option<f64>>,
+    /// tension extremes of each turn of the spindle
+    pub tension: Vec<Extremes>,
+}
+
+impl Extremes {
+    /// Of no values.
+    pub(super) fn none() -> Self {
+        Self {
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+        }
+    }
+
+    /// With these as well.
+    pub(super) fn add(&mut self, min: f64, max: f64) {
+        self.min = self.min.min(min);
+        self.max = self.max.max(max);
+    }
 }
 
 impl Speed {

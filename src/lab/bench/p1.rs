@@ -5,10 +5,11 @@
 //! extrapolates the path of equilibria, and each step of it is as long as Newton's method takes well.
 //! Error: distance of the tip from that of the extensible elastica, over the length.
 
-use super::args::BenchArgs;
+use super::error::BenchError;
+use super::options::BenchOptions;
 use super::record::{Details, Outcome};
+use super::setup::{along_x, cantilever, clamped_edges, elastic_wire};
 use super::watch::Watch;
-use super::{BenchError, along_x, cantilever, clamped_edges, elastic_wire};
 use crate::integrate::{Implicit, Scheme};
 use crate::math::V3;
 use crate::rod::Section;
@@ -30,7 +31,7 @@ const SHORTER: f64 = 0.4;
 /// Smallest step of the load before giving up.
 const SMALLEST: f64 = 1e-6;
 
-pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
+pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     let n = args.n.unwrap_or(EDGES);
     let tol = args.tol.unwrap_or(TOLERANCE);
     let duration = args.dt.unwrap_or(DURATION);
@@ -176,7 +177,7 @@ mod tests {
     fn the_tip_converges_with_second_order() {
         for a in [1.0, 10.0] {
             let error = |n: usize| {
-                let mut args = BenchArgs::new(Problem::P1);
+                let mut args = BenchOptions::new(Problem::P1);
                 (args.n, args.a) = (Some(n), Some(a));
                 let outcome = run(&args).unwrap();
                 assert_eq!(outcome.failure, None);

@@ -3,12 +3,12 @@
 //! Released from the mode's shape, the tip follows `A cos(omega_1 t)`. Error: its largest deviation
 //! from that over the amplitude. What the step does to the amplitude is told on its own.
 
-use super::args::{BenchArgs, Method};
+use super::error::BenchError;
+use super::options::BenchOptions;
+use super::problem::Method;
 use super::record::{Details, Outcome};
+use super::setup::{along_x, cantilever, clamped_edges, elastic_wire, iterations, stable_step};
 use super::watch::Watch;
-use super::{
-    BenchError, along_x, cantilever, clamped_edges, elastic_wire, iterations, stable_step,
-};
 use crate::integrate::{Implicit, Scheme, rk4, verlet};
 use crate::math::V3;
 use crate::rod::Section;
@@ -33,7 +33,7 @@ const SHARE: f64 = 0.9;
 /// Most steps that can be asked for.
 const MOST: f64 = 1e9;
 
-pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
+pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     let n = args.n.unwrap_or(EDGES);
     let section = elastic_wire()?;
     let frequency = first_frequency(&section);
@@ -218,7 +218,7 @@ mod tests {
     fn the_tip_converges_with_second_order_and_keeps_its_amplitude() {
         let end = PERIODS * TAU / first_frequency(&elastic_wire().unwrap());
         let run = |n: usize| {
-            let mut args = BenchArgs::new(Problem::P2);
+            let mut args = BenchOptions::new(Problem::P2);
             args.n = Some(n);
             args.dt = Some(end / (PERIODS * 5.0 * n as f64));
             let outcome = run(&args).unwrap();
@@ -237,7 +237,7 @@ mod tests {
     fn edges_converge_with_fourth_order() {
         let end = PERIODS * TAU / first_frequency(&elastic_wire().unwrap());
         let error = |n: usize| {
-            let mut args = BenchArgs::new(Problem::P2);
+            let mut args = BenchOptions::new(Problem::P2);
             args.n = Some(n);
             // the steps' own part is 5e-5
             args.dt = Some(end / (PERIODS * 2000.0));
@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn an_explicit_step_beyond_its_limit_is_bad_input() {
-        let mut args = BenchArgs::new(Problem::P2);
+        let mut args = BenchOptions::new(Problem::P2);
         args.integrator = Some(Method::Verlet);
         args.dt = Some(1e-4);
         let error = run(&args).unwrap_err().to_string();

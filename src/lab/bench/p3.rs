@@ -4,10 +4,11 @@
 //! and is free across it. Error: ratio of the end forces against `exp(mu pi)`, relative. Bending at
 //! a thousandth of its stiffness takes 1e-4 off that ratio.
 
-use super::args::BenchArgs;
+use super::error::BenchError;
+use super::options::BenchOptions;
 use super::record::{Details, Outcome};
+use super::setup::elastic_wire;
 use super::watch::Watch;
-use super::{BenchError, elastic_wire};
 use crate::contact::{ContactLaw, LineContact};
 use crate::geometry::Shape;
 use crate::integrate::{Implicit, Scheme};
@@ -37,7 +38,7 @@ const RUN_IN: f64 = 1.0;
 const MEAN: f64 = 1.0;
 const STEPS: f64 = 10.0;
 
-pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
+pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     let n = args.n.unwrap_or(EDGES);
     if n < 12 {
         return Err(args.wrong(format!("--n {n}"), "too few for half a turn", "12 or more"));
@@ -161,7 +162,7 @@ mod tests {
 
     #[test]
     fn the_wire_slips_at_the_ratio_of_a_string() {
-        let mut args = BenchArgs::new(Problem::P3);
+        let mut args = BenchOptions::new(Problem::P3);
         args.n = Some(60);
         let outcome = run(&args).unwrap();
         assert_eq!(outcome.failure, None);

@@ -2,10 +2,12 @@
 //!
 //! Error: wire drawn in against the converged value, relative.
 
-use super::args::{BenchArgs, Method};
+use super::error::BenchError;
+use super::options::BenchOptions;
+use super::problem::{Method, Problem};
 use super::record::{Details, Outcome};
+use super::setup::{iterations, solver, turn_length};
 use super::watch::Watch;
-use super::{BenchError, Problem, iterations};
 use crate::scene::Scene;
 use crate::settings::SceneSettings;
 use crate::simulation::Simulation;
@@ -19,7 +21,7 @@ const SPEED: f64 = 500.0;
 /// the tolerance. Verlet's method on the meshed cylinder, `--n 130`, is 7e-5 below at 500.
 const CONVERGED: [(f64, f64); 2] = [(30.0, 0.130_088), (500.0, 0.130_107)];
 
-pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
+pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     let omega = args.omega.unwrap_or(SPEED);
     let scene = scene(args, omega)?;
     let method = args.method();
@@ -29,7 +31,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
     };
     let mut simulation = Simulation::new(&scene).map_err(start)?;
     let mut outcome = Outcome {
-        n: Some((super::turn_length(&scene)? / scene.solver.spacing_near).round() as usize),
+        n: Some((turn_length(&scene)? / scene.solver.spacing_near).round() as usize),
         dt: args.dt,
         tol: (method == Method::Implicit).then_some(scene.solver.tolerance),
         ..Outcome::default()
@@ -56,7 +58,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
 }
 
 /// Elastic wire that lies on the cylinder, constant pull at the nozzle, the packed scene's friction.
-fn scene(args: &BenchArgs, omega: f64) -> Result<Scene, BenchError> {
+fn scene(args: &BenchOptions, omega: f64) -> Result<Scene, BenchError> {
     let mut s = SceneSettings::default();
     s.wire.material = "table1".to_owned();
     s.wire.elastic = true;
@@ -70,7 +72,7 @@ fn scene(args: &BenchArgs, omega: f64) -> Result<Scene, BenchError> {
     s.tensioner.line_length = 0.0;
     s.spindle.speed = omega;
     s.spindle.turns = 2.0;
-    super::winding::solver(&mut s, args)?;
+    solver(&mut s, args)?;
     Ok(s.build()?)
 }
 
@@ -80,7 +82,7 @@ mod tests {
 
     #[test]
     fn two_turns_draw_in_two_turns_of_wire() {
-        let mut args = BenchArgs::new(Problem::P4);
+        let mut args = BenchOptions::new(Problem::P4);
         (args.n, args.tol) = (Some(64), Some(2e-5));
         let outcome = run(&args).unwrap();
         assert_eq!(outcome.failure, None);

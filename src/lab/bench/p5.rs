@@ -2,10 +2,12 @@
 //!
 //! Error: relative drift of its energy over the run.
 
-use super::args::{BenchArgs, Method};
+use super::error::BenchError;
+use super::options::BenchOptions;
+use super::problem::Method;
 use super::record::{Details, Outcome};
+use super::setup::{elastic_wire, iterations, stable_step};
 use super::watch::Watch;
-use super::{BenchError, elastic_wire, iterations, stable_step};
 use crate::integrate::{Implicit, Scheme, rk4, verlet};
 use crate::math::V3;
 use crate::rod::Rod;
@@ -27,7 +29,7 @@ const WORK: usize = 400_000;
 /// Share of the stability limit that an explicit method takes.
 const SHARE: f64 = 0.7;
 
-pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
+pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     let n = args.n.unwrap_or(EDGES);
     let method = args.method();
     let section = elastic_wire()?;
@@ -106,7 +108,7 @@ mod tests {
     #[test]
     fn every_method_keeps_the_energy() {
         for method in [Method::Implicit, Method::Verlet, Method::Rk4] {
-            let mut args = BenchArgs::new(Problem::P5);
+            let mut args = BenchOptions::new(Problem::P5);
             args.n = Some(20);
             args.integrator = Some(method);
             let outcome = run(&args).unwrap();

@@ -1,6 +1,6 @@
 //! The line that a benchmark prints.
 
-use super::args::{Method, Problem};
+use super::problem::{Method, Problem};
 use super::watch::Spent;
 use serde::Serialize;
 

@@ -1,11 +1,12 @@
 //! W: a whole scene along its own programme, against a converged run kept with it.
 
-use super::args::{BenchArgs, Method};
-use super::converged::{Converged, Speed, rms};
+use super::converged::{Converged, Extremes, Speed, Wound, rms};
+use super::error::BenchError;
+use super::options::BenchOptions;
+use super::problem::{Method, Problem};
 use super::record::{Details, Outcome, WindingDetails};
+use super::setup::{COARSER, iterations, solver, turn_length};
 use super::watch::Watch;
-use super::wound::{Extremes, Wound};
-use super::{BenchError, Problem, iterations, turn_length};
 use crate::measure::STATIONS_PER_TURN;
 use crate::scene::Scene;
 use crate::settings::SceneSettings;
@@ -25,11 +26,9 @@ const SPREAD: f64 = 0.35e-3;
 const TIGHT: f64 = 2e-7;
 const FINE: f64 = 0.25e-3;
 /// Tolerance unless something else is asked for, m, and for wire thinner than this in proportion: the verdict of ensembles of `fig8` is
-/// the converged one up to 300 rad/s there. Scenes have a fifth of it, for the sake of their energy books.
+/// the converged one up to 300 rad/s there. Scenes have a fifth of it, for the sake of their energy balance.
 const USUAL: f64 = 1e-5;
 const USUAL_DIAMETER: f64 = 0.7e-3;
-/// Free spacing over that near the core: a power of two, since edges are halved.
-const COARSER: [f64; 2] = [8.0, 2.0];
 
 /// A run, its cost and what stopped it.
 struct Run {
@@ -38,7 +37,7 @@ struct Run {
     details: WindingDetails,
 }
 
-pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
+pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     let name = args.scene.as_deref().unwrap_or("fig8");
     let mut settings = SceneSettings::load(name)?;
     if let Some(omega) = args.omega {
@@ -91,29 +90,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
     Ok(outcome)
 }
 
-/// Method, spacing, step and tolerance as asked for, on top of what the scene has.
-pub(super) fn solver(settings: &mut SceneSettings, args: &BenchArgs) -> Result<(), BenchError> {
-    if let Some(method) = args.integrator {
-        settings.solver.integrator = method.name().to_owned();
-    }
-    if let Some(n) = args.n {
-        let turn = turn_length(&settings.build()?)?;
-        let coarser = COARSER[usize::from(args.method() != Method::Implicit)];
-        settings.solver.spacing_near = turn / n as f64;
-        settings.solver.spacing_free = coarser * settings.solver.spacing_near;
-    }
-    if let Some(dt) = args.dt {
-        settings.solver.step = dt;
-    }
-    if let Some(tol) = args.tol {
-        settings.solver.tolerance = tol;
-    }
-    Ok(())
-}
-
 /// Winds the scene to its end, a turn at a time: what it takes, and what comes of it. A second run that stops
 /// every millisecond tells the dearest of them; the stops themselves cost steps, half as much again at 30 rad/s.
-fn wind(scene: &Scene, args: &BenchArgs) -> Result<Run, BenchError> {
+fn wind(scene: &Scene, args: &BenchOptions) -> Result<Run, BenchError> {
     let start = |reason| BenchError::Start {
         problem: Problem::W,
         reason,
@@ -250,7 +229,10 @@ fn compare(wound: &Wound, speed: &Speed, winding: &mut WindingDetails, outcome: 
 }
 
 /// Winds the ensemble and takes its means.
-fn ensemble(args: &BenchArgs, mut settings: SceneSettings) -> Result<(Speed, Outcome), BenchError> {
+fn ensemble(
+    args: &BenchOptions,
+    mut settings: SceneSettings,
+) -> Result<(Speed, Outcome), BenchError> {
     settings.solver.spacing_near = FINE;
     settings.solver.spacing_free = COARSER[0] * FINE;
     solver(&mut settings, args)?;
@@ -303,8 +285,8 @@ mod tests {
     use super::*;
 
     /// Coarse and loose, at a speed where it does not matter.
-    fn quick() -> BenchArgs {
-        let mut args = BenchArgs::new(Problem::W);
+    fn quick() -> BenchOptions {
+        let mut args = BenchOptions::new(Problem::W);
         (args.n, args.tol, args.omega) = (Some(84), Some(2e-5), Some(30.0));
         args
     }

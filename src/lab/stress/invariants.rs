@@ -9,7 +9,7 @@ use crate::simulation::{SimError, Simulation};
 use std::f64::consts::{PI, TAU};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Energy that the books may leave unexplained, as a share of what went through them and of the work that
+/// Energy that the balance may leave unexplained, as a share of what went through it and of the work that
 /// draws in a diameter of wire (so that the first steps of a run are not held against themselves).
 const ENERGY: f64 = 0.05;
 /// Centreline may be deeper in the core than its contact says by this share of the diameter: it is

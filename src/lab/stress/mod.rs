@@ -165,7 +165,7 @@ pub enum Invariant {
     Panic,
     /// every number is one
     Finite,
-    /// the books explain all energy
+    /// the energy balance explains all energy
     Energy,
     /// wire stays out of the core
     Penetration,

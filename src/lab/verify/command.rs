@@ -1,4 +1,4 @@
-//! `coilwind verify`: which cases to run, and the run itself.
+//! Runs of cases with exact answers: which ones, how, and a record for each number.
 
 use super::file::{CaseFile, Check};
 use super::report::{Outcome, Record, judge, unknown};
@@ -8,24 +8,32 @@ use crate::settings::SceneSettings;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// Arguments of `coilwind verify`.
-#[derive(Clone, Debug, Default, clap::Args)]
-pub struct VerifyArgs {
-    /// Kinds to run; all if none is named
-    #[arg(value_name = "KIND")]
+/// Which cases to run, and how.
+#[derive(Clone, Debug)]
+pub struct VerifyOptions {
+    /// kinds to run; all if empty
     pub kinds: Vec<String>,
-    /// Case file to run; the packed reference cases if none is given
-    #[arg(long = "file", value_name = "CASES.json")]
+    /// case files to run; the packed reference cases if empty
     pub files: Vec<PathBuf>,
-    /// Method: default (the implicit one that winding uses) or paper (explicit, RK4)
-    #[arg(long, value_name = "paper|default", default_value = "default", value_parser = ["paper", "default"])]
-    pub preset: String,
-    /// Solver setting: solver.spacing_near (finest node spacing, m) or solver.integrator
-    #[arg(long = "set", value_name = "NAME=VALUE")]
+    /// method: the implicit one that winding uses, or the paper's explicit one (RK4)
+    pub preset: Preset,
+    /// solver settings as `NAME=VALUE`: `solver.spacing_near` (finest node spacing, m) or
+    /// `solver.integrator`
     pub set: Vec<String>,
-    /// One line of JSON per number
-    #[arg(long)]
+    /// a line of JSON per number instead of a table
     pub json: bool,
+}
+
+impl Default for VerifyOptions {
+    fn default() -> Self {
+        Self {
+            kinds: Vec::new(),
+            files: Vec::new(),
+            preset: Preset::Default,
+            set: Vec::new(),
+            json: false,
+        }
+    }
 }
 
 /// How the cases are computed.
@@ -39,14 +47,10 @@ pub struct Manner {
     pub spacing: Option<f64>,
 }
 
-impl VerifyArgs {
+impl VerifyOptions {
     /// The manner that preset and settings ask for.
     pub fn manner(&self) -> Result<Manner, VerifyError> {
-        let preset = if self.preset == "paper" {
-            Preset::Paper
-        } else {
-            Preset::Default
-        };
+        let preset = self.preset;
         let mut settings = SceneSettings::default();
         let mut spacing = None;
         for text in &self.set {
@@ -104,7 +108,7 @@ impl VerifyArgs {
 ///
 /// An error is bad input (exit code 2); `Ok(false)` a number out of tolerance, a case without
 /// an answer or a kind that is not known (exit code 1).
-pub fn run(args: &VerifyArgs, mut print: impl FnMut(&str)) -> Result<bool, VerifyError> {
+pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, VerifyError> {
     let manner = args.manner()?;
     let files = args.case_files()?;
     if !args.json {
@@ -187,28 +191,24 @@ pub fn run_file(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use clap::Parser;
 
-    #[derive(Parser)]
-    struct Program {
-        #[command(flatten)]
-        args: VerifyArgs,
-    }
-
-    fn parse(words: &[&str]) -> VerifyArgs {
-        Program::try_parse_from(std::iter::once(&"verify").chain(words))
-            .expect("the words are well formed")
-            .args
+    fn set(text: &str) -> VerifyOptions {
+        VerifyOptions {
+            set: vec![text.to_owned()],
+            ..VerifyOptions::default()
+        }
     }
 
     #[test]
     fn settings_reach_the_manner() {
-        let manner = parse(&["--preset", "paper", "--set", "solver.spacing_near=0.0002"])
-            .manner()
-            .expect("known settings");
+        let paper = VerifyOptions {
+            preset: Preset::Paper,
+            ..set("solver.spacing_near=0.0002")
+        };
+        let manner = paper.manner().expect("known settings");
         assert_eq!(manner.integrator, Integrator::Rk4);
         assert_eq!(manner.spacing, Some(0.0002));
-        let manner = parse(&["--set", "solver.integrator=rk4"])
+        let manner = set("solver.integrator=rk4")
             .manner()
             .expect("known settings");
         assert_eq!(
@@ -223,16 +223,19 @@ mod tests {
             "solver.integrator=euler",
             "wire.diameter=0.001",
         ] {
-            assert!(parse(&["--set", bad]).manner().is_err(), "{bad}");
+            assert!(set(bad).manner().is_err(), "{bad}");
         }
     }
 
     #[test]
     fn a_kind_that_nobody_knows_is_neither_right_nor_wrong() {
         let mut lines = Vec::new();
-        let all_right = run(&parse(&["perpetual_motion", "--json"]), |line| {
-            lines.push(line.to_owned());
-        });
+        let options = VerifyOptions {
+            kinds: vec!["perpetual_motion".to_owned()],
+            json: true,
+            ..VerifyOptions::default()
+        };
+        let all_right = run(&options, |line| lines.push(line.to_owned()));
         assert_eq!(all_right, Ok(false));
         assert_eq!(lines.len(), 1);
         assert!(lines[0].contains(r#""ok":null"#), "{}", lines[0]);

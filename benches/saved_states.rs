@@ -1,5 +1,5 @@
 //! What a saved state costs on the way through a long wind: bytes, CPU time to save and restore, and memory of
-//! copies that share settled wire. `cargo run --release --example saved_states [TURNS]`
+//! copies that share settled wire. `cargo bench --bench saved_states [-- TURNS]`
 
 use coilwind::settings::SceneSettings;
 use coilwind::signals::Inputs;
@@ -22,7 +22,11 @@ fn resident() -> f64 {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let turns: f64 = std::env::args().nth(1).map_or(Ok(100.0), |a| a.parse())?;
+    // Cargo adds `--bench`.
+    let given = std::env::args()
+        .skip(1)
+        .find(|word| !word.starts_with("--"));
+    let turns: f64 = given.map_or(Ok(100.0), |word| word.parse())?;
     let mut settings = SceneSettings::load("fig8")?;
     settings.set_text("core.length_y_mm", "160")?;
     settings.set_text("start.clamp_y_mm", "-70")?;

@@ -1,115 +1,48 @@
 //! What a benchmark is asked for, and which combinations make sense.
 
-use super::BenchError;
+use super::error::BenchError;
+use super::problem::{Method, Problem};
 use crate::math::simd::Width;
-use crate::scene::assignment;
-use clap::ValueEnum;
 use std::path::PathBuf;
 
-/// The problems.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, serde::Serialize)]
-pub enum Problem {
-    /// cantilever under a dead force at its tip
-    #[value(name = "P1", alias = "p1")]
-    P1,
-    /// cantilever vibration over ten periods of its first mode
-    #[value(name = "P2", alias = "p2")]
-    P2,
-    /// capstan: half a turn of slipping wire
-    #[value(name = "P3", alias = "p3")]
-    P3,
-    /// two turns wound on a cylinder
-    #[value(name = "P4", alias = "p4")]
-    P4,
-    /// free wire: cost of a node and step
-    #[value(name = "P5", alias = "p5")]
-    P5,
-    /// a whole scene
-    #[value(name = "W", alias = "w")]
-    W,
-}
-
-impl std::fmt::Display for Problem {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        std::fmt::Debug::fmt(self, f)
-    }
-}
-
-/// Which method moves the wire.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Method {
-    /// the production method
-    Implicit,
-    /// velocity Verlet
-    Verlet,
-    /// classical Runge-Kutta
-    Rk4,
-}
-
-impl Method {
-    /// Its name in scene files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Implicit => "implicit",
-            Self::Verlet => "verlet",
-            Self::Rk4 => "rk4",
-        }
-    }
-}
-
-/// Arguments of `coilwind bench`.
-#[derive(Clone, Debug, clap::Args)]
-pub struct BenchArgs {
-    /// P1 cantilever, P2 vibration, P3 capstan, P4 two turns on a cylinder, P5 free wire, W a whole scene
-    #[arg(value_enum, value_name = "PROBLEM")]
+/// Options of a benchmark; an option that is `None` takes the value that the problem has by itself.
+#[derive(Clone, Debug)]
+pub struct BenchOptions {
+    /// the problem
     pub problem: Problem,
-    /// Edges: of the wire (P1, P2, P3, P5), or of a turn of wire on the core (P4, W)
-    #[arg(long, value_name = "N")]
+    /// edges: of the wire (P1, P2, P3, P5), or of a turn of wire on the core (P4, W)
     pub n: Option<usize>,
-    /// Time step, s, held fixed (P1: pseudo-time of the whole load; P3: longest step)
-    #[arg(long, value_name = "DT")]
+    /// time step held fixed, s; P1: pseudo-time of the whole load; P3: longest step
     pub dt: Option<f64>,
-    /// Tolerance of the implicit method, m [default of W: the scene's if it has one, else 1e-5, less for wire thinner
-    /// than 0.7 mm]
-    #[arg(long, value_name = "TOL")]
+    /// tolerance of the implicit method, m; W: the scene's if it has one, else 1e-5, less for wire thinner
+    /// than 0.7 mm
     pub tol: Option<f64>,
-    /// Method: implicit, verlet or rk4
-    #[arg(long, value_enum, value_name = "NAME")]
+    /// method that moves the wire; the implicit one by default
     pub integrator: Option<Method>,
-    /// Most numbers worked on at once, as far as the machine can: 1, 4 (AVX2) or 8 (AVX-512); no result depends on
-    /// it [default: 4]
-    #[arg(long, value_enum, value_name = "N")]
+    /// most numbers worked on at once, as far as the machine can; no result depends on it
     pub lanes: Option<Width>,
-    /// Runs; the line has the median of their times [default: 1]
-    #[arg(long, value_name = "K")]
+    /// runs, 1 by default; the record has the median of their times
     pub repeat: Option<usize>,
-    /// P1: load P L^2/EI, 0.01 to 20 [default: 10]
-    #[arg(long, value_name = "A")]
+    /// P1: load P L^2/EI, 0.01 to 20; 10 by default
     pub a: Option<f64>,
-    /// P4, W: spindle speed, rad/s [default: 500, or the scene's]
-    #[arg(long, value_name = "W")]
+    /// P4, W: spindle speed, rad/s; 500 or the scene's by default
     pub omega: Option<f64>,
-    /// W: packed name or path of the scene [default: fig8]
-    #[arg(long, value_name = "NAME")]
+    /// W: packed name or path of the scene; fig8 by default
     pub scene: Option<String>,
-    /// W: another value of a scene variable (may be repeated)
-    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    /// W: other values of scene variables, by name
     pub set: Vec<(String, String)>,
     /// W: compare with the converged runs of this file instead of the packed ones
-    #[arg(long, value_name = "FILE", conflicts_with = "store")]
     pub against: Option<PathBuf>,
-    /// W: wind an ensemble of eight nozzle distances, +-0.35 mm about the scene's, with 0.25 mm edges and
-    /// a tolerance of 2e-7 m unless --n and --tol say otherwise, and keep its means in this file (made,
-    /// or this speed in it replaced) as what later runs are compared with
-    #[arg(long, value_name = "FILE", conflicts_with_all = ["repeat", "integrator", "dt"])]
+    /// W: wind an ensemble of eight nozzle distances, +-0.35 mm about the scene's, and write its means to
+    /// this file as what later runs are compared with. The file is made, or this speed in it replaced.
+    /// `n` and `tol` are 0.25 mm edges and 2e-7 m by default
     pub store: Option<PathBuf>,
 }
 
 /// Fewest and most edges that can be asked for.
 const EDGES: [usize; 2] = [4, 20_000];
 
-impl BenchArgs {
+impl BenchOptions {
     /// A problem with nothing else asked for.
     pub fn new(problem: Problem) -> Self {
         Self {

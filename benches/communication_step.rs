@@ -1,5 +1,5 @@
 //! Cost and effect of the communication step: the same wind, half a turn at 300 rad/s with a ramp, in
-//! communication steps of one length. `cargo run --release --example communication_step`
+//! communication steps of one length. `cargo bench --bench communication_step`
 
 use coilwind::settings::SceneSettings;
 use coilwind::signals::Inputs;
