@@ -1,6 +1,7 @@
 //! Derivatives of the outputs by the inputs, for importers that solve loops or linearise.
 
-use super::{SimError, Simulation, check_finite};
+use super::door::check_finite;
+use super::{SimError, Simulation};
 use crate::integrate::OutputSensitivity;
 use crate::math::V3;
 use crate::math::{polar_angle, wrap_to_pi};

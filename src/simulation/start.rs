@@ -1,10 +1,16 @@
 //! The state at the start: wire clamped at mid-face, straight to the nozzle, at the set tension.
 
-use super::SimError;
+use super::door::check_finite;
+use super::freezing::{FreezePolicy, Watch};
+use super::rates::Instant;
+use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec};
 use crate::geometry::generate::{cylinder, rounded_box, segments_for_sagitta};
 use crate::geometry::{Shape, Surface, TriMesh};
+use crate::integrate::{
+    Implicit, RK4_LIMIT, Scheme, VERLET_LIMIT, highest_frequency, longest_step,
+};
 use crate::math::frame_along;
 use crate::math::polar_angle;
 use crate::math::turn_about_y;
@@ -12,7 +18,7 @@ use crate::math::{Spin, V3};
 use crate::measure::{Coil, CoilSpec};
 use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene};
-use crate::signals::Inputs;
+use crate::signals::{Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
 use std::sync::Arc;
 
@@ -104,7 +110,7 @@ fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
 }
 
 /// Builds the system at rest, an empty coil and the core angle at the start.
-pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
+fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
     let surface = Arc::new(core_surface(&scene.core)?);
     let mut section = scene.wire.clone();
     if !scene.solver.features.inertia {
@@ -245,4 +251,117 @@ fn line_of_nodes(scene: &Scene, surface: &Surface, clamp: V3, nozzle: V3, angle:
     }
     points.push(nozzle);
     points
+}
+
+impl Simulation {
+    /// Wire clamped to the core and straight to the nozzle at the set tension, everything at rest.
+    pub fn new(scene: &Scene) -> Result<Self, SimError> {
+        let inputs = Inputs {
+            spindle_speed: 0.0,
+            nozzle_position: scene.nozzle.y_start + scene.traverse.lead,
+            tension_setpoint: scene.tensioner.tension,
+        };
+        Self::starting_with(scene, inputs)
+    }
+
+    /// The same with these inputs at the start.
+    pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
+        check_finite(&inputs, 0.0)?;
+        let (mut sys, coil, angle0) = wire(scene, &inputs)?;
+        let implicit =
+            (scene.solver.integrator == Integrator::Implicit).then(|| implicit_for(scene));
+        let limit = match scene.solver.integrator {
+            Integrator::Rk4 => RK4_LIMIT,
+            Integrator::Verlet | Integrator::Implicit => VERLET_LIMIT,
+        };
+        let spacing = scene.solver.spacing_near.min(scene.solver.spacing_free);
+        let contact = scene.contact.stiffness;
+        let frequency = highest_frequency(
+            &scene.wire,
+            spacing,
+            contact,
+            scene.solver.twist.is_carried(),
+        );
+        let damping = damping_for_restitution(scene.contact.restitution);
+        let stable = longest_step(limit, frequency, damping, contact, &scene.wire);
+        let longest_step = if scene.solver.step > 0.0 {
+            scene.solver.step
+        } else {
+            stable * scene.solver.step_share
+        };
+        if longest_step > stable && implicit.is_none() {
+            return Err(SimError::setup(format!(
+                "solver.step = {:.4e} s is too long for the explicit method: the limit of this wire at {} mm spacing is {:.4e} s",
+                scene.solver.step,
+                spacing * 1e3,
+                stable
+            )));
+        }
+        sys.refresh();
+        sys.balance.initial = sys.stored() + sys.kinetic();
+        let policy = FreezePolicy {
+            window: scene.freeze.window,
+            time: scene.freeze.time,
+            displacement: scene.freeze.creep * scene.freeze.window,
+            keep_length: if scene.freeze.keep_length > 0.0 {
+                scene.freeze.keep_length
+            } else {
+                1.75 * (scene.wire.ei / inputs.tension_setpoint.max(0.01 * scene.tensioner.tension))
+                    .sqrt()
+            },
+            patience: scene.freeze.patience * std::f64::consts::TAU,
+            margin: scene.freeze.margin,
+        };
+        let mut sim = Self {
+            motion_profile: MotionProfile::new(scene),
+            watch: Watch::new(sys.rod.nodes(), sys.spindle.angle),
+            scene: scene.clone(),
+            sys,
+            coil,
+            policy,
+            behind: Vec::new(),
+            angle0,
+            longest_step,
+            implicit,
+            last_step: longest_step,
+            last_span: 0.0,
+            time: 0.0,
+            steps: 0,
+            outputs: Outputs::default(),
+            rates: Outputs::default(),
+            instant: Instant::default(),
+            time_lost: 0.0,
+            owed: 0.0,
+            events: Vec::new(),
+            rest_depth: 0.0,
+            broken: false,
+            was_slack: false,
+            quiet: 0.0,
+            farthest: 0.0,
+            pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
+            work: 0,
+            most_work: u64::MAX,
+        };
+        sim.sys.spindle.speed = inputs.spindle_speed;
+        sim.sys.place_supports();
+        sim.reset_extremes();
+        sim.update_outputs();
+        Ok(sim)
+    }
+
+    /// Starts over with other inputs; only before the first step.
+    pub fn set_start(&mut self, inputs: Inputs) -> Result<(), SimError> {
+        *self = Self::starting_with(&self.scene, inputs)?;
+        Ok(())
+    }
+}
+
+/// The production method for a scene.
+fn implicit_for(scene: &Scene) -> Implicit {
+    let solver = scene.solver;
+    // a step of a nanosecond resolves any contact: what fails there fails for another reason; a tenth
+    // of a second is longer than any motion of a wire takes
+    let mut method = Implicit::new(Scheme::Bdf2, solver.tolerance, 1e-9, 0.1);
+    method.fixed = (solver.step > 0.0).then_some(solver.step);
+    method
 }

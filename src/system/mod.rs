@@ -2,12 +2,14 @@
 //!
 //! Lab frame; the core turns about +y. Nothing here knows scenes or files.
 
+mod drive;
 mod energy_balance;
 mod history;
 mod remesh;
 mod saved;
 mod support;
 
+pub use drive::{Drive, NozzleDrive};
 pub use energy_balance::EnergyBalance;
 pub use history::Past;
 pub use remesh::FrozenHistory;
