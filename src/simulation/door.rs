@@ -5,8 +5,17 @@ use crate::integrate::SolverStatistics;
 use crate::signals::{EventKind, Inputs, Outputs};
 use crate::system::{Drive, NozzleDrive};
 
+/// Where the motion of the machine over a communication step comes from.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// inputs at the start of the step and their rates, per s
+    Inputs { inputs: Inputs, rates: Inputs },
+    /// the scene's own motion profile at this time of the run
+    Profile,
+}
+
 impl Simulation {
-    /// Advances by `dt` with the inputs held: spindle speed and tension from now on, the nozzle
+    /// Advances by `dt`, s, with the inputs held: spindle speed and tension from now on, the nozzle
     /// moving evenly so that it reaches its position at the end (a jump would be a hammer blow).
     ///
     /// After an error the run stands where the last step ended that went through ([`Self::time`]).
@@ -14,66 +23,122 @@ impl Simulation {
         self.advance_ramped(inputs, Inputs::HELD, dt)
     }
 
-    /// Advances by `dt` with inputs that start at `inputs` and change evenly, at `rates` per s. The nozzle moves
-    /// evenly from where it is to where its input is at the end. Steps below a nanosecond only add up until they are
-    /// worth solving for.
+    /// Advances by `dt`, s, with inputs that start at `inputs` and change evenly, at `rates` per s.
+    ///
+    /// The nozzle moves evenly from where it is to where its input is at the end. Steps below a nanosecond only
+    /// add up until they are worth solving for. After an error see [`Self::advance`].
     pub fn advance_ramped(
         &mut self,
         inputs: Inputs,
         rates: Inputs,
         dt: f64,
     ) -> Result<(), SimError> {
-        let end = inputs.after(&rates, dt);
-        check_finite(&inputs, self.time)?;
-        check_finite(&end, self.time)?;
+        self.advance_by(Source::Inputs { inputs, rates }, dt)
+    }
+
+    /// Advances by `dt`, s, along the scene's own spindle ramp and traverse, which are continuous.
+    ///
+    /// The set tension stays what it is. After an error see [`Self::advance`].
+    pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
+        self.advance_by(Source::Profile, dt)
+    }
+
+    /// Advances by `dt`, s, with the motion that `source` gives the machine: the one way through a step.
+    fn advance_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
+        self.check_step(dt)?;
+        if let Source::Inputs { inputs, rates } = &source {
+            check_finite(inputs, self.time)?;
+            check_finite(&inputs.after(rates, dt), self.time)?;
+        }
         let span = self.owed + dt;
         if span < WORTH_A_STEP {
             self.owed = span;
             self.pass_time(dt);
             return Ok(());
         }
-        let start = if self.owed > 0.0 {
-            end.after(&rates, -span)
-        } else {
-            inputs
-        };
+        let drives = self.drives(&source, dt, span);
         self.owed = 0.0;
         self.last_span = span;
         let before = self.outputs;
-        let target = end.nozzle_position;
-        let travel = target - self.sys.support[1].point.y;
-        if rates != Inputs::HELD
-            || inputs.spindle_speed != 0.0
-            || travel != 0.0
-            || inputs.tension_setpoint != self.sys.set_tension
-        {
+        if self.is_moved_by(&source, dt) {
             self.quiet = 0.0;
         }
         self.reset_extremes();
-        let drive = Drive {
-            duration: span,
-            speed: start.spindle_speed,
-            acceleration: rates.spindle_speed,
-            nozzle: NozzleDrive::Even(travel / span),
-            tension: start.tension_setpoint,
-            tension_rate: rates.tension_setpoint,
-        };
-        self.sys.begin_drive(&drive);
         let statistics_before = self.statistics();
-        let gone = self.through(&drive);
+        let gone = drives.iter().flatten().try_for_each(|drive| {
+            self.sys.begin_drive(drive);
+            self.through(drive)
+        });
         self.tell_of_trouble(statistics_before);
         self.sys.end_drive();
         if gone.is_err() {
             self.stop_short();
             return gone;
         }
-        self.sys.spindle.speed = end.spindle_speed;
-        self.sys.set_tension = end.tension_setpoint;
-        self.sys.support[1].point.y = target;
+        if let Source::Inputs { inputs, rates } = &source {
+            let end = inputs.after(rates, dt);
+            self.sys.spindle.speed = end.spindle_speed;
+            self.sys.set_tension = end.tension_setpoint;
+            self.sys.support[1].point.y = end.nozzle_position;
+        }
         self.pass_time(dt);
         self.finish();
         self.update_rates(&before, span);
         Ok(())
+    }
+
+    /// The motion over the last `span` seconds up to the end of a communication step of `dt`, s.
+    fn drives(&self, source: &Source, dt: f64, span: f64) -> [Option<Drive>; 2] {
+        match source {
+            Source::Inputs { inputs, rates } => {
+                let end = inputs.after(rates, dt);
+                let start = if self.owed > 0.0 {
+                    end.after(rates, -span)
+                } else {
+                    *inputs
+                };
+                let travel = end.nozzle_position - self.sys.support[1].point.y;
+                let drive = Drive {
+                    duration: span,
+                    speed: start.spindle_speed,
+                    acceleration: rates.spindle_speed,
+                    nozzle: NozzleDrive::Even(travel / span),
+                    tension: start.tension_setpoint,
+                    tension_rate: rates.tension_setpoint,
+                };
+                [Some(drive), None]
+            }
+            Source::Profile => {
+                let (start, end) = (self.time - self.owed, self.time + (dt - self.time_lost));
+                self.motion_profile.drives(start, end, self.sys.set_tension)
+            }
+        }
+    }
+
+    /// Whether a step of `dt`, s, from this source moves anything or changes an input.
+    fn is_moved_by(&self, source: &Source, dt: f64) -> bool {
+        match source {
+            Source::Inputs { inputs, rates } => {
+                let end = inputs.after(rates, dt);
+                *rates != Inputs::HELD
+                    || inputs.spindle_speed != 0.0
+                    || end.nozzle_position - self.sys.support[1].point.y != 0.0
+                    || inputs.tension_setpoint != self.sys.set_tension
+            }
+            Source::Profile => true,
+        }
+    }
+
+    /// A communication step is a finite time of 0 or more.
+    fn check_step(&self, dt: f64) -> Result<(), SimError> {
+        if dt.is_finite() && dt >= 0.0 {
+            return Ok(());
+        }
+        Err(SimError {
+            time: self.time,
+            node: None,
+            reason: format!("a communication step of {dt} s is not a finite time of 0 or more"),
+        })
     }
 
     /// Adds up communication steps such that millions of them lose no more than the last digit (Kahan 1965).
@@ -84,8 +149,8 @@ impl Simulation {
         self.time = next;
     }
 
-    /// The method gave up within a step: what can be read is what was reached, or what was there before if
-    /// that is no state of a wire.
+    /// Ends a step in which the method gave up: what can be read is what was reached, or what was there before
+    /// if that is no state of a wire.
     fn stop_short(&mut self) {
         let rod = &self.sys.rod;
         if rod.x.iter().chain(&rod.v).flatten().all(|x| x.is_finite()) {
@@ -95,8 +160,8 @@ impl Simulation {
         self.rates = Outputs::default();
     }
 
-    /// Says that the solver could not solve steps as long as it wanted to; being too long for the error is
-    /// its daily bread.
+    /// Reports steps since `before` that the solver could not solve and took shorter. Steps that were too long for
+    /// their error are no trouble.
     fn tell_of_trouble(&mut self, before: SolverStatistics) {
         let newton_failures = self.statistics().newton_failures - before.newton_failures;
         if newton_failures > 0 {
@@ -106,22 +171,6 @@ impl Simulation {
             );
             self.report(EventKind::Solver, text);
         }
-    }
-
-    /// Advances by `dt` along the scene's own spindle ramp and traverse, which are continuous.
-    pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
-        self.reset_extremes();
-        self.quiet = 0.0;
-        let end = self.time + dt;
-        let profile = self.motion_profile;
-        for drive in profile.drives(self.time, end, self.sys.set_tension) {
-            self.sys.begin_drive(&drive);
-            self.through(&drive)?;
-        }
-        self.sys.end_drive();
-        self.time += dt;
-        self.finish();
-        Ok(())
     }
 
     pub(super) fn finish(&mut self) {
