@@ -13,7 +13,7 @@ use coilwind::rod::Rod;
 use coilwind::rod::Twist;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::system::{Support, System};
+use coilwind::system::{ContactModel, Support, System};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -89,7 +89,7 @@ fn lying(scene: &Scene, nodes: usize, frozen: usize) -> System {
         let (p, arc) = wind(around, pitch, 2.0 * r - DEPTH, i);
         line.lay(p, arc);
     }
-    sys.line = Some(line);
+    sys.contact = ContactModel::line(line);
     sys.arc0 = 1e3;
     sys.refresh();
     sys
@@ -139,7 +139,7 @@ fn search(c: &mut Criterion) {
     for (name, cold) in [("push", false), ("look_up_and_push", true)] {
         group(c, name, &KINDS[1..], |b, mut sys| {
             let x = std::mem::take(&mut sys.rod.x);
-            let line = sys.line.as_mut().expect("contact");
+            let line = sys.contact.as_line_mut().expect("contact");
             b.iter(|| {
                 if cold {
                     line.forget_surroundings();
@@ -162,7 +162,7 @@ fn search(c: &mut Criterion) {
 /// Gathering the passages near each node, and their feet.
 fn tube(c: &mut Criterion) {
     group(c, "gather", &KINDS[2..], |b, sys| {
-        let tube = &sys.line.as_ref().expect("contact").tube;
+        let tube = &sys.contact.as_line().expect("contact").tube;
         let mut starts = Vec::new();
         b.iter(|| {
             let mut count = 0;
@@ -174,7 +174,7 @@ fn tube(c: &mut Criterion) {
         });
     });
     group(c, "foot", &KINDS[2..], |b, sys| {
-        let tube = &sys.line.as_ref().expect("contact").tube;
+        let tube = &sys.contact.as_line().expect("contact").tube;
         let mut starts = Vec::new();
         let known: Vec<(V3, u32)> = (sys.rod.x.iter())
             .filter_map(|x| {

@@ -9,7 +9,7 @@ use coilwind::rod::Rod;
 use coilwind::rod::Twist;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::system::System;
+use coilwind::system::{ContactModel, System};
 
 /// Speed of a wire that is drawn onto a flat, m/s.
 const SPEED: f64 = 10.0;
@@ -73,7 +73,7 @@ fn falling(scene: &Scene, onto: Onto, fall: f64) -> System {
             line.lay(V3::new(6e-3 + r, along(i), 0.2e-3), SPACING * i as f64);
         }
     }
-    sys.line = Some(line);
+    sys.contact = ContactModel::line(line);
     // nothing is the falling wire's own neighbourhood
     sys.arc0 = 1.0;
     sys.refresh();
@@ -98,7 +98,7 @@ fn land(
             Err(stopped) => return Err(stopped),
         }
     }
-    let line = sys.line.as_ref().expect("contact");
+    let line = sys.contact.as_line().expect("contact");
     let r = scene.wire.radius();
     let through = sys.rod.x.iter().any(|x| {
         let core = line.shape.nearness(*x).distance < 0.5 * r;

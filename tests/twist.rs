@@ -1,6 +1,6 @@
 //! Twist in the implicit method: modes stepped in time, and agreement with the explicit methods.
 
-use coilwind::integrate::{Implicit, Scheme, highest_frequency, verlet};
+use coilwind::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, highest_frequency};
 use coilwind::lab::statics::{Limits, ramp};
 use coilwind::math::{Quat, V3};
 use coilwind::math::{frame_along, rotate};
@@ -116,8 +116,9 @@ fn a_torsional_wave_runs_as_in_the_explicit_method() {
     let limit = 2.0 / highest_frequency(&b.section, b.rod.rest[0], 0.0, true);
     let steps = (end / (0.1 * limit)).ceil();
     b.evaluate(Some(0.0));
+    let mut verlet = Explicit::new(ExplicitMethod::Verlet);
     for _ in 0..steps as usize {
-        verlet::step(&mut b, end / steps);
+        verlet.step(&mut b, end / steps);
     }
     let mut method = Implicit::new(Scheme::Bdf2, 1e-12, 1e-12, 1.0);
     method.fixed = Some(end / 1000.0);
@@ -160,11 +161,12 @@ fn twisted_under_tension_all_come_to_the_same_rest() {
     moved.loads.drag = 5e3;
     let dt = 1.8 / highest_frequency(&moved.section, moved.rod.rest[0], 0.0, true);
     moved.evaluate(Some(0.0));
+    let mut verlet = Explicit::new(ExplicitMethod::Verlet);
     let steps = (12e-3 / dt) as usize;
     for k in 0..steps {
         let share = (3.0 * k as f64 / steps as f64).min(1.0);
         moved.support[1].frame = Some(rolled(turned * share));
-        verlet::step(&mut moved, dt);
+        verlet.step(&mut moved, dt);
     }
     assert!(apart(&moved, &still) < 1e-7, "{}", apart(&moved, &still));
 

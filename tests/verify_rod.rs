@@ -1,6 +1,6 @@
 //! The rod against exact answers: the packed reference cases, and the modes stepped in time.
 
-use coilwind::integrate::{highest_frequency, rk4, verlet};
+use coilwind::integrate::{Explicit, ExplicitMethod, highest_frequency};
 use coilwind::lab::verify::{CaseFile, Manner, Record, VerifyArgs, run, run_file};
 use coilwind::math::V3;
 use coilwind::rod::{Rod, Section};
@@ -98,7 +98,7 @@ fn stepped(
     rolls: bool,
     axis: usize,
     start: impl Fn(f64) -> f64,
-    step: fn(&mut System, f64),
+    method: ExplicitMethod,
 ) -> f64 {
     let n = sys.rod.edges();
     if rolls {
@@ -123,9 +123,10 @@ fn stepped(
                 .sum()
         }
     };
+    let mut explicit = Explicit::new(method);
     let (mut last, mut zeros) = (seen(&sys), Vec::new());
     for _ in 0..400_000 {
-        step(&mut sys, dt);
+        explicit.step(&mut sys, dt);
         let now = seen(&sys);
         if last * now < 0.0 {
             zeros.push(sys.time - dt * now / (now - last));
@@ -167,17 +168,17 @@ fn expected(file: &CaseFile, case: usize, quantity: &str) -> f64 {
 
 #[test]
 fn modes_stepped_in_time_have_the_frequency_of_theory() {
-    for step in [verlet::step, rk4::step] {
+    for method in [ExplicitMethod::Verlet, ExplicitMethod::Rk4] {
         let file = packed("axial_wave");
         let sys = held(&file.section, 0.5, 60, 0.5);
-        let f = stepped(sys, false, 0, |s| libm::sin(PI * s), step);
+        let f = stepped(sys, false, 0, |s| libm::sin(PI * s), method);
         let theory = expected(&file, 0, "fixed_fixed_f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "axial {f} {theory}");
 
         let file = packed("torsion");
         let mut sys = held(&file.section, 0.1, 60, 0.1);
         sys.support[0].frame = Some(sys.rod.frame[0]);
-        let f = stepped(sys, true, 0, |s| libm::sin(0.5 * PI * s), step);
+        let f = stepped(sys, true, 0, |s| libm::sin(0.5 * PI * s), method);
         let theory = expected(&file, 0, "fixed_free_f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "torsion {f} {theory}");
 
@@ -191,7 +192,7 @@ fn modes_stepped_in_time_have_the_frequency_of_theory() {
             ..Loads::default()
         };
         sys.twist = coilwind::rod::Twist::Off;
-        let f = stepped(sys, false, 1, |s| libm::sin(PI * s), step);
+        let f = stepped(sys, false, 1, |s| libm::sin(PI * s), method);
         let theory = expected(&file, 4, "f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "bending {f} {theory}");
     }

@@ -124,7 +124,7 @@ fn live_wire_does_not_notice_a_correct_exclusion() {
             wind(&scene, 0.9)
         };
         let (with, without) = (all("true"), all("false"));
-        let frozen = |sim: &Simulation| sim.system().contacts.as_ref().map(|c| c.tube.len());
+        let frozen = |sim: &Simulation| sim.system().frozen_tube().map(|tube| tube.len());
         assert!(frozen(&with).is_some_and(|n| n > 40), "wire did freeze");
         assert_eq!(frozen(&without), Some(0));
         let (t, u) = (with.outputs(), without.outputs());
@@ -162,9 +162,8 @@ fn live_wire_holds_live_wire_off() {
     );
     assert!(
         sim.system()
-            .contacts
-            .as_ref()
-            .is_some_and(|c| c.tube.is_empty())
+            .frozen_tube()
+            .is_some_and(|tube| tube.is_empty())
     );
     let turns = sim.coil_with_live_wire().turns();
     let gap = turns[1].gap_mean.expect("the second turn has a neighbour");

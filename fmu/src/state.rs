@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 
 const MAGIC: &[u8; 8] = b"\x89CoilFMU";
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// A GUID with its braces.
 const GUID: usize = 38;
 const HEADER: usize = 8 + 4 + GUID + 8 + 4;

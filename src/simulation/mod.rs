@@ -26,7 +26,7 @@ pub use saved::RestoreError;
 pub use start::core_surface;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 
-use crate::integrate::{Implicit, SolverStatistics};
+use crate::integrate::{SolverStatistics, Stepper};
 use crate::measure::Coil;
 use crate::scene::Scene;
 use crate::signals::{Event, EventKind, Inputs, Outputs};
@@ -60,9 +60,7 @@ pub struct Simulation {
     motion_profile: MotionProfile,
     /// core angle at the start, rad
     angle0: f64,
-    /// the implicit method, if that is the one
-    implicit: Option<Implicit>,
-    longest_step: f64,
+    stepper: Stepper,
     last_step: f64,
     /// length of the last communication step, s; 0: none yet
     last_span: f64,
@@ -164,11 +162,7 @@ impl Simulation {
         self.scene.defects = scene.defects;
         self.scene.friction = scene.friction;
         self.coil.set_limits(scene.defects);
-        let laws = [
-            self.sys.contacts.as_mut().map(|c| &mut c.law),
-            self.sys.line.as_mut().map(|l| &mut l.law),
-        ];
-        for law in laws.into_iter().flatten() {
+        if let Some(law) = self.sys.contact.law_mut() {
             law.mu_static = scene.friction.static_;
             law.mu_kinetic = scene.friction.kinetic;
             law.slip_speed = scene.friction.slip_speed;
@@ -177,9 +171,7 @@ impl Simulation {
 
     /// What the implicit method took so far; nothing for an explicit one.
     pub fn statistics(&self) -> SolverStatistics {
-        self.implicit
-            .as_ref()
-            .map_or_else(Default::default, |m| m.statistics)
+        self.stepper.statistics()
     }
 
     /// The mechanical system, for verification and tests.

@@ -4,7 +4,6 @@ use super::{Centreline, SLACK, Simulation};
 use crate::math::{Spin, V3, turn_about_y};
 use crate::math::{polar_angle, wrap_to_pi};
 use crate::measure::{Coil, SettledNode};
-use crate::scene::Integrator;
 use crate::signals::EventKind;
 
 impl Simulation {
@@ -111,7 +110,7 @@ impl Simulation {
             .sum();
         let residual = self
             .sys
-            .energy_residual(self.staggered().then_some(self.last_step));
+            .energy_residual(self.stepper.is_staggered().then_some(self.last_step));
         let feed = self.sys.feed.map(|(_, f)| f).unwrap_or_default();
         let flags = self.coil.flags();
         let worst = self.coil.worst();
@@ -152,16 +151,11 @@ impl Simulation {
         o.fill_factor = self.coil.fill_factor();
         o.wire_strain = self.coil.wire_strain();
         o.solver_steps = self.steps as f64;
-        o.solver_rejects = self.implicit.as_ref().map_or(0.0, |m| {
-            (m.statistics.rejects + m.statistics.newton_failures) as f64
-        });
+        let statistics = self.stepper.statistics();
+        o.solver_rejects = (statistics.rejects + statistics.newton_failures) as f64;
         o.live_nodes = rod.nodes() as i32;
         o.penetration_max = self.sys.deepest;
         o.energy_residual = residual;
-    }
-
-    pub(super) fn staggered(&self) -> bool {
-        self.scene.solver.integrator == Integrator::Verlet
     }
 
     /// The whole wire in the core frame.
@@ -169,14 +163,14 @@ impl Simulation {
         let spin = Spin::new(self.sys.spindle.angle);
         let back = turn_about_y(-self.sys.spindle.angle);
         let rod = &self.sys.rod;
-        let mut line = match &self.sys.contacts {
-            Some(c) => Centreline {
-                points: c.tube.points.clone(),
-                frames: c.tube.frames.clone(),
-                arc: c.tube.arc.clone(),
-                plastic_strain: c.tube.plastic_strain.clone(),
-                tension: c.tube.tension.clone(),
-                frozen: c.tube.len(),
+        let mut line = match self.sys.frozen_tube() {
+            Some(tube) => Centreline {
+                points: tube.points.clone(),
+                frames: tube.frames.clone(),
+                arc: tube.arc.clone(),
+                plastic_strain: tube.plastic_strain.clone(),
+                tension: tube.tension.clone(),
+                frozen: tube.len(),
             },
             None => Centreline::default(),
         };

@@ -27,11 +27,11 @@ const RUNAWAY: f64 = 2.0;
 
 impl Simulation {
     pub(super) fn remesh(&mut self, dt: f64) -> Result<(), SimError> {
-        let look = self.implicit.is_some() || self.steps.is_multiple_of(REMESH_STEPS);
+        let look = self.stepper.is_implicit() || self.steps.is_multiple_of(REMESH_STEPS);
         if look {
             self.check_health()?;
         }
-        if self.implicit.is_some() {
+        if self.stepper.is_implicit() {
             self.take_back();
         }
         let insert = self.nozzle_edge_is_long();
@@ -80,8 +80,8 @@ impl Simulation {
 
     /// With the staggered step, brings velocities to the time of the positions and back.
     fn shift_velocities(&mut self, half: f64) {
-        if self.staggered() {
-            crate::integrate::verlet::shift_velocities(&mut self.sys, half);
+        if self.stepper.is_staggered() {
+            crate::integrate::shift_velocities(&mut self.sys, half);
         }
     }
 
@@ -106,7 +106,7 @@ impl Simulation {
         let reach = solver.refine_distance + self.scene.wire.radius();
         let rod = &self.sys.rod;
         // the edge at the nozzle keeps its length for the feed
-        let first = if self.implicit.is_some() {
+        let first = if self.stepper.is_implicit() {
             self.first_fine_edge()
         } else {
             0
@@ -171,14 +171,7 @@ impl Simulation {
             LiveContact::Never => false,
         };
         if watched {
-            match &mut self.sys.line {
-                Some(line) => {
-                    line.watch_live_wire();
-                }
-                None => {
-                    self.sys.live.get_or_insert_default();
-                }
-            }
+            self.sys.contact.watch_live_wire();
         }
     }
 
@@ -200,7 +193,7 @@ impl Simulation {
         let spin = Spin::new(angle);
         let back = turn_about_y(-angle);
         let mut arc = self.sys.arc0;
-        if let Some(l) = &mut self.sys.line {
+        if let Some(l) = self.sys.contact.as_line_mut() {
             l.go_on(None);
         }
         for i in 0..count {
@@ -216,12 +209,7 @@ impl Simulation {
             if i > 0 {
                 self.rest_depth = self.rest_depth.max(self.sys.depth(i));
             }
-            if let Some(l) = &mut self.sys.line {
-                l.lay(node.point, node.arc);
-            }
-            if let Some(c) = &mut self.sys.contacts {
-                c.tube.push(node);
-            }
+            self.sys.lay_frozen(node);
             let (turns, defects) = (self.coil.turns_settled(), self.coil.defect_count());
             self.coil.settle(settled);
             self.tell(turns, defects);
@@ -229,13 +217,8 @@ impl Simulation {
         }
         self.sys.freeze_front(count);
         self.watch.remove_front(count);
-        if let Some(c) = &mut self.sys.contacts {
-            c.forget_surroundings();
-        }
         self.join_frozen_to_live();
-        if let Some(l) = &mut self.sys.line {
-            l.forget_near(l.tube.len() - count);
-        }
+        self.sys.notice_laid(count);
     }
 
     /// Wire that comes off the core again: frozen wire thaws near lift-off, and what goes back into the
@@ -328,29 +311,22 @@ impl Simulation {
             (spin.to_core(rod.x[0]), arc),
             (spin.to_core(rod.x[1]), arc + rod.rest[0]),
         ];
-        if let Some(l) = &mut self.sys.line {
+        if let Some(l) = self.sys.contact.as_line_mut() {
             l.go_on(Some(ahead));
         }
     }
 
     /// The last `count` frozen nodes come back to life.
     fn thaw(&mut self, count: usize) {
-        if let Some(l) = &mut self.sys.line {
+        if let Some(l) = self.sys.contact.as_line_mut() {
             l.go_on(None);
         }
         let count = self.sys.thaw_front(count);
-        for _ in 0..count {
-            if let Some(l) = &mut self.sys.line {
-                l.tube.pop();
-            }
-            if let Some(c) = &mut self.sys.contacts {
-                c.tube.pop();
-            }
-        }
+        self.sys.take_up_frozen(count);
         self.join_frozen_to_live();
         self.coil.unsettle(count);
         self.watch.insert_front(count);
-        if let Some(l) = &mut self.sys.line {
+        if let Some(l) = self.sys.contact.as_line_mut() {
             l.forget_surroundings();
         }
     }

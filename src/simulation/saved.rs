@@ -7,7 +7,7 @@
 use super::Simulation;
 use super::freezing::{FreezePolicy, Watch};
 use super::rates::Instant;
-use crate::integrate::SolverStatistics;
+use crate::integrate::{SolverStatistics, Stepper};
 use crate::measure::SavedCoil;
 use crate::scene::Scene;
 use crate::signals::{Event, Outputs};
@@ -15,7 +15,7 @@ use crate::system::SavedSystem;
 use serde::{Deserialize, Serialize};
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -90,8 +90,7 @@ impl Simulation {
             behind: _,
             motion_profile: _,
             angle0,
-            implicit,
-            longest_step: _,
+            stepper,
             last_step,
             last_span,
             time,
@@ -118,7 +117,10 @@ impl Simulation {
             coil: coil.saved(),
             watch: watch.clone(),
             policy: *policy,
-            implicit: implicit.as_ref().map(|m| (m.next, m.statistics)),
+            implicit: match stepper {
+                Stepper::Implicit(method) => Some((method.next, method.statistics)),
+                Stepper::Explicit { .. } => None,
+            },
             angle0: *angle0,
             last_step: *last_step,
             last_span: *last_span,
@@ -164,20 +166,17 @@ impl Simulation {
 
     fn take_over(&mut self, saved: Saved) -> Result<(), &'static str> {
         self.sys.restore(saved.sys)?;
-        let far = match &self.sys.contacts {
-            Some(contacts) => contacts.far(),
-            None => return Err("there is no core"),
-        };
+        let far = self.sys.far().ok_or("there is no core")?;
         self.coil.restore(saved.coil, far)?;
         if !saved.watch.fits(self.sys.rod.nodes()) {
             return Err("the watch does not go with the nodes");
         }
-        match (&mut self.implicit, saved.implicit) {
-            (Some(method), Some((next, statistics))) => {
+        match (&mut self.stepper, saved.implicit) {
+            (Stepper::Implicit(method), Some((next, statistics))) => {
                 method.next = next.clamp(method.shortest, method.longest);
                 method.statistics = statistics;
             }
-            (None, None) => {}
+            (Stepper::Explicit { .. }, None) => {}
             _ => return Err("the method is another one"),
         }
         self.watch = saved.watch;
@@ -206,8 +205,8 @@ impl Simulation {
     /// Tells cores apart whose scene is the same: the file of a mesh may have changed.
     fn core_checksum(&self) -> u32 {
         let mut sum = crc32fast::Hasher::new();
-        if let Some(contacts) = &self.sys.contacts {
-            let mesh = contacts.surface.mesh();
+        if let Some(surface) = self.sys.core_surface() {
+            let mesh = surface.mesh();
             for x in mesh.vertices.iter().flatten() {
                 sum.update(&x.to_bits().to_le_bytes());
             }

@@ -2,7 +2,7 @@
 
 use super::door::check_finite;
 use super::{SimError, Simulation};
-use crate::integrate::OutputSensitivity;
+use crate::integrate::{OutputSensitivity, Stepper};
 use crate::math::V3;
 use crate::math::{polar_angle, wrap_to_pi};
 use crate::signals::{Inputs, Outputs};
@@ -22,7 +22,7 @@ impl Simulation {
     pub fn sensitivities(&mut self, inputs: Inputs) -> Result<[Outputs; 3], SimError> {
         check_finite(&inputs, self.time)?;
         let lift = self.lift_off();
-        let Some(method) = &mut self.implicit else {
+        let Stepper::Implicit(method) = &mut self.stepper else {
             return Err(SimError {
                 time: self.time,
                 node: None,

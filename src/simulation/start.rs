@@ -7,9 +7,9 @@ use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec};
 use crate::geometry::generate::{cylinder, rounded_box, segments_for_sagitta};
-use crate::geometry::{Shape, Surface, TriMesh};
+use crate::geometry::{Shape, Surface, TriMesh, Tube};
 use crate::integrate::{
-    Implicit, RK4_LIMIT, Scheme, VERLET_LIMIT, highest_frequency, longest_step,
+    Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency, longest_step,
 };
 use crate::math::frame_along;
 use crate::math::polar_angle;
@@ -19,7 +19,7 @@ use crate::measure::{Coil, CoilSpec};
 use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene};
 use crate::signals::{Inputs, Outputs};
-use crate::system::{Spindle, Support, System};
+use crate::system::{ContactModel, FrozenWire, Spindle, Support, System};
 use std::sync::Arc;
 
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
@@ -180,16 +180,17 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         mu_kinetic: scene.friction.kinetic,
         slip_speed: scene.friction.slip_speed,
     };
-    sys.contacts = Some(Contacts::new(
-        surface.clone(),
-        law,
-        radius,
-        section.diameter,
-        sys.rod.nodes(),
-    ));
+    let nodes = sys.rod.nodes();
     if scene.solver.integrator == Integrator::Implicit {
         let shape = core_shape(&scene.core, &surface);
-        sys.line = Some(LineContact::new(shape, law, radius, sys.rod.nodes()));
+        sys.contact = ContactModel::line(LineContact::new(shape, law, radius, nodes));
+        sys.frozen_wire = Some(FrozenWire {
+            surface: surface.clone(),
+            tube: Tube::new(0.5 * section.diameter),
+        });
+    } else {
+        let (core, diameter) = (surface.clone(), section.diameter);
+        sys.contact = ContactModel::nodal(Contacts::new(core, law, radius, diameter, nodes));
     }
     sys.twist = scene.solver.twist;
     let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
@@ -268,35 +269,7 @@ impl Simulation {
     pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
         check_finite(&inputs, 0.0)?;
         let (mut sys, coil, angle0) = wire(scene, &inputs)?;
-        let implicit =
-            (scene.solver.integrator == Integrator::Implicit).then(|| implicit_for(scene));
-        let limit = match scene.solver.integrator {
-            Integrator::Rk4 => RK4_LIMIT,
-            Integrator::Verlet | Integrator::Implicit => VERLET_LIMIT,
-        };
-        let spacing = scene.solver.spacing_near.min(scene.solver.spacing_free);
-        let contact = scene.contact.stiffness;
-        let frequency = highest_frequency(
-            &scene.wire,
-            spacing,
-            contact,
-            scene.solver.twist.is_carried(),
-        );
-        let damping = damping_for_restitution(scene.contact.restitution);
-        let stable = longest_step(limit, frequency, damping, contact, &scene.wire);
-        let longest_step = if scene.solver.step > 0.0 {
-            scene.solver.step
-        } else {
-            stable * scene.solver.step_share
-        };
-        if longest_step > stable && implicit.is_none() {
-            return Err(SimError::setup(format!(
-                "solver.step = {:.4e} s is too long for the explicit method: the limit of this wire at {} mm spacing is {:.4e} s",
-                scene.solver.step,
-                spacing * 1e3,
-                stable
-            )));
-        }
+        let (stepper, last_step) = stepper_for(scene)?;
         sys.refresh();
         sys.balance.initial = sys.stored() + sys.kinetic();
         let policy = FreezePolicy {
@@ -321,9 +294,8 @@ impl Simulation {
             policy,
             behind: Vec::new(),
             angle0,
-            longest_step,
-            implicit,
-            last_step: longest_step,
+            stepper,
+            last_step,
             last_span: 0.0,
             time: 0.0,
             steps: 0,
@@ -356,12 +328,41 @@ impl Simulation {
     }
 }
 
-/// The production method for a scene.
-fn implicit_for(scene: &Scene) -> Implicit {
+/// The method that a scene asks for, and the longest step of an explicit one on its wire, s.
+fn stepper_for(scene: &Scene) -> Result<(Stepper, f64), SimError> {
     let solver = scene.solver;
-    // a step of a nanosecond resolves any contact: what fails there fails for another reason; a tenth
-    // of a second is longer than any motion of a wire takes
-    let mut method = Implicit::new(Scheme::Bdf2, solver.tolerance, 1e-9, 0.1);
-    method.fixed = (solver.step > 0.0).then_some(solver.step);
-    method
+    let method = match solver.integrator {
+        Integrator::Rk4 => Some(ExplicitMethod::Rk4),
+        Integrator::Verlet => Some(ExplicitMethod::Verlet),
+        Integrator::Implicit => None,
+    };
+    let spacing = solver.spacing_near.min(solver.spacing_free);
+    let contact = scene.contact.stiffness;
+    let twist = solver.twist.is_carried();
+    let frequency = highest_frequency(&scene.wire, spacing, contact, twist);
+    let damping = damping_for_restitution(scene.contact.restitution);
+    let limit = method.unwrap_or(ExplicitMethod::Verlet).limit();
+    let stable = longest_step(limit, frequency, damping, contact, &scene.wire);
+    let longest = if solver.step > 0.0 {
+        solver.step
+    } else {
+        stable * solver.step_share
+    };
+    let Some(method) = method else {
+        // a step of a nanosecond resolves any contact: what fails there fails for another reason; a tenth
+        // of a second is longer than any motion of a wire takes
+        let mut method = Implicit::new(Scheme::Bdf2, solver.tolerance, 1e-9, 0.1);
+        method.fixed = (solver.step > 0.0).then_some(solver.step);
+        return Ok((Stepper::Implicit(Box::new(method)), longest));
+    };
+    if longest > stable {
+        return Err(SimError::setup(format!(
+            "solver.step = {:.4e} s is too long for the explicit method: the limit of this wire at {} mm spacing is {:.4e} s",
+            solver.step,
+            spacing * 1e3,
+            stable
+        )));
+    }
+    let method = Explicit::new(method);
+    Ok((Stepper::Explicit { method, longest }, longest))
 }

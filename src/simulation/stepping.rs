@@ -3,8 +3,7 @@
 use super::motion_profile::ROUNDING;
 use super::rates::Instant;
 use super::{QUIET, SimError, Simulation, WORTH_A_STEP};
-use crate::integrate::{self, Implicit};
-use crate::scene::Integrator;
+use crate::integrate::Stepper;
 use crate::system::Drive;
 
 impl Simulation {
@@ -19,11 +18,17 @@ impl Simulation {
             self.sys.time += dt;
             return Ok(());
         }
-        if self.implicit.is_some() {
-            return self.through_implicit(drive);
+        match self.stepper {
+            Stepper::Explicit { longest, .. } => self.through_evenly(drive, longest),
+            Stepper::Implicit(_) => self.through_by_error(drive),
         }
-        let (count, step) = self.divide(dt);
-        for _ in 0..count {
+    }
+
+    /// Goes through the interval of `drive` in the fewest equal steps that are no longer than `longest`, s.
+    fn through_evenly(&mut self, drive: &Drive, longest: f64) -> Result<(), SimError> {
+        let count = (drive.duration / longest).ceil().max(1.0);
+        let step = drive.duration / count;
+        for _ in 0..count as u64 {
             if self.broken {
                 self.turn_on(step, drive);
                 continue;
@@ -31,23 +36,23 @@ impl Simulation {
             self.sys.guide_nozzle(drive, step);
             self.instant = Instant::of(self);
             self.sys.set_tension = self.sys.set_tension_after(step);
-            self.explicit_step(step)?;
+            self.step(step)?;
         }
         Ok(())
     }
 
-    fn through_implicit(&mut self, drive: &Drive) -> Result<(), SimError> {
+    /// Goes through the interval of `drive` in steps whose length the method finds by their error.
+    fn through_by_error(&mut self, drive: &Drive) -> Result<(), SimError> {
         let dt = drive.duration;
         let course = self.sys.nozzle_course(drive);
         let mut left = dt;
         // differences of times leave a rest that is none, in which nothing can be solved for
         while left > ROUNDING * self.sys.time.max(dt) || (left == dt && dt >= WORTH_A_STEP) {
-            let next = self.implicit.as_ref().map_or(left, |m| m.next);
             if let Some(course) = &course {
-                course.steer(&mut self.sys, left.min(next));
+                course.steer(&mut self.sys, left.min(self.stepper.next()));
             }
             self.instant = Instant::of(self);
-            let taken = self.implicit_step(left.min(self.longest_return()))?;
+            let taken = self.step(left.min(self.longest_return()))?;
             left = if taken >= left { 0.0 } else { left - taken };
             if self.broken {
                 self.turn_on(left, drive);
@@ -65,7 +70,7 @@ impl Simulation {
     /// Nothing has moved for two windows of rest detection, so all wire that may freeze has frozen, and no input
     /// has changed since. A vibration's turning point is over in a fraction of a window.
     pub(super) fn is_quiescent(&self) -> bool {
-        self.implicit.is_some() && self.quiet >= 2.0 * self.policy.time
+        self.stepper.is_implicit() && self.quiet >= 2.0 * self.policy.time
     }
 
     /// Longest step in which wire that goes back takes no more than a quarter of the nozzle's edge, s.
@@ -76,26 +81,20 @@ impl Simulation {
         }
     }
 
-    /// Takes one step of at most `most`, s; returns its length, s.
-    fn implicit_step(&mut self, most: f64) -> Result<f64, SimError> {
-        let Some(method) = &mut self.implicit else {
-            return Ok(most);
-        };
-        let fixed = method.fixed;
-        let tried =
-            |m: &Implicit| m.statistics.steps + m.statistics.rejects + m.statistics.newton_failures;
-        let before = tried(method);
-        let taken = method.step(&mut self.sys, most).map_err(|e| SimError {
+    /// Takes one step of at most `most`, s, and remeshes after it; returns its length, s.
+    fn step(&mut self, most: f64) -> Result<f64, SimError> {
+        let tried = self.stepper.statistics().tried();
+        let taken = self.stepper.step(&mut self.sys, most).map_err(|e| SimError {
             time: self.sys.time,
             node: Some(e.node),
-            reason: match fixed {
+            reason: match self.stepper.fixed() {
                 Some(step) => format!(
                     "{e}; solver.step = {step:.4e} s allows no shorter one, 0 leaves it to the error"
                 ),
                 None => e.to_string(),
             },
         })?;
-        self.work += (tried(method) - before) * self.sys.rod.nodes() as u64;
+        self.work += (self.stepper.statistics().tried() - tried) * self.sys.rod.nodes() as u64;
         self.last_step = taken;
         self.steps += 1;
         self.watch_tension();
@@ -114,24 +113,5 @@ impl Simulation {
             self.sys.spindle.speed == 0.0 && self.sys.rod.v.iter().all(|v| v.amax() < QUIET);
         self.quiet = if still { self.quiet + taken } else { 0.0 };
         Ok(taken)
-    }
-
-    /// Splits `dt` into the fewest equal steps within the stability limit.
-    fn divide(&mut self, dt: f64) -> (u64, f64) {
-        let count = (dt / self.longest_step).ceil().max(1.0);
-        self.last_step = dt / count;
-        (count as u64, self.last_step)
-    }
-
-    fn explicit_step(&mut self, dt: f64) -> Result<(), SimError> {
-        match self.scene.solver.integrator {
-            Integrator::Rk4 => integrate::rk4::step(&mut self.sys, dt),
-            Integrator::Verlet => integrate::verlet::step(&mut self.sys, dt),
-            // a broken wire was handled above; nothing else comes here
-            Integrator::Implicit => {}
-        }
-        self.steps += 1;
-        self.watch_tension();
-        self.remesh(dt)
     }
 }

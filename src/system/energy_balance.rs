@@ -1,6 +1,6 @@
 //! Where energy comes from and where it goes.
 
-use super::{Mass, System};
+use super::{ContactModel, Mass, NodalContact, System};
 use crate::rod::stored_energy;
 
 /// Where energy came from and went, J, since the start.
@@ -38,21 +38,25 @@ impl System {
 
     /// The same with the energy of the `rod` known.
     fn stored_with(&self, rod: f64) -> f64 {
-        let touch: f64 = match &self.contacts {
-            Some(c) => self
-                .free_nodes()
-                .map(|i| c.stored(i, self.rod.voronoi(i)))
-                .sum(),
-            None => 0.0,
-        };
-        let between = match (&self.live, &self.contacts) {
-            (Some(l), Some(c)) => l.stored(&c.law, &self.wire.length),
-            _ => 0.0,
-        };
-        if let Some(line) = &self.line {
-            return rod + self.stored_in_points(line);
+        match &self.contact {
+            ContactModel::None => rod,
+            ContactModel::Line(line) => rod + self.stored_in_points(line),
+            ContactModel::Nodal(nodal) => {
+                let NodalContact {
+                    contacts,
+                    live,
+                    wire,
+                } = &**nodal;
+                let touch: f64 = self
+                    .free_nodes()
+                    .map(|i| contacts.stored(i, self.rod.voronoi(i)))
+                    .sum();
+                let between = live
+                    .as_ref()
+                    .map_or(0.0, |l| l.stored(&contacts.law, &wire.length));
+                rod + touch + between
+            }
         }
-        rod + touch + between
     }
 
     fn stored_in_points(&self, line: &crate::contact::LineContact) -> f64 {

@@ -2,6 +2,7 @@
 //!
 //! Lab frame; the core turns about +y. Nothing here knows scenes or files.
 
+mod contact_model;
 mod drive;
 mod energy_balance;
 mod history;
@@ -9,6 +10,7 @@ mod remesh;
 mod saved;
 mod support;
 
+pub use contact_model::{ContactModel, FrozenWire, NodalContact};
 pub use drive::{Drive, NozzleDrive};
 pub use energy_balance::EnergyBalance;
 pub use history::Past;
@@ -16,7 +18,7 @@ pub use remesh::FrozenHistory;
 pub(crate) use saved::SavedSystem;
 pub use support::{Spindle, Support};
 
-use crate::contact::{Body, Contacts, LineContact, LiveContact, Wire};
+use crate::contact::Body;
 use crate::feed::{Feed, FeedSpec};
 use crate::math::rotate;
 use crate::math::turn_about_y;
@@ -65,15 +67,12 @@ pub struct System {
     pub spindle: Spindle,
     /// other loads
     pub loads: Loads,
-    /// contact, if there is anything to touch
-    pub contacts: Option<Contacts>,
-    /// live wire against live wire, where it may meet
-    pub live: Option<LiveContact>,
-    /// contact of the implicit method; then `contacts` only keeps core mesh and frozen wire
-    pub line: Option<LineContact>,
+    /// what the wire touches
+    pub contact: ContactModel,
+    /// core mesh and frozen wire where `contact` is along the wire
+    pub frozen_wire: Option<FrozenWire>,
     /// accepted instants before this one, for the implicit method
     pub past: Past,
-    pub(crate) wire: Wire,
     /// frozen wire of the implicit method, oldest node first
     pub(crate) frozen_history: FrozenHistory,
     /// feed at the last node
@@ -107,7 +106,6 @@ pub struct System {
     pub(crate) roll: Vec<f64>,
     /// scratch
     pub(crate) forces: Forces,
-    pub(crate) stages: crate::integrate::rk4::Stages,
 }
 
 impl System {
@@ -123,11 +121,9 @@ impl System {
             support: [Support::free(), Support::free()],
             spindle: Spindle::default(),
             loads: Loads::default(),
-            contacts: None,
-            live: None,
-            line: None,
+            contact: ContactModel::None,
+            frozen_wire: None,
             past: Past::default(),
-            wire: Wire::default(),
             frozen_history: FrozenHistory::default(),
             feed: None,
             set_tension: 0.0,
@@ -145,7 +141,6 @@ impl System {
             load: Load::default(),
             roll: vec![0.0; edges],
             forces: Forces::default(),
-            stages: crate::integrate::rk4::Stages::default(),
         }
     }
 
@@ -218,11 +213,10 @@ impl System {
         self.live_forces(spin, commit);
         self.torque_on_core = torque_from_contact + self.clamp_torque();
         if let Some(dt) = commit {
-            let touch = self
-                .contacts
-                .as_ref()
-                .map_or(Default::default(), |c| c.loss);
-            let between = self.live.as_ref().map_or(Default::default(), |l| l.loss);
+            let nodal = self.contact.as_nodal();
+            let touch = nodal.map_or(Default::default(), |n| n.contacts.loss);
+            let live = nodal.and_then(|n| n.live.as_ref());
+            let between = live.map_or(Default::default(), |l| l.loss);
             self.balance.friction = touch.friction + between.friction;
             self.balance.damping = touch.damping + between.damping;
             self.balance.spindle -= self.torque_on_core * self.spindle.speed * dt;
@@ -295,35 +289,35 @@ impl System {
 
     /// Whether node `i` touches core or frozen wire.
     pub fn touches(&self, i: usize) -> bool {
-        match (&self.line, &self.contacts) {
-            (Some(line), _) => line.touches(i),
-            (None, Some(c)) => c.nodes[i].touches(),
-            _ => false,
+        match &self.contact {
+            ContactModel::Line(line) => line.touches(i),
+            ContactModel::Nodal(nodal) => nodal.contacts.nodes[i].touches(),
+            ContactModel::None => false,
         }
     }
 
     /// Depth of node `i` in what it touches, m.
     pub fn depth(&self, i: usize) -> f64 {
-        match (&self.line, &self.contacts) {
-            (Some(line), _) => line.depth(i),
-            (None, Some(c)) => c.nodes[i].depth(),
-            _ => 0.0,
+        match &self.contact {
+            ContactModel::Line(line) => line.depth(i),
+            ContactModel::Nodal(nodal) => nodal.contacts.nodes[i].depth(),
+            ContactModel::None => 0.0,
         }
     }
 
     /// Signed distance of a point from the core, core frame, m; far away without a core.
     pub fn distance_to_core(&self, p: V3) -> f64 {
-        match (&self.line, &self.contacts) {
-            (Some(line), _) => line.shape.nearness(p).distance,
-            (None, Some(c)) => c.surface.nearest(p).distance,
-            _ => f64::INFINITY,
+        match &self.contact {
+            ContactModel::Line(line) => line.shape.nearness(p).distance,
+            ContactModel::Nodal(nodal) => nodal.contacts.surface.nearest(p).distance,
+            ContactModel::None => f64::INFINITY,
         }
     }
 
     /// Where the wire at node `i` lies: on its smooth centreline where contact is of the line kind.
     pub fn centre(&self, i: usize) -> V3 {
         let x = &self.rod.x;
-        if self.line.is_some() && i > 0 && i + 1 < x.len() {
+        if self.contact.is_line() && i > 0 && i + 1 < x.len() {
             crate::contact::spline_point(x, i)
         } else {
             x[i]
@@ -364,9 +358,10 @@ impl System {
     /// Contact forces on the free nodes; returns the moment on the core about +y.
     fn contact_forces(&mut self, spin: Spin, commit: Option<f64>) -> f64 {
         let free = self.free_nodes();
-        let Some(contacts) = &mut self.contacts else {
+        let ContactModel::Nodal(nodal) = &mut self.contact else {
             return 0.0;
         };
+        let contacts = &mut nodal.contacts;
         let mut moment = 0.0;
         let mut arc = self.arc0 + self.rod.rest[..free.start].iter().sum::<f64>();
         let per_length = self.section.mass_per_length();
@@ -403,10 +398,18 @@ impl System {
 
     /// Forces of live wire on live wire. The held nodes take part as partners.
     fn live_forces(&mut self, spin: Spin, commit: Option<f64>) {
-        let (Some(live), Some(contacts)) = (&mut self.live, &self.contacts) else {
+        let ContactModel::Nodal(nodal) = &mut self.contact else {
             return;
         };
-        let (rod, wire) = (&self.rod, &mut self.wire);
+        let NodalContact {
+            contacts,
+            live: Some(live),
+            wire,
+        } = &mut **nodal
+        else {
+            return;
+        };
+        let rod = &self.rod;
         let mut arc = 0.0;
         wire.position.clear();
         wire.velocity.clear();

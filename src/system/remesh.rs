@@ -1,9 +1,9 @@
 //! Changes of the wire between steps: halving and joining edges, letting settled wire go and taking
 //! it back.
 
-use super::{Support, System};
+use super::{ContactModel, Support, System};
+use crate::contact::Memory;
 use crate::contact::spline_point;
-use crate::contact::{Memory, NodeContact};
 use crate::math::PersistentVec;
 use crate::math::turn_about_y;
 use crate::math::{Quat, Spin, V3, spin_velocity};
@@ -113,18 +113,10 @@ impl System {
         }
         rod.bend.insert(j + 1, bend);
         rod.twist.insert(j + 1, twist);
-        if let Some(c) = &mut self.contacts {
-            c.nodes.insert(j + 1, crate::contact::NodeContact::new());
-        }
-        if let Some(l) = &mut self.live {
-            l.insert(j + 1);
-            // (there is none before the first evaluation)
-            if self.wire.length.len() > j {
-                self.wire.length.insert(j + 1, half);
-            }
-        }
-        if let Some(l) = &mut self.line {
-            l.split(j);
+        match &mut self.contact {
+            ContactModel::None => {}
+            ContactModel::Nodal(nodal) => nodal.split(j, half),
+            ContactModel::Line(line) => line.split(j),
         }
         self.split_past(j, mid, v);
         self.roll.insert(j + 1, self.roll[j]);
@@ -137,7 +129,7 @@ impl System {
     /// Twist per length along edge `j`, the mean of its two joints, 1/m. Only the implicit method, whose
     /// edges roll by what is asked of them, spreads twist over the halves of an edge.
     fn twist_along(&self, j: usize) -> f64 {
-        if self.line.is_none() || !self.twist.is_carried() {
+        if !self.contact.is_line() || !self.twist.is_carried() {
             return 0.0;
         }
         let rod = &self.rod;
@@ -206,15 +198,10 @@ impl System {
         rod.bend.drain(..count);
         rod.twist.drain(..count);
         self.roll.drain(..count);
-        if let Some(c) = &mut self.contacts {
-            c.nodes.drain(..count);
-        }
-        if let Some(l) = &mut self.live {
-            l.remove_front(count);
-            self.wire.length.drain(..count.min(self.wire.length.len()));
-        }
-        if let Some(l) = &mut self.line {
-            l.remove_front(count);
+        match &mut self.contact {
+            ContactModel::None => {}
+            ContactModel::Nodal(nodal) => nodal.remove_front(count),
+            ContactModel::Line(line) => line.remove_front(count),
         }
         self.past.remove_front(count);
         self.place_supports();
@@ -236,7 +223,9 @@ impl System {
 
     /// Puts the first `count` nodes on record for [`Self::thaw_front`].
     fn lay_to_rest(&mut self, count: usize) {
-        let Some(line) = &self.line else { return };
+        let Some(line) = self.contact.as_line() else {
+            return;
+        };
         let spin = Spin::new(self.spindle.angle);
         let back = turn_about_y(-self.spindle.angle);
         let mut arc = self.arc0;
@@ -303,11 +292,7 @@ impl System {
         rod.bend.splice(0..0, back.iter().map(|d| d.bend));
         rod.twist.splice(0..0, back.iter().map(|d| d.twist));
         self.roll.splice(0..0, std::iter::repeat_n(0.0, count));
-        if let Some(c) = &mut self.contacts {
-            let fresh = std::iter::repeat_with(NodeContact::new).take(count);
-            c.nodes.splice(0..0, fresh);
-        }
-        if let Some(l) = &mut self.line {
+        if let Some(l) = self.contact.as_line_mut() {
             l.insert_front(back.into_iter().map(|d| d.memory));
         }
         let before = self.spindle.before(self.past.h[0]);
@@ -404,11 +389,10 @@ impl System {
         rod.spin.remove(i);
         rod.stretch.remove(i);
         self.roll.remove(i);
-        if let Some(c) = &mut self.contacts {
-            c.nodes.remove(i);
-        }
-        if let Some(l) = &mut self.line {
-            l.merge(i);
+        match &mut self.contact {
+            ContactModel::None => {}
+            ContactModel::Nodal(nodal) => nodal.merge(i),
+            ContactModel::Line(line) => line.merge(i),
         }
         self.past.merge(i, b / (a + b));
         self.move_points(i);
@@ -430,7 +414,9 @@ impl System {
     /// The wire's spline runs elsewhere round a node taken out at `i`: its contact points move along with
     /// their anchors.
     fn move_points(&mut self, i: usize) {
-        let Some(line) = &mut self.line else { return };
+        let Some(line) = self.contact.as_line_mut() else {
+            return;
+        };
         let q = &self.past.q[0];
         if q.len() != self.rod.nodes() {
             return;

@@ -3,8 +3,8 @@
 //! What influences the rounding of a later step belongs to it, be it a cache: surroundings of
 //! contact points, lists of pairs, history of the step formula. Work arrays do not.
 
+use super::contact_model::SavedContact;
 use super::{EnergyBalance, FrozenHistory, Past, Spindle, Support, System};
-use crate::contact::{LiveContact, SavedContacts, SavedLine, Wire};
 use crate::feed::Feed;
 use crate::rod::{Load, Rod};
 use serde::{Deserialize, Serialize};
@@ -15,11 +15,8 @@ pub(crate) struct SavedSystem {
     rod: Rod,
     support: [Support; 2],
     spindle: Spindle,
-    contacts: Option<SavedContacts>,
-    live: Option<LiveContact>,
-    line: Option<SavedLine>,
+    contact: SavedContact,
     past: Past,
-    wire: Wire,
     frozen_history: FrozenHistory,
     feed: Option<Feed>,
     set_tension: f64,
@@ -48,11 +45,9 @@ impl System {
             support,
             spindle,
             loads: _,
-            contacts,
-            live,
-            line,
+            contact: _,
+            frozen_wire: _,
             past,
-            wire,
             frozen_history,
             feed,
             set_tension,
@@ -70,17 +65,13 @@ impl System {
             load,
             roll,
             forces: _,
-            stages: _,
         } = self;
         SavedSystem {
             rod: rod.clone(),
             support: *support,
             spindle: *spindle,
-            contacts: contacts.as_ref().map(|c| c.saved()),
-            live: live.clone(),
-            line: line.as_ref().map(|l| l.saved()),
+            contact: self.saved_contact(),
             past: past.clone(),
-            wire: wire.clone(),
             frozen_history: frozen_history.clone(),
             feed: feed.map(|(_, feed)| feed),
             set_tension: *set_tension,
@@ -103,19 +94,7 @@ impl System {
     pub(crate) fn restore(&mut self, saved: SavedSystem) -> Result<(), &'static str> {
         let nodes = saved.rod.nodes();
         saved.check()?;
-        match (&mut self.contacts, saved.contacts) {
-            (Some(contacts), Some(saved)) => contacts.restore(saved, nodes)?,
-            (None, None) => {}
-            _ => return Err("contact is there in one of scene and state only"),
-        }
-        match (&mut self.line, saved.line, &self.contacts) {
-            (Some(line), Some(saved), Some(contacts)) => {
-                let wire = contacts.tube.nodes().map(|node| (node.point, node.arc));
-                line.restore(saved, wire, nodes, contacts.far())?;
-            }
-            (None, None, _) => {}
-            _ => return Err("smooth contact is there in one of scene and state only"),
-        }
+        self.restore_contact(saved.contact, nodes)?;
         match (&mut self.feed, saved.feed) {
             (Some((_, feed)), Some(saved)) => *feed = saved,
             (None, None) => {}
@@ -124,9 +103,7 @@ impl System {
         self.rod = saved.rod;
         self.support = saved.support;
         self.spindle = saved.spindle;
-        self.live = saved.live;
         self.past = saved.past;
-        self.wire = saved.wire;
         self.frozen_history = saved.frozen_history;
         self.set_tension = saved.set_tension;
         self.set_rate = saved.set_rate;
@@ -194,10 +171,6 @@ impl SavedSystem {
         }
         if !self.frozen_history.iter().all(|node| node.is_sound()) {
             return Err("frozen wire remembers what cannot be");
-        }
-        let live = self.live.as_ref();
-        if !live.is_none_or(|l| l.fits(nodes)) || ![0, nodes].contains(&self.wire.length.len()) {
-            return Err("a pair is beyond the live wire");
         }
         Ok(())
     }

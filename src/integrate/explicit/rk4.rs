@@ -10,8 +10,8 @@ use crate::math::V3;
 use crate::system::System;
 
 /// Work arrays of the stages; no state.
-#[derive(Clone, Debug, Default)]
-pub struct Stages {
+#[derive(Debug, Default)]
+pub(super) struct Stages {
     x0: Vec<V3>,
     v0: Vec<V3>,
     spin0: Vec<f64>,
@@ -21,9 +21,8 @@ pub struct Stages {
     dspin: Vec<f64>,
 }
 
-/// Advances by `dt`. Forces must be evaluated on entry and are on exit.
-pub fn step(sys: &mut System, dt: f64) {
-    let mut s = std::mem::take(&mut sys.stages);
+/// Advances by `dt`, s. Forces must be evaluated on entry and are on exit.
+pub(super) fn step(sys: &mut System, s: &mut Stages, dt: f64) {
     s.x0.clone_from(&sys.rod.x);
     s.v0.clone_from(&sys.rod.v);
     s.spin0.clone_from(&sys.rod.spin);
@@ -52,7 +51,7 @@ pub fn step(sys: &mut System, dt: f64) {
         let last = stage == 3;
         accumulate(
             sys,
-            &mut s,
+            s,
             weight / 6.0,
             dt,
             if last { None } else { Some(reach) },
@@ -83,7 +82,6 @@ pub fn step(sys: &mut System, dt: f64) {
         sys.roll[j] = s.droll[j];
         sys.rod.spin[j] = s.spin0[j] + s.dspin[j];
     }
-    sys.stages = s;
     sys.time += dt;
     sys.spindle = start.after(dt);
     sys.support = support;

@@ -9,7 +9,7 @@ use crate::system::System;
 /// Advances by `dt`: kick, drift, feed, then the forces at the new place.
 ///
 /// The system must hold evaluated forces (`System::evaluate`) on entry; it does again on exit.
-pub fn step(sys: &mut System, dt: f64) {
+pub(super) fn step(sys: &mut System, dt: f64) {
     kick_and_drift(sys, dt);
     sys.time += dt;
     sys.spindle = sys.spindle.after(dt);
@@ -21,9 +21,11 @@ pub fn step(sys: &mut System, dt: f64) {
     sys.velocity_lag = 0.0;
 }
 
-/// Moves the velocities by half a step of the present forces: `dt / 2` brings them to the time of
-/// the positions, `-dt / 2` back. Whoever changes the wire between steps (inserts, freezes) does so
-/// in between, or the change of force would do work over half a step that nobody paid for.
+/// Moves the velocities by the present forces over `half` a step, s: `dt / 2` brings them to the time of
+/// the positions, `-dt / 2` back.
+///
+/// Changes of the wire between steps (inserts, freezes) belong in between. Otherwise the change of force does work
+/// over half a step that is in no account of the energy balance.
 pub fn shift_velocities(sys: &mut System, half: f64) {
     let per_length = sys.section.mass_per_length();
     for i in sys.free_nodes() {

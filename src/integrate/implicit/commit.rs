@@ -72,7 +72,7 @@ impl Implicit {
             // the node before the nozzle gains mass that moves as it does
             sys.balance.inflow += 0.5 * inflow * sys.rod.v[last].norm_squared();
         }
-        if let Some(line) = &mut sys.line {
+        if let Some(line) = sys.contact.as_line_mut() {
             // late Newton steps hold the friction limits of the iterate before; what is accepted goes by its own
             line.hold_limits = false;
         }
@@ -185,7 +185,7 @@ impl System {
 
     /// Forces of the present state after it was set up or changed; nothing moves on but the frames.
     pub fn refresh(&mut self) {
-        if self.line.is_none() {
+        if !self.contact.is_line() {
             return self.evaluate(Some(0.0));
         }
         self.internal_at_once(true);
@@ -196,7 +196,9 @@ impl System {
 
     /// Puts the present places of the contact points on record.
     fn place_points(&mut self) {
-        let Some(line) = &mut self.line else { return };
+        let Some(line) = self.contact.as_line_mut() else {
+            return;
+        };
         let q = &self.past.q[0];
         for j in 0..q.len() - 1 {
             if j > 0 {
@@ -240,7 +242,7 @@ impl System {
     fn touch_forces(&mut self, h: f64, commit: bool) {
         let spin = Spin::new(self.spindle.angle);
         let mut moment = 0.0;
-        if let Some(line) = &mut self.line {
+        if let Some(line) = self.contact.as_line_mut() {
             let (rod, force) = (&self.rod, &mut self.load.force);
             let diameter = self.section.diameter;
             let mut arc = self.arc0;

@@ -69,6 +69,13 @@ pub struct Implicit {
     twisted: Work<WITH_ROLL>,
 }
 
+impl SolverStatistics {
+    /// Steps tried, taken or not.
+    pub fn tried(&self) -> u64 {
+        self.steps + self.rejects + self.newton_failures
+    }
+}
+
 /// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverStatistics {
@@ -250,7 +257,7 @@ impl Implicit {
                 h = (share * h).max(self.shortest);
                 continue;
             }
-            if let Some(line) = &mut sys.line {
+            if let Some(line) = sys.contact.as_line_mut() {
                 line.begin_attempt();
                 if let Some(b) = &mut line.between {
                     let (from, guess) = (&sys.past.q[0], &work.guess);
@@ -276,7 +283,7 @@ impl Implicit {
             self.statistics.solves += std::mem::take(&mut work.solves);
             self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
             self.statistics.cg_iterations += std::mem::take(&mut work.gradients.cg_iterations);
-            let missed = sys.line.as_ref().and_then(|l| {
+            let missed = sys.contact.as_line().and_then(|l| {
                 let between = l.between.as_ref()?;
                 between.missed(&sys.past.q[0], &work.q)
             });
@@ -323,7 +330,7 @@ impl Implicit {
             };
             h = retry.max(self.shortest);
             self.next = h;
-            if let Some(line) = &mut sys.line {
+            if let Some(line) = sys.contact.as_line_mut() {
                 line.undo_attempt();
             }
         }
@@ -370,7 +377,9 @@ impl<const D: usize> Work<D> {
     /// estimate and contact search
     /// both know nothing of a surface that lies between the ends of a step.
     fn share_of_way(&self, sys: &System) -> f64 {
-        let Some(line) = &sys.line else { return 1.0 };
+        let Some(line) = sys.contact.as_line() else {
+            return 1.0;
+        };
         let mut share: f64 = 1.0;
         for (q, guess) in sys.past.q[0].iter().zip(&self.guess) {
             let way = (guess - q).norm();
@@ -583,7 +592,7 @@ fn model_of<'a>(
     Model {
         rod: &sys.rod,
         laws: &sys.laws,
-        line: sys.line.as_mut(),
+        line: sys.contact.as_line_mut(),
         loads: &sys.loads,
         last: &sys.past.q[0],
         tension: &sys.load.tension,

@@ -80,7 +80,7 @@ impl Implicit {
         lift: usize,
     ) -> Result<(OutputSensitivity, [OutputSensitivity; INPUTS]), StepError> {
         sys.begin_past();
-        let kept = sys.line.as_ref().map(|l| l.saved());
+        let kept = sys.contact.as_line().map(|l| l.saved());
         let inputs = (sys.spindle, sys.support, sys.set_tension);
         let statistics = self.statistics;
         let tangent = if sys.twist == Twist::Off {
@@ -96,7 +96,7 @@ impl Implicit {
         };
         self.statistics = statistics;
         (sys.spindle, sys.support, sys.set_tension) = inputs;
-        if let (Some(line), Some(kept)) = (&mut sys.line, kept) {
+        if let (Some(line), Some(kept)) = (sys.contact.as_line_mut(), kept) {
             line.take_back(kept);
         }
         tangent
@@ -112,7 +112,7 @@ impl Implicit {
         let step = step_of(sys, self.scheme, h);
         let base = (sys.spindle, sys.support, sys.set_tension);
         let now = set(work, sys, &step, &base, 0, 0.0);
-        if let Some(line) = &mut sys.line {
+        if let Some(line) = sys.contact.as_line_mut() {
             line.begin_attempt();
             if let Some(b) = &mut line.between {
                 let (from, guess) = (&sys.past.q[0], &work.guess);
@@ -193,7 +193,7 @@ impl Implicit {
                 if settled {
                     break;
                 }
-                let between = sys.line.as_ref().and_then(|l| l.between.as_ref());
+                let between = sys.contact.as_line().and_then(|l| l.between.as_ref());
                 match between.filter(|b| !b.cross.is_empty()) {
                     Some(b) => {
                         let scratch = &mut work.gradients;

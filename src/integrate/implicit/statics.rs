@@ -213,7 +213,7 @@ fn model_at_rest(sys: &mut System) -> Model<'_> {
         last: &sys.past.q[0],
         rod: &sys.rod,
         laws: &sys.laws,
-        line: sys.line.as_mut(),
+        line: sys.contact.as_line_mut(),
         loads: &sys.loads,
         tension: &sys.load.tension,
         nozzle: None,

@@ -9,7 +9,7 @@ use super::watch::Watch;
 use super::{
     BenchError, along_x, cantilever, clamped_edges, elastic_wire, iterations, stable_step,
 };
-use crate::integrate::{Implicit, Scheme, rk4, verlet};
+use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, shift_velocities};
 use crate::math::V3;
 use crate::rod::Section;
 use crate::system::{Mass, System};
@@ -78,8 +78,12 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
     }
     let mut implicit = Implicit::new(Scheme::Midpoint, tol.unwrap_or(TOLERANCE), dt, dt);
     implicit.fixed = Some(dt);
+    let mut explicit = Explicit::new(match method {
+        Method::Rk4 => ExplicitMethod::Rk4,
+        Method::Verlet | Method::Implicit => ExplicitMethod::Verlet,
+    });
     if method == Method::Verlet {
-        verlet::shift_velocities(&mut sys, -0.5 * dt);
+        shift_velocities(&mut sys, -0.5 * dt);
     }
     for _ in 0..count as u64 {
         match method {
@@ -89,8 +93,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
                     break;
                 }
             }
-            Method::Verlet => verlet::step(&mut sys, dt),
-            Method::Rk4 => rk4::step(&mut sys, dt),
+            Method::Verlet | Method::Rk4 => explicit.step(&mut sys, dt),
         }
         tip.push(sys.rod.x[n].y);
     }

@@ -14,7 +14,7 @@ use crate::integrate::{Implicit, Scheme};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
-use crate::system::{Support, System};
+use crate::system::{ContactModel, Support, System};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Cylinder radius, m; force on the slack side, N; friction; share of the bending stiffness.
@@ -142,7 +142,7 @@ fn capstan(section: &Section, n: usize) -> (System, f64) {
         radius: RADIUS,
         half_y: RADIUS,
     };
-    sys.line = Some(LineContact::new(shape, law, section.radius(), points.len()));
+    sys.contact = ContactModel::line(LineContact::new(shape, law, section.radius(), points.len()));
     sys.loads.nodal = vec![(0, V3::x() * HOLD)];
     sys.support[1] = Support {
         hold: [true, false, false],

@@ -6,7 +6,7 @@ use super::args::{BenchArgs, Method};
 use super::record::{Details, Outcome};
 use super::watch::Watch;
 use super::{BenchError, elastic_wire, iterations, stable_step};
-use crate::integrate::{Implicit, Scheme, rk4, verlet};
+use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, shift_velocities};
 use crate::math::V3;
 use crate::rod::Rod;
 use crate::rod::Twist;
@@ -62,10 +62,14 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
     sys.refresh();
     let mut implicit = Implicit::new(Scheme::Midpoint, tol.unwrap_or(TOLERANCE), dt, dt);
     implicit.fixed = Some(dt);
+    let mut explicit = Explicit::new(match method {
+        Method::Rk4 => ExplicitMethod::Rk4,
+        Method::Verlet | Method::Implicit => ExplicitMethod::Verlet,
+    });
     let energy = |sys: &System| sys.stored() + sys.kinetic();
     let before = energy(&sys);
     if method == Method::Verlet {
-        verlet::shift_velocities(&mut sys, -0.5 * dt);
+        shift_velocities(&mut sys, -0.5 * dt);
     }
     let count = (WORK / (n + 1)).max(10) as u64;
 
@@ -78,14 +82,13 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
                     break;
                 }
             }
-            Method::Verlet => verlet::step(&mut sys, dt),
-            Method::Rk4 => rk4::step(&mut sys, dt),
+            Method::Verlet | Method::Rk4 => explicit.step(&mut sys, dt),
         }
         outcome.steps += 1;
     }
     outcome.spent = watch.spent();
     if method == Method::Verlet {
-        verlet::shift_velocities(&mut sys, 0.5 * dt);
+        shift_velocities(&mut sys, 0.5 * dt);
     }
     outcome.iterations = iterations(method, implicit.statistics, outcome.steps);
     outcome.error = Some((energy(&sys) / before - 1.0).abs());

@@ -239,7 +239,7 @@ impl Watch {
     }
 
     fn frozen_wire(&mut self, sim: &Simulation) -> Found {
-        let Some(line) = &sim.system().line else {
+        let Some(line) = sim.system().contact.as_line() else {
             return Ok(());
         };
         let now = line.tube.points();
@@ -317,7 +317,7 @@ fn tension(sim: &Simulation) -> Found {
 }
 
 fn cone(sim: &Simulation, m: &mut Measures) -> Found {
-    let Some(line) = &sim.system().line else {
+    let Some(line) = sim.system().contact.as_line() else {
         return Ok(());
     };
     let (point, share) = line.friction_over_limit();
@@ -361,7 +361,7 @@ fn penetration(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
 /// method's own search found.
 fn wire_in_wire(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
     let sys = sim.system();
-    let Some(line) = &sys.line else {
+    let Some(line) = sys.contact.as_line() else {
         return Ok(());
     };
     let d = scene.wire.diameter;

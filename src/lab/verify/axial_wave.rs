@@ -4,11 +4,11 @@ use super::equilibrium::{follow, no_answer};
 use super::modes::{Motion, lowest};
 use super::wire::{clamp_along_x, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Implicit, RK4_LIMIT, Scheme, VERLET_LIMIT, highest_frequency, rk4, verlet};
+use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::scene::Integrator;
-use crate::system::{Support, System};
+use crate::system::Support;
 
 /// Edges along the wire: for modes and stretch, and for the pulse.
 const EDGES: f64 = 200.0;
@@ -64,30 +64,31 @@ fn wave_speed(ctx: &Context, length: f64) -> Result<f64, VerifyError> {
         sys.rod.v[i].x = PULSE_SPEED * libm::exp(-0.5 * z * z);
     }
     let top = highest_frequency(&sys.section, h, 0.0, false);
-    let limit = match ctx.integrator {
-        Integrator::Rk4 => RK4_LIMIT,
-        // the midpoint rule has no limit, but it is to follow the pulse
-        Integrator::Verlet | Integrator::Implicit => VERLET_LIMIT,
+    let explicit = match ctx.integrator {
+        Integrator::Rk4 => Some(ExplicitMethod::Rk4),
+        Integrator::Verlet => Some(ExplicitMethod::Verlet),
+        Integrator::Implicit => None,
     };
+    // the midpoint rule has no limit, but it is to follow the pulse
+    let limit = explicit.unwrap_or(ExplicitMethod::Verlet).limit();
     let dt = STEP_SHARE * limit / top;
-    let mut method = Implicit::new(Scheme::Midpoint, TOLERANCE, dt, dt);
-    method.fixed = Some(dt);
-    let mut step = |sys: &mut System| -> Result<(), VerifyError> {
-        match ctx.integrator {
-            Integrator::Rk4 => rk4::step(sys, dt),
-            Integrator::Verlet => verlet::step(sys, dt),
-            Integrator::Implicit => {
-                method.step(sys, dt).map_err(no_answer)?;
-            }
+    let mut stepper = match explicit {
+        Some(method) => Stepper::Explicit {
+            method: Explicit::new(method),
+            longest: dt,
+        },
+        None => {
+            let mut method = Implicit::new(Scheme::Midpoint, TOLERANCE, dt, dt);
+            method.fixed = Some(dt);
+            Stepper::Implicit(Box::new(method))
         }
-        Ok(())
     };
     sys.evaluate(Some(dt));
     // half of the pulse runs right: when its crest passes two nodes
     let stations = [n / 2, 3 * n / 4];
     let mut crests = [Crest::default(), Crest::default()];
     for _ in 0..MOST_STEPS {
-        step(&mut sys)?;
+        stepper.step(&mut sys, dt).map_err(no_answer)?;
         for (crest, node) in crests.iter_mut().zip(stations) {
             crest.see(sys.rod.v[node].x, sys.time, dt);
         }

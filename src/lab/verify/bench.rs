@@ -6,13 +6,15 @@ use super::{Context, VerifyError};
 use crate::contact::{ContactLaw, Contacts, LineContact};
 use crate::geometry::{FrozenNode, SIDES, Tube};
 use crate::geometry::{Shape, Surface, Touch, TriMesh, generate};
-use crate::integrate::{Implicit, Scheme, VERLET_LIMIT, highest_frequency, verlet};
+use crate::integrate::{
+    Explicit, ExplicitMethod, Implicit, Scheme, VERLET_LIMIT, highest_frequency,
+};
 use crate::math::V3;
 use crate::math::{align, frame_along};
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{Support, System};
+use crate::system::{ContactModel, NodalContact, Support, System};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -53,7 +55,7 @@ const DEPTH: f64 = 1.5e-5;
 /// How steps are taken.
 pub(super) enum Stepper {
     /// steps of a given length
-    Explicit(fn(&mut System, f64)),
+    Explicit(Explicit),
     /// the production method, with its own choice of step
     Implicit(Box<Implicit>),
 }
@@ -77,9 +79,9 @@ impl Stepper {
         dt: f64,
     ) -> Result<(), VerifyError> {
         match self {
-            Self::Explicit(step) => {
+            Self::Explicit(explicit) => {
                 for _ in 0..(time / dt).ceil() as usize {
-                    step(sys, dt);
+                    explicit.step(sys, dt);
                 }
             }
             Self::Implicit(method) => {
@@ -153,7 +155,7 @@ impl Bench {
             for node in straight_wires(neighbours, height, length) {
                 line.lay(node.point, node.arc);
             }
-            sys.line = Some(line);
+            sys.contact = ContactModel::line(line);
         } else {
             let floor = box_mesh(4.0 * length, 2.0 * half_height, 2.0 * reach)?;
             let diameter = section.diameter;
@@ -162,7 +164,7 @@ impl Bench {
             for node in straight_wires(neighbours, height, length) {
                 contacts.tube.push(node);
             }
-            sys.contacts = Some(contacts);
+            sys.contact = ContactModel::nodal(contacts);
         }
         // guided along itself: ridges of rolled wire are screws
         sys.support[0] = Support {
@@ -184,7 +186,7 @@ impl Bench {
             step: if implicit {
                 Stepper::implicit(TOLERANCE * r, LONGEST * (m * r / load).sqrt())
             } else {
-                Stepper::Explicit(verlet::step)
+                Stepper::Explicit(Explicit::new(ExplicitMethod::Verlet))
             },
             full: V3::new(0.0, sideways * load, -load) / m,
         };
@@ -303,7 +305,7 @@ pub(super) fn stable_step(section: &Section, h: f64, stiffness: f64, twist: bool
 
 /// Force of each touch of node `i` at rest, from the law that moves the wire, N.
 pub(super) fn touch_forces(sys: &System, i: usize) -> Vec<V3> {
-    if let Some(line) = &sys.line {
+    if let Some(line) = sys.contact.as_line() {
         // the node's own point and the middle of the edge after it
         let rod = &sys.rod;
         let mut forces = Vec::new();
@@ -315,7 +317,7 @@ pub(super) fn touch_forces(sys: &System, i: usize) -> Vec<V3> {
         }
         return forces;
     }
-    let Some(contacts) = &sys.contacts else {
+    let Some(NodalContact { contacts, .. }) = sys.contact.as_nodal() else {
         return Vec::new();
     };
     let p = crate::math::Spin::new(sys.spindle.angle).to_core(sys.rod.x[i]);

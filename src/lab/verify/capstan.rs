@@ -9,12 +9,12 @@ use super::{Answer, Answers, Context, VerifyError};
 use crate::contact::{Contacts, LineContact};
 use crate::geometry::Shape;
 use crate::geometry::generate::cylinder;
-use crate::integrate::verlet;
+use crate::integrate::{Explicit, ExplicitMethod};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{Support, System};
+use crate::system::{ContactModel, Support, System};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -126,12 +126,13 @@ impl Capstan {
             };
             let mut line = LineContact::new(core, law, r, count);
             line.damping = line_damping(&law, section);
-            sys.line = Some(line);
+            sys.contact = ContactModel::line(line);
             step = Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave));
         } else {
             let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
-            sys.contacts = Some(Contacts::new(core, law, r, section.diameter, count));
-            step = Stepper::Explicit(verlet::step);
+            let contacts = Contacts::new(core, law, r, section.diameter, count);
+            sys.contact = ContactModel::nodal(contacts);
+            step = Stepper::Explicit(Explicit::new(ExplicitMethod::Verlet));
         }
         let start = FRAC_PI_2 + wrap;
         let out = V3::new(-libm::sin(start), 0.0, libm::cos(start));

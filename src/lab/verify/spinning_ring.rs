@@ -13,13 +13,13 @@ use crate::contact::{Contacts, LineContact};
 use crate::feed::{Feed, FeedSpec};
 use crate::geometry::Shape;
 use crate::geometry::generate::cylinder;
-use crate::integrate::{Implicit, Scheme, rk4};
+use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme};
 use crate::math::frame_along;
 use crate::math::{V3, spin_velocity};
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{Spindle, Support, System};
+use crate::system::{ContactModel, NodalContact, Spindle, Support, System};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -178,7 +178,10 @@ fn free_tension(
 /// How to step, and the step.
 fn stepper(ctx: &Context, radius: f64, breath: f64, stable: impl Fn() -> f64) -> (Stepper, f64) {
     if ctx.integrator != Integrator::Implicit {
-        return (Stepper::Explicit(rk4::step), stable());
+        return (
+            Stepper::Explicit(Explicit::new(ExplicitMethod::Rk4)),
+            stable(),
+        );
     }
     let dt = breath / PER_BREATH;
     let mut method = Implicit::new(Scheme::Bdf2, TOLERANCE * radius, dt, dt);
@@ -225,13 +228,14 @@ impl<'a> Wound<'a> {
             line.damping = line_damping(&law, section);
             // the load falls to nothing here: let the depth fall with it
             line.onset = ONSET * pull / (radius * stiffness);
-            sys.line = Some(line);
+            sys.contact = ContactModel::line(line);
         } else {
             // the middles of the facets on the circle
             let flat = libm::cos(0.5 * TAU / (EDGES * FACETS) as f64);
             let core = mesh(cylinder((radius - r) / flat, 20.0 * r, EDGES * FACETS))?;
             let core = Arc::new(core);
-            sys.contacts = Some(Contacts::new(core, law, r, section.diameter, EDGES + 1));
+            let contacts = Contacts::new(core, law, r, section.diameter, EDGES + 1);
+            sys.contact = ContactModel::nodal(contacts);
         }
         let spec = FeedSpec {
             mass: 0.0,
@@ -292,14 +296,14 @@ impl<'a> Wound<'a> {
 fn line_load(sys: &System) -> f64 {
     let (mut force, mut length) = (0.0, 0.0);
     let half = sys.rod.edges() / 4..=sys.rod.edges() * 3 / 4;
-    if sys.line.is_some() {
+    if sys.contact.is_line() {
         for i in half {
             force += touch_forces(sys, i).iter().map(V3::norm).sum::<f64>();
             length += sys.rod.rest[i];
         }
         return force / length;
     }
-    let Some(contacts) = &sys.contacts else {
+    let Some(NodalContact { contacts, .. }) = sys.contact.as_nodal() else {
         return 0.0;
     };
     let at_rest = V3::zeros();
