@@ -6,6 +6,7 @@ mod contact_model;
 mod drive;
 mod energy_balance;
 mod history;
+mod nozzle_edge;
 mod remesh;
 mod saved;
 mod support;
