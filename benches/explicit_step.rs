@@ -71,7 +71,7 @@ fn lying(points: usize) -> System {
     ));
     // a body force that balances the contact keeps it there
     let load = scene.contact.stiffness * 1e-6 / scene.wire.mass_per_length();
-    sys.loads.gravity = V3::new(-load, 0.0, 0.0);
+    sys.model.loads.gravity = V3::new(-load, 0.0, 0.0);
     sys
 }
 
@@ -97,7 +97,7 @@ fn steps(c: &mut Criterion) {
                         let mut explicit = Explicit::new(method);
                         b.iter(|| explicit.step(black_box(&mut sys), dt));
                         assert!(
-                            sys.rod.x.iter().all(|p| p.sum().is_finite()),
+                            sys.state.rod.x.iter().all(|p| p.sum().is_finite()),
                             "the bench must stay stable"
                         );
                     },

@@ -39,8 +39,8 @@ fn tight(scene: &Scene, x: &[V3]) -> System {
     let rest = x.windows(2).map(|e| (e[1] - e[0]).norm() / stretch);
     let rod = Rod::through(x, Some(rest.collect()));
     let mut sys = System::new(scene.wire.clone(), rod);
-    sys.support = [Support::pinned(x[0]), Support::pinned(x[x.len() - 1])];
-    sys.twist = Twist::Off;
+    sys.state.support = [Support::pinned(x[0]), Support::pinned(x[x.len() - 1])];
+    sys.model.twist = Twist::Off;
     sys
 }
 
@@ -90,7 +90,7 @@ fn lying(scene: &Scene, nodes: usize, frozen: usize) -> System {
         line.lay(p, arc);
     }
     sys.contact = ContactModel::line(line);
-    sys.arc0 = 1e3;
+    sys.state.arc0 = 1e3;
     sys.refresh();
     sys
 }
@@ -138,7 +138,7 @@ fn assembly(c: &mut Criterion) {
 fn search(c: &mut Criterion) {
     for (name, cold) in [("push", false), ("look_up_and_push", true)] {
         group(c, name, &KINDS[1..], |b, mut sys| {
-            let x = std::mem::take(&mut sys.rod.x);
+            let x = std::mem::take(&mut sys.state.rod.x);
             let line = sys.contact.as_line_mut().expect("contact");
             b.iter(|| {
                 if cold {
@@ -166,7 +166,7 @@ fn tube(c: &mut Criterion) {
         let mut starts = Vec::new();
         b.iter(|| {
             let mut count = 0;
-            for x in &sys.rod.x {
+            for x in &sys.state.rod.x {
                 tube.gather(*x, 2.3 * tube.radius(), 1e3, &mut starts);
                 count += starts.len();
             }
@@ -176,7 +176,7 @@ fn tube(c: &mut Criterion) {
     group(c, "foot", &KINDS[2..], |b, sys| {
         let tube = &sys.contact.as_line().expect("contact").tube;
         let mut starts = Vec::new();
-        let known: Vec<(V3, u32)> = (sys.rod.x.iter())
+        let known: Vec<(V3, u32)> = (sys.state.rod.x.iter())
             .filter_map(|x| {
                 tube.gather(*x, 2.3 * tube.radius(), 1e3, &mut starts);
                 starts.first().map(|s| (*x, *s))

@@ -23,14 +23,18 @@ fn a_profile_run_that_fails_stands_at_the_last_good_step() {
     let end = sim.motion_profile().end();
     let before = *sim.outputs();
     let error = sim.advance_profile(end).expect_err("too long a step");
-    let reached = sim.system().time;
+    let reached = sim.system().state.time;
     assert!(reached > 0.0 && reached < end, "{reached}");
     assert_eq!((sim.time(), error.time), (reached, reached));
     let o = sim.outputs();
     assert!(o.solver_steps > before.solver_steps && o.spindle_angle > 0.0);
-    let turned = sim.system().spindle.angle - 1.464764;
+    let turned = sim.system().state.spindle.angle - 1.464764;
     assert!((o.spindle_angle - turned).abs() < 1e-6, "{turned}");
-    assert_eq!(sim.system().spindle.acceleration, 0.0, "nothing drives on");
+    assert_eq!(
+        sim.system().state.spindle.acceleration,
+        0.0,
+        "nothing drives on"
+    );
 }
 
 #[test]

@@ -100,26 +100,26 @@ fn stepped(
     start: impl Fn(f64) -> f64,
     method: ExplicitMethod,
 ) -> f64 {
-    let n = sys.rod.edges();
+    let n = sys.state.rod.edges();
     if rolls {
         for j in 0..n {
-            sys.rod.spin[j] = start((j as f64 + 0.5) / n as f64);
+            sys.state.rod.spin[j] = start((j as f64 + 0.5) / n as f64);
         }
     } else {
         for i in 0..=n {
-            sys.rod.v[i][axis] = 1e-3 * start(i as f64 / n as f64);
+            sys.state.rod.v[i][axis] = 1e-3 * start(i as f64 / n as f64);
         }
     }
-    let dt = 1.6 / highest_frequency(&sys.section, sys.rod.rest[0], 0.0, rolls);
+    let dt = 1.6 / highest_frequency(&sys.model.section, sys.state.rod.rest[0], 0.0, rolls);
     sys.evaluate(Some(dt));
     let seen = |sys: &System| -> f64 {
         if rolls {
             (0..n)
-                .map(|j| sys.rod.spin[j] * start((j as f64 + 0.5) / n as f64))
+                .map(|j| sys.state.rod.spin[j] * start((j as f64 + 0.5) / n as f64))
                 .sum()
         } else {
             (0..=n)
-                .map(|i| sys.rod.v[i][axis] * start(i as f64 / n as f64))
+                .map(|i| sys.state.rod.v[i][axis] * start(i as f64 / n as f64))
                 .sum()
         }
     };
@@ -129,7 +129,7 @@ fn stepped(
         explicit.step(&mut sys, dt);
         let now = seen(&sys);
         if last * now < 0.0 {
-            zeros.push(sys.time - dt * now / (now - last));
+            zeros.push(sys.state.time - dt * now / (now - last));
             if zeros.len() == 3 {
                 return 1.0 / (zeros[2] - zeros[0]);
             }
@@ -156,7 +156,7 @@ fn held(section: &Section, length: f64, n: usize, rest: f64) -> System {
         .collect();
     let rod = Rod::through(&points, Some(vec![rest / n as f64; n]));
     let mut sys = System::new(elastic(section), rod);
-    sys.support = [Support::pinned(V3::zeros()), Support::pinned(points[n])];
+    sys.state.support = [Support::pinned(V3::zeros()), Support::pinned(points[n])];
     sys
 }
 
@@ -177,7 +177,7 @@ fn modes_stepped_in_time_have_the_frequency_of_theory() {
 
         let file = packed("torsion");
         let mut sys = held(&file.section, 0.1, 60, 0.1);
-        sys.support[0].frame = Some(sys.rod.frame[0]);
+        sys.state.support[0].frame = Some(sys.state.rod.frame[0]);
         let f = stepped(sys, true, 0, |s| libm::sin(0.5 * PI * s), method);
         let theory = expected(&file, 0, "fixed_free_f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "torsion {f} {theory}");
@@ -186,12 +186,12 @@ fn modes_stepped_in_time_have_the_frequency_of_theory() {
         let file = packed("bending_modes");
         assert_eq!(file.cases[4].id, "pinned-pinned_T5_L50mm");
         let mut sys = held(&file.section, 0.05, 40, 0.05 / (1.0 + 5.0 / 48900.0));
-        sys.support[1].hold = [false, true, true];
-        sys.loads = Loads {
+        sys.state.support[1].hold = [false, true, true];
+        sys.model.loads = Loads {
             nodal: vec![(40, V3::x() * 5.0)],
             ..Loads::default()
         };
-        sys.twist = coilwind::rod::Twist::Off;
+        sys.model.twist = coilwind::rod::Twist::Off;
         let f = stepped(sys, false, 1, |s| libm::sin(PI * s), method);
         let theory = expected(&file, 4, "f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "bending {f} {theory}");

@@ -9,16 +9,16 @@ impl Simulation {
         if dt > 0.0 {
             self.sys.guide_nozzle(drive, dt);
         }
-        self.sys.time += dt;
-        self.sys.spindle = self.sys.spindle.after(dt);
-        let support = &mut self.sys.support[1];
+        self.sys.state.time += dt;
+        self.sys.state.spindle = self.sys.state.spindle.after(dt);
+        let support = &mut self.sys.state.support[1];
         support.point += support.velocity * dt;
     }
 
     /// Outputs of parted wire: it neither pulls nor moves on, and measures stay those of the moment it broke.
     pub(super) fn update_broken(&mut self) {
-        let o = &mut self.outputs;
-        o.spindle_angle = self.sys.spindle.angle - self.angle0;
+        let o = &mut self.run.outputs;
+        o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
         (o.wire_tension, o.spindle_torque, o.feed_speed) = (0.0, 0.0, 0.0);
     }
 }

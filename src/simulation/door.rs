@@ -47,21 +47,21 @@ impl Simulation {
     fn advance_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
         self.check_step(dt)?;
         if let Source::Inputs { inputs, rates } = &source {
-            check_finite(inputs, self.time)?;
-            check_finite(&inputs.after(rates, dt), self.time)?;
+            check_finite(inputs, self.run.time)?;
+            check_finite(&inputs.after(rates, dt), self.run.time)?;
         }
-        let span = self.owed + dt;
+        let span = self.run.owed + dt;
         if span < WORTH_A_STEP {
-            self.owed = span;
+            self.run.owed = span;
             self.pass_time(dt);
             return Ok(());
         }
         let drives = self.drives(&source, dt, span);
-        self.owed = 0.0;
-        self.last_span = span;
-        let before = self.outputs;
+        self.run.owed = 0.0;
+        self.run.last_span = span;
+        let before = self.run.outputs;
         if self.is_moved_by(&source, dt) {
-            self.quiet = 0.0;
+            self.run.quiet = 0.0;
         }
         self.reset_extremes();
         let statistics_before = self.statistics();
@@ -77,9 +77,9 @@ impl Simulation {
         }
         if let Source::Inputs { inputs, rates } = &source {
             let end = inputs.after(rates, dt);
-            self.sys.spindle.speed = end.spindle_speed;
-            self.sys.set_tension = end.tension_setpoint;
-            self.sys.support[1].point.y = end.nozzle_position;
+            self.sys.state.spindle.speed = end.spindle_speed;
+            self.sys.state.set_tension = end.tension_setpoint;
+            self.sys.state.support[1].point.y = end.nozzle_position;
         }
         self.pass_time(dt);
         self.finish();
@@ -92,12 +92,12 @@ impl Simulation {
         match source {
             Source::Inputs { inputs, rates } => {
                 let end = inputs.after(rates, dt);
-                let start = if self.owed > 0.0 {
+                let start = if self.run.owed > 0.0 {
                     end.after(rates, -span)
                 } else {
                     *inputs
                 };
-                let travel = end.nozzle_position - self.sys.support[1].point.y;
+                let travel = end.nozzle_position - self.sys.state.support[1].point.y;
                 let drive = Drive {
                     duration: span,
                     speed: start.spindle_speed,
@@ -109,8 +109,12 @@ impl Simulation {
                 [Some(drive), None]
             }
             Source::Profile => {
-                let (start, end) = (self.time - self.owed, self.time + (dt - self.time_lost));
-                self.motion_profile.drives(start, end, self.sys.set_tension)
+                let (start, end) = (
+                    self.run.time - self.run.owed,
+                    self.run.time + (dt - self.run.time_lost),
+                );
+                self.motion_profile
+                    .drives(start, end, self.sys.state.set_tension)
             }
         }
     }
@@ -122,8 +126,8 @@ impl Simulation {
                 let end = inputs.after(rates, dt);
                 *rates != Inputs::HELD
                     || inputs.spindle_speed != 0.0
-                    || end.nozzle_position - self.sys.support[1].point.y != 0.0
-                    || inputs.tension_setpoint != self.sys.set_tension
+                    || end.nozzle_position - self.sys.state.support[1].point.y != 0.0
+                    || inputs.tension_setpoint != self.sys.state.set_tension
             }
             Source::Profile => true,
         }
@@ -135,7 +139,7 @@ impl Simulation {
             return Ok(());
         }
         Err(SimError {
-            time: self.time,
+            time: self.run.time,
             node: None,
             reason: format!("a communication step of {dt} s is not a finite time of 0 or more"),
         })
@@ -143,21 +147,21 @@ impl Simulation {
 
     /// Adds up communication steps such that millions of them lose no more than the last digit (Kahan 1965).
     fn pass_time(&mut self, dt: f64) {
-        let step = dt - self.time_lost;
-        let next = self.time + step;
-        self.time_lost = (next - self.time) - step;
-        self.time = next;
+        let step = dt - self.run.time_lost;
+        let next = self.run.time + step;
+        self.run.time_lost = (next - self.run.time) - step;
+        self.run.time = next;
     }
 
     /// Ends a step in which the method gave up: what can be read is what was reached, or what was there before
     /// if that is no state of a wire.
     fn stop_short(&mut self) {
-        let rod = &self.sys.rod;
+        let rod = &self.sys.state.rod;
         if rod.x.iter().chain(&rod.v).flatten().all(|x| x.is_finite()) {
-            (self.time, self.time_lost) = (self.sys.time, 0.0);
+            (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
             self.finish();
         }
-        self.rates = Outputs::default();
+        self.run.rates = Outputs::default();
     }
 
     /// Reports steps since `before` that the solver could not solve and took shorter. Steps that were too long for
@@ -167,7 +171,7 @@ impl Simulation {
         if newton_failures > 0 {
             let text = format!(
                 "the solver found no solution {newton_failures} times and went on in shorter steps, the last of {:.2e} s",
-                self.last_step
+                self.run.last_step
             );
             self.report(EventKind::Solver, text);
         }
@@ -175,7 +179,7 @@ impl Simulation {
 
     pub(super) fn finish(&mut self) {
         self.follow_traverse();
-        self.sys.time = self.time;
+        self.sys.state.time = self.run.time;
         self.update_outputs();
     }
 }

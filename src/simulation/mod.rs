@@ -13,6 +13,7 @@ mod outputs;
 mod quasi_static;
 mod rates;
 mod remeshing;
+mod run_state;
 mod saved;
 mod sensitivity;
 mod start;
@@ -31,7 +32,7 @@ use crate::measure::Coil;
 use crate::scene::Scene;
 use crate::signals::{Event, EventKind, Inputs, Outputs};
 use crate::system::System;
-use rates::Instant;
+use run_state::RunState;
 
 /// Wire slower than this, m/s, on a standing core counts as quiet: in a second it would move by less than
 /// the error that one step may have.
@@ -51,43 +52,14 @@ const REMESH_STEPS: u64 = 32;
 #[derive(Clone, Debug)]
 pub struct Simulation {
     scene: Scene,
+    motion_profile: MotionProfile,
     sys: System,
     coil: Coil,
-    watch: Watch,
-    policy: FreezePolicy,
+    stepper: Stepper,
+    run: RunState,
     /// polar angle from each laid node to lift-off, at the last look, rad
     behind: Vec<f64>,
-    motion_profile: MotionProfile,
-    /// core angle at the start, rad
-    angle0: f64,
-    stepper: Stepper,
-    last_step: f64,
-    /// length of the last communication step, s; 0: none yet
-    last_span: f64,
-    time: f64,
-    steps: u64,
-    outputs: Outputs,
-    /// per s, see [`Simulation::output_rates`]
-    rates: Outputs,
-    /// before the last step of the method
-    instant: Instant,
-    /// what adding up steps has lost of `time`, s
-    time_lost: f64,
-    /// time passed that the wire has not, see [`WORTH_A_STEP`], s
-    owed: f64,
-    events: Vec<Event>,
-    /// deepest penetration of wire when it came to rest, m
-    rest_depth: f64,
-    broken: bool,
-    was_slack: bool,
-    /// how long core, nozzle, tensioner and wire have been still, s
-    quiet: f64,
-    /// farthest that the spindle has been from where it started, rad
-    farthest: f64,
-    /// farthest nozzle position of this pass, m, and its direction along y
-    pass: (f64, f64),
-    /// steps tried so far, each counted as often as it had nodes, and how much of that may be
-    work: u64,
+    /// how much [`RunState::work`] may become; the caller's
     most_work: u64,
 }
 
@@ -95,9 +67,9 @@ impl Simulation {
     /// Input values at this moment.
     pub fn inputs(&self) -> Inputs {
         Inputs {
-            spindle_speed: self.sys.spindle.speed,
-            nozzle_position: self.sys.support[1].point.y,
-            tension_setpoint: self.sys.set_tension,
+            spindle_speed: self.sys.state.spindle.speed,
+            nozzle_position: self.sys.state.support[1].point.y,
+            tension_setpoint: self.sys.state.set_tension,
         }
     }
 
@@ -109,12 +81,12 @@ impl Simulation {
 
     /// What [`Self::limit_work`] counts.
     pub fn work(&self) -> u64 {
-        self.work
+        self.run.work
     }
 
     /// Elapsed time, s.
     pub fn time(&self) -> f64 {
-        self.time
+        self.run.time
     }
 
     /// The scene this run was made from.
@@ -124,7 +96,7 @@ impl Simulation {
 
     /// Outputs at the last communication point.
     pub fn outputs(&self) -> &Outputs {
-        &self.outputs
+        &self.run.outputs
     }
 
     /// Settled wire and its measures.
@@ -139,15 +111,15 @@ impl Simulation {
 
     /// What happened since the last call.
     pub fn drain_events(&mut self) -> Vec<Event> {
-        std::mem::take(&mut self.events)
+        std::mem::take(&mut self.run.events)
     }
 
     pub(super) fn report(&mut self, kind: EventKind, text: String) {
-        let turn = self.outputs.turns_wound;
-        self.events.push(Event {
-            time: self.sys.time,
+        let turn = self.run.outputs.turns_wound;
+        self.run.events.push(Event {
+            time: self.sys.state.time,
             turn,
-            angle: self.sys.spindle.angle - self.angle0,
+            angle: self.sys.state.spindle.angle - self.run.angle0,
             kind,
             text,
         });
@@ -157,7 +129,7 @@ impl Simulation {
     pub fn retune(&mut self, scene: &Scene) {
         if self.scene.friction != scene.friction {
             // What holds at rest with one friction may slide with another.
-            self.quiet = 0.0;
+            self.run.quiet = 0.0;
         }
         self.scene.defects = scene.defects;
         self.scene.friction = scene.friction;

@@ -3,6 +3,7 @@
 use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
 use super::rates::Instant;
+use super::run_state::RunState;
 use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec};
@@ -142,20 +143,20 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     let direction = (nozzle - clamp).normalize();
     let frame = turn_about_y(-angle0) * frame_along(&direction, Some(&rod.frame[0]));
     let mut sys = System::new(section.clone(), rod);
-    sys.spindle = Spindle {
+    sys.state.spindle = Spindle {
         angle: angle0,
         speed: 0.0,
         acceleration: 0.0,
     };
-    sys.support[0] = Support {
+    sys.state.support[0] = Support {
         hold: [true; 3],
         point: clamp_core,
         velocity: V3::zeros(),
         frame: Some(frame),
         turning: true,
     };
-    sys.support[1] = Support::pinned(nozzle);
-    sys.set_tension = tension;
+    sys.state.support[1] = Support::pinned(nozzle);
+    sys.state.set_tension = tension;
     let t = scene.tensioner;
     let line_stiffness = if t.line_length > 0.0 {
         section.ea / t.line_length
@@ -172,7 +173,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         },
         exit_friction: scene.nozzle.exit_friction,
     };
-    sys.feed = Some((spec, Feed::at_rest(&spec, tension)));
+    sys.set_feed(spec, Feed::at_rest(&spec, tension));
     let law = ContactLaw {
         stiffness: scene.contact.stiffness,
         damping_ratio: damping_for_restitution(scene.contact.restitution),
@@ -180,7 +181,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         mu_kinetic: scene.friction.kinetic,
         slip_speed: scene.friction.slip_speed,
     };
-    let nodes = sys.rod.nodes();
+    let nodes = sys.state.rod.nodes();
     if scene.solver.integrator == Integrator::Implicit {
         let shape = core_shape(&scene.core, &surface);
         sys.contact = ContactModel::line(LineContact::new(shape, law, radius, nodes));
@@ -192,7 +193,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         let (core, diameter) = (surface.clone(), section.diameter);
         sys.contact = ContactModel::nodal(Contacts::new(core, law, radius, diameter, nodes));
     }
-    sys.twist = scene.solver.twist;
+    sys.model.twist = scene.solver.twist;
     let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,
@@ -271,7 +272,7 @@ impl Simulation {
         let (mut sys, coil, angle0) = wire(scene, &inputs)?;
         let (stepper, last_step) = stepper_for(scene)?;
         sys.refresh();
-        sys.balance.initial = sys.stored() + sys.kinetic();
+        sys.state.balance.initial = sys.stored() + sys.kinetic();
         let policy = FreezePolicy {
             window: scene.freeze.window,
             time: scene.freeze.time,
@@ -285,25 +286,20 @@ impl Simulation {
             patience: scene.freeze.patience * std::f64::consts::TAU,
             margin: scene.freeze.margin,
         };
-        let mut sim = Self {
-            motion_profile: MotionProfile::new(scene),
-            watch: Watch::new(sys.rod.nodes(), sys.spindle.angle),
-            scene: scene.clone(),
-            sys,
-            coil,
+        let run = RunState {
+            watch: Watch::new(sys.state.rod.nodes(), sys.state.spindle.angle),
             policy,
-            behind: Vec::new(),
             angle0,
-            stepper,
             last_step,
             last_span: 0.0,
             time: 0.0,
+            time_lost: 0.0,
+            owed: 0.0,
             steps: 0,
+            work: 0,
             outputs: Outputs::default(),
             rates: Outputs::default(),
             instant: Instant::default(),
-            time_lost: 0.0,
-            owed: 0.0,
             events: Vec::new(),
             rest_depth: 0.0,
             broken: false,
@@ -311,10 +307,18 @@ impl Simulation {
             quiet: 0.0,
             farthest: 0.0,
             pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
-            work: 0,
+        };
+        let mut sim = Self {
+            scene: scene.clone(),
+            motion_profile: MotionProfile::new(scene),
+            sys,
+            coil,
+            stepper,
+            run,
+            behind: Vec::new(),
             most_work: u64::MAX,
         };
-        sim.sys.spindle.speed = inputs.spindle_speed;
+        sim.sys.state.spindle.speed = inputs.spindle_speed;
         sim.sys.place_supports();
         sim.reset_extremes();
         sim.update_outputs();

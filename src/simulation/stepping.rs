@@ -10,12 +10,12 @@ impl Simulation {
     /// Goes through the interval of `drive` in steps that the method finds fit.
     pub(super) fn through(&mut self, drive: &Drive) -> Result<(), SimError> {
         let dt = drive.duration;
-        if self.broken {
+        if self.run.broken {
             self.turn_on(dt, drive);
             return Ok(());
         }
         if self.is_quiescent() {
-            self.sys.time += dt;
+            self.sys.state.time += dt;
             return Ok(());
         }
         match self.stepper {
@@ -29,13 +29,13 @@ impl Simulation {
         let count = (drive.duration / longest).ceil().max(1.0);
         let step = drive.duration / count;
         for _ in 0..count as u64 {
-            if self.broken {
+            if self.run.broken {
                 self.turn_on(step, drive);
                 continue;
             }
             self.sys.guide_nozzle(drive, step);
-            self.instant = Instant::of(self);
-            self.sys.set_tension = self.sys.set_tension_after(step);
+            self.run.instant = Instant::of(self);
+            self.sys.state.set_tension = self.sys.set_tension_after(step);
             self.step(step)?;
         }
         Ok(())
@@ -47,14 +47,14 @@ impl Simulation {
         let course = self.sys.nozzle_course(drive);
         let mut left = dt;
         // differences of times leave a rest that is none, in which nothing can be solved for
-        while left > ROUNDING * self.sys.time.max(dt) || (left == dt && dt >= WORTH_A_STEP) {
+        while left > ROUNDING * self.sys.state.time.max(dt) || (left == dt && dt >= WORTH_A_STEP) {
             if let Some(course) = &course {
                 course.steer(&mut self.sys, left.min(self.stepper.next()));
             }
-            self.instant = Instant::of(self);
+            self.run.instant = Instant::of(self);
             let taken = self.step(left.min(self.longest_return()))?;
             left = if taken >= left { 0.0 } else { left - taken };
-            if self.broken {
+            if self.run.broken {
                 self.turn_on(left, drive);
                 break;
             }
@@ -70,13 +70,13 @@ impl Simulation {
     /// Nothing has moved for two windows of rest detection, so all wire that may freeze has frozen, and no input
     /// has changed since. A vibration's turning point is over in a fraction of a window.
     pub(super) fn is_quiescent(&self) -> bool {
-        self.stepper.is_implicit() && self.quiet >= 2.0 * self.policy.time
+        self.stepper.is_implicit() && self.run.quiet >= 2.0 * self.run.policy.time
     }
 
     /// Longest step in which wire that goes back takes no more than a quarter of the nozzle's edge, s.
     fn longest_return(&self) -> f64 {
-        match (&self.sys.feed, self.sys.rod.rest.last()) {
-            (Some((_, f)), Some(rest)) if f.rate < 0.0 => 0.25 * rest / -f.rate,
+        match (&self.sys.state.feed, self.sys.state.rod.rest.last()) {
+            (Some(f), Some(rest)) if f.rate < 0.0 => 0.25 * rest / -f.rate,
             _ => f64::INFINITY,
         }
     }
@@ -85,7 +85,7 @@ impl Simulation {
     fn step(&mut self, most: f64) -> Result<f64, SimError> {
         let tried = self.stepper.statistics().tried();
         let taken = self.stepper.step(&mut self.sys, most).map_err(|e| SimError {
-            time: self.sys.time,
+            time: self.sys.state.time,
             node: Some(e.node),
             reason: match self.stepper.fixed() {
                 Some(step) => format!(
@@ -94,14 +94,15 @@ impl Simulation {
                 None => e.to_string(),
             },
         })?;
-        self.work += (self.stepper.statistics().tried() - tried) * self.sys.rod.nodes() as u64;
-        self.last_step = taken;
-        self.steps += 1;
+        self.run.work +=
+            (self.stepper.statistics().tried() - tried) * self.sys.state.rod.nodes() as u64;
+        self.run.last_step = taken;
+        self.run.steps += 1;
         self.watch_tension();
         self.remesh(taken)?;
-        if self.work > self.most_work {
+        if self.run.work > self.most_work {
             return Err(SimError {
-                time: self.sys.time,
+                time: self.sys.state.time,
                 node: None,
                 reason: format!(
                     "the work allowed ({} node steps) is used up",
@@ -109,9 +110,9 @@ impl Simulation {
                 ),
             });
         }
-        let still =
-            self.sys.spindle.speed == 0.0 && self.sys.rod.v.iter().all(|v| v.amax() < QUIET);
-        self.quiet = if still { self.quiet + taken } else { 0.0 };
+        let still = self.sys.state.spindle.speed == 0.0
+            && self.sys.state.rod.v.iter().all(|v| v.amax() < QUIET);
+        self.run.quiet = if still { self.run.quiet + taken } else { 0.0 };
         Ok(taken)
     }
 }

@@ -156,7 +156,7 @@ impl super::System {
     /// A distance from the origin far outside of what wire can lie on, m, if there is a core with a mesh.
     pub(crate) fn far(&self) -> Option<f64> {
         self.core_surface()
-            .map(|core| far(core, self.section.radius()))
+            .map(|core| far(core, self.model.section.radius()))
     }
 
     fn frozen_tube_mut(&mut self) -> Option<&mut Tube> {

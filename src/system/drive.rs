@@ -53,29 +53,29 @@ impl Drive {
 impl System {
     /// Gives spindle, nozzle and tensioner the motion that they have at the start of `drive`.
     pub fn begin_drive(&mut self, drive: &Drive) {
-        self.spindle.speed = drive.speed;
-        self.spindle.acceleration = drive.acceleration;
-        self.set_tension = drive.tension;
-        self.set_rate = drive.tension_rate;
+        self.state.spindle.speed = drive.speed;
+        self.state.spindle.acceleration = drive.acceleration;
+        self.state.set_tension = drive.tension;
+        self.state.set_rate = drive.tension_rate;
         if let NozzleDrive::Even(velocity) = drive.nozzle {
             // speeds may jump here: held nodes take theirs over before the nozzle sets off
             self.place_supports();
-            self.support[1].velocity = V3::new(0.0, velocity, 0.0);
+            self.state.support[1].velocity = V3::new(0.0, velocity, 0.0);
         }
     }
 
     /// Ends the motion of nozzle and set tension and the spindle's acceleration; the spindle keeps its speed.
     pub fn end_drive(&mut self) {
-        self.support[1].velocity = V3::zeros();
-        (self.spindle.acceleration, self.set_rate) = (0.0, 0.0);
+        self.state.support[1].velocity = V3::zeros();
+        (self.state.spindle.acceleration, self.state.set_rate) = (0.0, 0.0);
     }
 
     /// Gives a nozzle that is coupled to the spindle the mean velocity of the next `step`, s.
     pub(crate) fn guide_nozzle(&mut self, drive: &Drive, step: f64) {
         if let Some(travel) = drive.travel() {
-            let spindle = self.spindle;
+            let spindle = self.state.spindle;
             let rate = (spindle.after(step).angle - spindle.angle) / step;
-            self.support[1].velocity = V3::new(0.0, travel * rate, 0.0);
+            self.state.support[1].velocity = V3::new(0.0, travel * rate, 0.0);
         }
     }
 
@@ -83,8 +83,8 @@ impl System {
     pub(crate) fn nozzle_course(&self, drive: &Drive) -> Option<NozzleCourse> {
         drive.travel().map(|travel| NozzleCourse {
             travel,
-            position: self.support[1].point.y,
-            angle: self.spindle.angle,
+            position: self.state.support[1].point.y,
+            angle: self.state.spindle.angle,
         })
     }
 }
@@ -95,13 +95,14 @@ impl NozzleCourse {
     /// The step taken may be shorter than `step`. What that leaves, of second order in the spindle's
     /// acceleration, is made up for by the next call.
     pub(crate) fn steer(&self, sys: &mut System, step: f64) {
-        let next = self.position + self.travel * (sys.spindle.after(step).angle - self.angle);
-        let nozzle = &mut sys.support[1];
+        let next = self.position + self.travel * (sys.state.spindle.after(step).angle - self.angle);
+        let nozzle = &mut sys.state.support[1];
         nozzle.velocity = V3::new(0.0, (next - nozzle.point.y) / step, 0.0);
     }
 
     /// Puts the nozzle where the spindle's present angle wants it.
     pub(crate) fn arrive(&self, sys: &mut System) {
-        sys.support[1].point.y = self.position + self.travel * (sys.spindle.angle - self.angle);
+        sys.state.support[1].point.y =
+            self.position + self.travel * (sys.state.spindle.angle - self.angle);
     }
 }

@@ -59,9 +59,9 @@ mod tests {
         let mut sys = System::new(s.clone(), Rod::through(&points, None));
         for i in 0..40 {
             let sign = if i % 2 == 0 { 1e-4 } else { -1e-4 };
-            sys.rod.v[i] = V3::new(sign, sign, 0.0);
+            sys.state.rod.v[i] = V3::new(sign, sign, 0.0);
             if i < 39 {
-                sys.rod.spin[i] = sign * 1e3;
+                sys.state.rod.spin[i] = sign * 1e3;
             }
         }
         let dt = share * method.limit() / highest_frequency(&s, h, 0.0, true);

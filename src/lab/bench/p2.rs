@@ -74,7 +74,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
     };
     let mut sys = released(section, rest);
     if method == Method::Implicit {
-        sys.mass = Mass::Consistent;
+        sys.model.mass = Mass::Consistent;
     }
     let mut implicit = Implicit::new(Scheme::Midpoint, tol.unwrap_or(TOLERANCE), dt, dt);
     implicit.fixed = Some(dt);
@@ -95,7 +95,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
             }
             Method::Verlet | Method::Rk4 => explicit.step(&mut sys, dt),
         }
-        tip.push(sys.rod.x[n].y);
+        tip.push(sys.state.rod.x[n].y);
     }
     outcome.spent = watch.spent();
     outcome.steps = tip.len() as u64;
@@ -125,7 +125,7 @@ fn first_frequency(section: &Section) -> f64 {
 fn released(section: Section, rest: Vec<f64>) -> System {
     let mut sys = cantilever(section, &along_x(&rest), rest);
     let amplitude = AMPLITUDE / mode(1.0) * (ROOT / LENGTH).powi(2);
-    let rod = &mut sys.rod;
+    let rod = &mut sys.state.rod;
     let (mut angle, mut arc) = (0.0, 0.0);
     for i in 0..rod.edges() {
         angle += amplitude * curvature(arc / LENGTH) * rod.voronoi(i);

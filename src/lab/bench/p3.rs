@@ -65,7 +65,7 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
                 Ok(h) => {
                     left = if h >= left { 0.0 } else { left - h };
                     if counts {
-                        ratio -= sys.load.force[n].x / HOLD * (h / duration);
+                        ratio -= sys.state.load.force[n].x / HOLD * (h / duration);
                     }
                 }
                 Err(stopped) => outcome.failure = Some(stopped.to_string()),
@@ -130,7 +130,7 @@ fn capstan(section: &Section, n: usize) -> (System, f64) {
         .map(|p| (p[1] - p[0]).norm() / stretch)
         .collect();
     let mut sys = System::new(section.clone(), Rod::through(&points, Some(rest)));
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     let law = ContactLaw {
         stiffness: STIFFNESS,
         damping_ratio: 0.0,
@@ -143,8 +143,8 @@ fn capstan(section: &Section, n: usize) -> (System, f64) {
         half_y: RADIUS,
     };
     sys.contact = ContactModel::line(LineContact::new(shape, law, section.radius(), points.len()));
-    sys.loads.nodal = vec![(0, V3::x() * HOLD)];
-    sys.support[1] = Support {
+    sys.model.loads.nodal = vec![(0, V3::x() * HOLD)];
+    sys.state.support[1] = Support {
         hold: [true, false, false],
         velocity: V3::x() * SPEED,
         point: points[n],

@@ -55,9 +55,9 @@ pub(super) fn run(args: &BenchArgs) -> Result<Outcome, BenchError> {
         .map(|i| V3::new(SPACING * i as f64, HEIGHT * wave(i), 0.0))
         .collect();
     let mut sys = System::new(section, Rod::through(&x, None));
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     for i in 0..=n {
-        sys.rod.v[i] = V3::new(0.0, 0.0, SPEED * wave(i));
+        sys.state.rod.v[i] = V3::new(0.0, 0.0, SPEED * wave(i));
     }
     sys.refresh();
     let mut implicit = Implicit::new(Scheme::Midpoint, tol.unwrap_or(TOLERANCE), dt, dt);

@@ -109,10 +109,10 @@ const MOST_CUTS: usize = 8;
 /// Velocities and spins become zero. Held coordinates may start away from their supports: they go
 /// there with the rest of the wire.
 pub fn relax(sys: &mut System, limits: &Limits) -> Result<Relaxed, RelaxError> {
-    sys.rod.v.fill(V3::zeros());
-    sys.rod.spin.fill(0.0);
-    sys.roll.clear();
-    sys.roll.resize(sys.rod.edges(), 0.0);
+    sys.state.rod.v.fill(V3::zeros());
+    sys.state.rod.spin.fill(0.0);
+    sys.state.roll.clear();
+    sys.state.roll.resize(sys.state.rod.edges(), 0.0);
     let target = support_places(sys);
     sys.evaluate(None);
     let mut iterations = 0;
@@ -167,8 +167,8 @@ pub fn ramp(
         }
         match relax(sys, limits) {
             Ok(done) => {
-                let mut moved = vec![0.0; PER_NODE * sys.rod.nodes()];
-                for (i, (x, x0)) in sys.rod.x.iter().zip(&before.rod.x).enumerate() {
+                let mut moved = vec![0.0; PER_NODE * sys.state.rod.nodes()];
+                for (i, (x, x0)) in sys.state.rod.x.iter().zip(&before.state.rod.x).enumerate() {
                     moved[PER_NODE * i..PER_NODE * i + 3].copy_from_slice((x - x0).as_slice());
                 }
                 trend = Some((moved, to - at));
@@ -194,9 +194,9 @@ pub fn ramp(
 
 /// A first guess: the wire goes on as it went before.
 fn carry_on(sys: &mut System, moved: &[f64], share: f64) {
-    sys.roll.clear();
-    sys.roll.resize(sys.rod.edges(), 0.0);
-    let start = (sys.rod.x.clone(), sys.roll.clone());
+    sys.state.roll.clear();
+    sys.state.roll.resize(sys.state.rod.edges(), 0.0);
+    let start = (sys.state.rod.x.clone(), sys.state.roll.clone());
     advance(sys, &start, moved, share, None);
 }
 
@@ -220,27 +220,28 @@ impl RelaxError {
 
 /// Whether coordinate `a` of node `i` is held.
 fn held(sys: &System, i: usize, a: usize) -> bool {
-    (i == 0 && sys.support[0].hold[a]) || (i + 1 == sys.rod.nodes() && sys.support[1].hold[a])
+    (i == 0 && sys.state.support[0].hold[a])
+        || (i + 1 == sys.state.rod.nodes() && sys.state.support[1].hold[a])
 }
 
 /// Where the supports want the two end nodes; coordinates that are free stay as they are.
 fn support_places(sys: &mut System) -> [V3; 2] {
-    let last = sys.rod.nodes() - 1;
-    let before = [sys.rod.x[0], sys.rod.x[last]];
+    let last = sys.state.rod.nodes() - 1;
+    let before = [sys.state.rod.x[0], sys.state.rod.x[last]];
     sys.place_supports();
-    let target = [sys.rod.x[0], sys.rod.x[last]];
+    let target = [sys.state.rod.x[0], sys.state.rod.x[last]];
     for (i, x) in [(0, before[0]), (last, before[1])] {
-        sys.rod.x[i] = x;
-        sys.rod.v[i] = V3::zeros();
+        sys.state.rod.x[i] = x;
+        sys.state.rod.v[i] = V3::zeros();
     }
     target
 }
 
 fn at_supports(sys: &System, target: &[V3; 2]) -> bool {
-    let last = sys.rod.nodes() - 1;
+    let last = sys.state.rod.nodes() - 1;
     (0..3).all(|a| {
-        (!held(sys, 0, a) || sys.rod.x[0][a] == target[0][a])
-            && (!held(sys, last, a) || sys.rod.x[last][a] == target[1][a])
+        (!held(sys, 0, a) || sys.state.rod.x[0][a] == target[0][a])
+            && (!held(sys, last, a) || sys.state.rod.x[last][a] == target[1][a])
     })
 }
 
@@ -252,30 +253,31 @@ struct Balance {
 
 impl Balance {
     fn of(sys: &System) -> Result<Self, RelaxError> {
-        let length: f64 = sys.rod.rest.iter().sum();
-        for i in 0..sys.rod.nodes() {
-            let torque = sys.load.torque.get(i).copied().unwrap_or(0.0);
-            if !(sys.load.force[i].norm() + torque.abs()).is_finite() {
+        let length: f64 = sys.state.rod.rest.iter().sum();
+        for i in 0..sys.state.rod.nodes() {
+            let torque = sys.state.load.torque.get(i).copied().unwrap_or(0.0);
+            if !(sys.state.load.force[i].norm() + torque.abs()).is_finite() {
                 return Err(RelaxError::Broken {
                     node: i,
                     share: 1.0,
                 });
             }
         }
-        let last = sys.rod.nodes() - 1;
-        let mut force = sys.loads.gravity.norm() * sys.section.mass_per_length() * length;
+        let last = sys.state.rod.nodes() - 1;
+        let mut force =
+            sys.model.loads.gravity.norm() * sys.model.section.mass_per_length() * length;
         for i in [0, last] {
             for a in 0..3 {
                 if held(sys, i, a) {
-                    force = force.max(sys.load.force[i][a].abs());
+                    force = force.max(sys.state.load.force[i][a].abs());
                 }
             }
         }
-        for (_, f) in &sys.loads.nodal {
+        for (_, f) in &sys.model.loads.nodal {
             force = force.max(f.norm());
         }
-        let couples = sys.loads.moments.iter().map(|(_, m)| m.norm());
-        let clamps = sys.load.clamp_moment.iter().map(|m| m.norm());
+        let couples = sys.model.loads.moments.iter().map(|(_, m)| m.norm());
+        let clamps = sys.state.load.clamp_moment.iter().map(|m| m.norm());
         let moment = couples.chain(clamps).fold(force * length, f64::max);
         Ok(Self {
             force: moment / length,
@@ -285,25 +287,26 @@ impl Balance {
 
     /// Rounding of positions felt as force at node `i`, N.
     fn noise(sys: &System, i: usize) -> f64 {
-        let after = sys.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
+        let after = sys.state.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
         let before = if i > 0 {
-            sys.rod.rest[i - 1]
+            sys.state.rod.rest[i - 1]
         } else {
             f64::INFINITY
         };
         let h = after.min(before);
-        let stiffness = sys.section.ea / h + 4.0 * sys.section.ei / (h * h * h);
-        16.0 * f64::EPSILON * sys.rod.x[i].norm().max(h) * stiffness
+        let stiffness = sys.model.section.ea / h + 4.0 * sys.model.section.ei / (h * h * h);
+        16.0 * f64::EPSILON * sys.state.rod.x[i].norm().max(h) * stiffness
     }
 
     fn holds(&self, sys: &System, tolerance: f64) -> bool {
-        let forces = (0..sys.rod.nodes()).all(|i| {
+        let forces = (0..sys.state.rod.nodes()).all(|i| {
             let limit = tolerance * self.force + Self::noise(sys, i);
-            (0..3).all(|a| held(sys, i, a) || sys.load.force[i][a].abs() <= limit)
+            (0..3).all(|a| held(sys, i, a) || sys.state.load.force[i][a].abs() <= limit)
         });
-        let torques = (0..sys.rod.edges()).all(|j| {
-            let noise = 64.0 * f64::EPSILON * sys.section.gj / sys.rod.rest[j];
-            !sys.twist.is_carried() || sys.load.torque[j].abs() <= tolerance * self.moment + noise
+        let torques = (0..sys.state.rod.edges()).all(|j| {
+            let noise = 64.0 * f64::EPSILON * sys.model.section.gj / sys.state.rod.rest[j];
+            !sys.model.twist.is_carried()
+                || sys.state.load.torque[j].abs() <= tolerance * self.moment + noise
         });
         forces && torques
     }
@@ -311,10 +314,10 @@ impl Balance {
     /// Largest force out of balance over the load.
     fn worst(&self, sys: &System) -> f64 {
         let mut worst = 0.0_f64;
-        for i in 0..sys.rod.nodes() {
+        for i in 0..sys.state.rod.nodes() {
             for a in 0..3 {
                 if !held(sys, i, a) {
-                    worst = worst.max(sys.load.force[i][a].abs());
+                    worst = worst.max(sys.state.load.force[i][a].abs());
                 }
             }
         }
@@ -329,7 +332,7 @@ impl Balance {
 /// One Newton step, shortened where an edge would turn or stretch too far or where the wire
 /// yields and a shorter step does better.
 fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
-    let nodes = sys.rod.nodes();
+    let nodes = sys.state.rod.nodes();
     let before = residual(sys);
     let mut step = before.clone();
     let yielding = plastic_tangent::yields(sys);
@@ -339,13 +342,13 @@ fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
         for a in 0..PER_NODE {
             let k = PER_NODE * i + a;
             if a == 3 {
-                if i + 1 == nodes || !sys.twist.is_carried() {
+                if i + 1 == nodes || !sys.model.twist.is_carried() {
                     tangent.fix(k);
                     step[k] = 0.0;
                 }
             } else if held(sys, i, a) {
                 tangent.fix(k);
-                step[k] = target[usize::from(i > 0)][a] - sys.rod.x[i][a];
+                step[k] = target[usize::from(i > 0)][a] - sys.state.rod.x[i][a];
                 carried |= step[k] != 0.0;
             }
         }
@@ -359,8 +362,8 @@ fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
     let mut largest = 0.0_f64;
     for j in 0..nodes - 1 {
         largest = largest
-            .max((part(&step, j + 1) - part(&step, j)).norm() / sys.rod.rest[j])
-            .max(step[PER_NODE * j + 3].abs() / sys.rod.rest[j]);
+            .max((part(&step, j + 1) - part(&step, j)).norm() / sys.state.rod.rest[j])
+            .max(step[PER_NODE * j + 3].abs() / sys.state.rod.rest[j]);
     }
     let whole = (LARGEST_TURN / largest).min(1.0);
     if !whole.is_finite() {
@@ -369,7 +372,7 @@ fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
             share: 1.0,
         });
     }
-    let start = (sys.rod.x.clone(), sys.roll.clone());
+    let start = (sys.state.rod.x.clone(), sys.state.roll.clone());
     advance(sys, &start, &step, whole, Some(target));
     sys.evaluate(None);
     // work of the forces out of balance along the step: 0 at the best share
@@ -431,31 +434,31 @@ fn advance(
 ) {
     let (x, roll) = start;
     let last = x.len() - 1;
-    sys.rod.x[0] = x[0] + part(step, 0) * share;
+    sys.state.rod.x[0] = x[0] + part(step, 0) * share;
     for j in 0..last {
         let d = x[j + 1] - x[j];
         let length = d.norm();
         let move_on = (part(step, j + 1) - part(step, j)) * share;
         let stretched = length + move_on.dot(&d) / length;
         let direction = (d + move_on).normalize();
-        sys.rod.x[j + 1] = sys.rod.x[j] + direction * stretched;
-        sys.roll[j] = roll[j] + share * step[PER_NODE * j + 3] / sys.rod.rest[j];
+        sys.state.rod.x[j + 1] = sys.state.rod.x[j] + direction * stretched;
+        sys.state.roll[j] = roll[j] + share * step[PER_NODE * j + 3] / sys.state.rod.rest[j];
     }
     // a held far end stays where the straight step puts it; the wire shares the difference
-    let mut miss = x[last] + part(step, last) * share - sys.rod.x[last];
+    let mut miss = x[last] + part(step, last) * share - sys.state.rod.x[last];
     for a in 0..3 {
         if !held(sys, last, a) {
             miss[a] = 0.0;
         }
     }
     for i in 1..=last {
-        sys.rod.x[i] += miss * (i as f64 / last as f64);
+        sys.state.rod.x[i] += miss * (i as f64 / last as f64);
     }
     for (i, end) in [(0, 0), (last, 1)] {
         for a in 0..3 {
             if held(sys, i, a) {
                 // exactly, so that the wire is seen to have arrived
-                sys.rod.x[i][a] = match target {
+                sys.state.rod.x[i][a] = match target {
                     Some(target) if share == 1.0 => target[end][a],
                     _ => x[i][a] + share * step[PER_NODE * i + a],
                 };
@@ -466,11 +469,11 @@ fn advance(
 
 /// Forces on nodes and torques on edges, these over the edge length so that all are in N.
 fn residual(sys: &System) -> Vec<f64> {
-    let mut r = vec![0.0; PER_NODE * sys.rod.nodes()];
-    for i in 0..sys.rod.nodes() {
-        r[PER_NODE * i..PER_NODE * i + 3].copy_from_slice(sys.load.force[i].as_slice());
-        if i < sys.rod.edges() {
-            r[PER_NODE * i + 3] = sys.load.torque[i] / sys.rod.rest[i];
+    let mut r = vec![0.0; PER_NODE * sys.state.rod.nodes()];
+    for i in 0..sys.state.rod.nodes() {
+        r[PER_NODE * i..PER_NODE * i + 3].copy_from_slice(sys.state.load.force[i].as_slice());
+        if i < sys.state.rod.edges() {
+            r[PER_NODE * i + 3] = sys.state.load.torque[i] / sys.state.rod.rest[i];
         }
     }
     r
@@ -478,19 +481,19 @@ fn residual(sys: &System) -> Vec<f64> {
 
 /// Minus the derivative of [`residual`] with respect to positions and rolls (times edge length).
 fn tangent(sys: &mut System) -> Band {
-    let nodes = sys.rod.nodes();
+    let nodes = sys.state.rod.nodes();
     let size = PER_NODE * nodes;
     let mut band = Band::new(size, HALF_BAND);
     // a law with a kink has no difference quotient: go round it with the elastic law at the same
     // forces, and take off afterwards what the yielding joints lack of it
     let flows = plastic_tangent::Flows::of(sys);
     let plastic = flows.hide(sys);
-    let (x, roll) = (sys.rod.x.clone(), sys.roll.clone());
+    let (x, roll) = (sys.state.rod.x.clone(), sys.state.roll.clone());
     let nudge: Vec<f64> = (0..nodes)
         .map(|i| {
-            let after = sys.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
+            let after = sys.state.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
             let before = if i > 0 {
-                sys.rod.rest[i - 1]
+                sys.state.rod.rest[i - 1]
             } else {
                 f64::INFINITY
             };
@@ -503,20 +506,20 @@ fn tangent(sys: &mut System) -> Band {
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 for i in (colour..nodes).step_by(COLOURS) {
                     if a < 3 {
-                        sys.rod.x[i][a] = x[i][a] + sign * nudge[i];
+                        sys.state.rod.x[i][a] = x[i][a] + sign * nudge[i];
                     } else if i + 1 < nodes {
-                        sys.roll[i] = roll[i] + sign * NUDGE;
+                        sys.state.roll[i] = roll[i] + sign * NUDGE;
                     }
                 }
                 sys.evaluate(None);
                 sides[side] = residual(sys);
-                sys.rod.x.copy_from_slice(&x);
-                sys.roll.copy_from_slice(&roll);
+                sys.state.rod.x.copy_from_slice(&x);
+                sys.state.roll.copy_from_slice(&roll);
             }
             for i in (colour..nodes).step_by(COLOURS) {
                 let width = match (a < 3, i + 1 < nodes) {
                     (true, _) => 2.0 * nudge[i],
-                    (false, true) => 2.0 * NUDGE * sys.rod.rest[i],
+                    (false, true) => 2.0 * NUDGE * sys.state.rod.rest[i],
                     (false, false) => continue,
                 };
                 let column = PER_NODE * i + a;
@@ -557,15 +560,15 @@ mod tests {
         let along = V3::new(0.6, 0.48, 0.64);
         let points: Vec<V3> = (0..=20).map(|i| along * (1e-3 * i as f64)).collect();
         let mut sys = System::new(section, Rod::through(&points, None));
-        sys.support[0] = Support::clamped(V3::zeros(), frame_along(&along, None));
+        sys.state.support[0] = Support::clamped(V3::zeros(), frame_along(&along, None));
         sys
     }
 
     /// Bends, twists and pulls it past all limits.
     fn push(sys: &mut System, share: f64) {
         let force = V3::new(20.0, 25.0, 30.0) + V3::new(0.8, -0.6, 0.0);
-        sys.loads.nodal = vec![(20, force * share)];
-        sys.loads.moments = vec![(19, V3::new(4e-3, 3.2e-3, 4.2e-3) * share)];
+        sys.model.loads.nodal = vec![(20, force * share)];
+        sys.model.loads.moments = vec![(19, V3::new(4e-3, 3.2e-3, 4.2e-3) * share)];
     }
 
     #[test]
@@ -573,9 +576,9 @@ mod tests {
         let mut sys = cantilever(section());
         ramp(&mut sys, &Limits::default(), push).expect("the load is carried");
         assert!(
-            sys.rod.stretch[5].strain > 0.0
-                && sys.rod.twist[5].strain != 0.0
-                && sys.rod.bend[1].rise > 0.0
+            sys.state.rod.stretch[5].strain > 0.0
+                && sys.state.rod.twist[5].strain != 0.0
+                && sys.state.rod.bend[1].rise > 0.0
         );
         push(&mut sys, 1.05);
         sys.evaluate(None);
@@ -583,26 +586,26 @@ mod tests {
         newton_step(&mut sys, &[V3::zeros(); 2]).expect("forces are finite");
         // forces are derivatives with the frames carried along from where the wire is now
         for j in 0..20 {
-            let t = sys.rod.tangent(j);
-            sys.rod.frame[j] = align(&sys.rod.frame[j], &t, sys.roll[j]);
-            sys.roll[j] = 0.0;
+            let t = sys.state.rod.tangent(j);
+            sys.state.rod.frame[j] = align(&sys.state.rod.frame[j], &t, sys.state.roll[j]);
+            sys.state.roll[j] = 0.0;
         }
         let mut band = tangent(&mut sys);
-        let (x, roll) = (sys.rod.x.clone(), sys.roll.clone());
+        let (x, roll) = (sys.state.rod.x.clone(), sys.state.roll.clone());
         let mut worst = 0.0_f64;
         for k in [9usize, 10, 11] {
             for a in 0..PER_NODE {
                 let mut sides = [Vec::new(), Vec::new()];
                 for (side, sign) in [(0, 1.0), (1, -1.0)] {
                     if a < 3 {
-                        sys.rod.x[k][a] += sign * 1e-10;
+                        sys.state.rod.x[k][a] += sign * 1e-10;
                     } else {
-                        sys.roll[k] += sign * 1e-7;
+                        sys.state.roll[k] += sign * 1e-7;
                     }
                     sys.evaluate(None);
                     sides[side] = residual(&sys);
-                    sys.rod.x.clone_from(&x);
-                    sys.roll.clone_from(&roll);
+                    sys.state.rod.x.clone_from(&x);
+                    sys.state.roll.clone_from(&roll);
                 }
                 let column = PER_NODE * k + a;
                 let diagonal = band.at(column, column).abs();
@@ -626,10 +629,10 @@ mod tests {
             };
             ramp(&mut sys, &limits, |sys, share| {
                 // in one plane, where the law does not depend on the path
-                sys.loads.nodal = vec![(20, V3::new(0.8, -0.6, 0.0).cross(&V3::z()) * share)];
+                sys.model.loads.nodal = vec![(20, V3::new(0.8, -0.6, 0.0).cross(&V3::z()) * share)];
             })
             .expect("the load is carried");
-            (sys.rod.x[20], sys.rod.bend[0].rise)
+            (sys.state.rod.x[20], sys.state.rod.bend[0].rise)
         };
         let (coarse, fine) = (strains(0.5), strains(0.02));
         assert!(fine.1 > 1e-4, "{fine:?}");
@@ -643,11 +646,11 @@ mod tests {
     #[test]
     fn what_has_no_equilibrium_is_an_error() {
         let mut sys = cantilever(section());
-        sys.support[0] = Support::free();
-        sys.loads.nodal = vec![(20, V3::x())];
+        sys.state.support[0] = Support::free();
+        sys.model.loads.nodal = vec![(20, V3::x())];
         assert!(relax(&mut sys, &Limits::default()).is_err());
         let mut sys = cantilever(section());
-        sys.loads.nodal = vec![(20, V3::x() * f64::NAN)];
+        sys.model.loads.nodal = vec![(20, V3::x() * f64::NAN)];
         assert!(matches!(
             relax(&mut sys, &Limits::default()),
             Err(RelaxError::Broken { .. })

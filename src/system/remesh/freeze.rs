@@ -42,35 +42,35 @@ impl System {
     /// The wire just behind the new clamp keeps its direction such that the curvature and moment
     /// there stay what they are.
     pub fn freeze_front(&mut self, count: usize) {
-        let spin = Spin::new(self.spindle.angle);
-        let back = turn_about_y(-self.spindle.angle);
+        let spin = Spin::new(self.state.spindle.angle);
+        let back = turn_about_y(-self.state.spindle.angle);
         let stored = self.stored();
         let mut handed = 0.0;
         for i in 1..=count {
-            let v = spin_velocity(self.spindle.speed, self.rod.x[i]);
-            handed += 0.5 * self.rod.mass(&self.section, i) * v.norm_squared();
+            let v = spin_velocity(self.state.spindle.speed, self.state.rod.x[i]);
+            handed += 0.5 * self.state.rod.mass(&self.model.section, i) * v.norm_squared();
         }
         let frame = self.frame_to_clamp(count);
         self.record_frozen(count);
-        self.support[0] = Support {
+        self.state.support[0] = Support {
             hold: [true; 3],
-            point: spin.to_core(self.rod.x[count]),
+            point: spin.to_core(self.state.rod.x[count]),
             velocity: V3::zeros(),
             frame: Some(back * frame),
             turning: true,
         };
-        self.arc0 += self.rod.rest[..count].iter().sum::<f64>();
+        self.state.arc0 += self.state.rod.rest[..count].iter().sum::<f64>();
         for part in self.parts() {
             part.remove_front(count);
         }
         self.place_supports();
-        self.balance.frozen_kinetic += handed;
-        self.balance.frozen_stored += stored - self.stored();
+        self.state.balance.frozen_kinetic += handed;
+        self.state.balance.frozen_stored += stored - self.stored();
     }
 
     /// Frame of a clamp at an inner node that leaves curvature and moment there what they are.
     fn frame_to_clamp(&self, node: usize) -> Quat {
-        let rod = &self.rod;
+        let rod = &self.state.rod;
         let joint = Joint::between(&rod.frame[node - 1], &rod.frame[node]);
         let share = rod.rest[node] / (rod.rest[node - 1] + rod.rest[node]);
         let rel = crate::math::relative(
@@ -85,17 +85,17 @@ impl System {
         let Some(line) = self.contact.as_line() else {
             return;
         };
-        let spin = Spin::new(self.spindle.angle);
-        let back = turn_about_y(-self.spindle.angle);
-        let mut arc = self.arc0;
+        let spin = Spin::new(self.state.spindle.angle);
+        let back = turn_about_y(-self.state.spindle.angle);
+        let mut arc = self.state.arc0;
         for i in 0..count {
-            let clamp = match self.support[0].frame {
+            let clamp = match self.state.support[0].frame {
                 Some(frame) if i == 0 => frame,
-                _ if i == 0 => back * self.rod.frame[0],
+                _ if i == 0 => back * self.state.rod.frame[0],
                 _ => back * self.frame_to_clamp(i),
             };
-            let rod = &self.rod;
-            self.frozen_history.push(FrozenNodeRecord {
+            let rod = &self.state.rod;
+            self.state.frozen_history.push(FrozenNodeRecord {
                 place: spin.to_core(rod.x[i]),
                 frame: back * rod.frame[i],
                 clamp,
@@ -113,6 +113,6 @@ impl System {
 
     /// Unstretched lengths of the frozen edges, the last to freeze first, m.
     pub fn frozen_lengths(&self) -> impl Iterator<Item = f64> {
-        self.frozen_history.iter().rev().map(|d| d.rest)
+        self.state.frozen_history.iter().rev().map(|d| d.rest)
     }
 }

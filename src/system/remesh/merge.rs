@@ -34,9 +34,9 @@ impl System {
     /// The joined edge is as stretched as the two were on average: the chord is shorter than they
     /// were. At the nozzle the difference counts as wire that went back through it.
     pub fn merge(&mut self, i: usize) {
-        let nodes = self.rod.nodes();
+        let nodes = self.state.rod.nodes();
         debug_assert!(i > 0 && i + 1 < nodes, "an inner node");
-        let at_nozzle = i + 2 == nodes && self.feed.is_some();
+        let at_nozzle = i + 2 == nodes && self.state.feed.is_some();
         let kinetic = if at_nozzle { self.kinetic() } else { 0.0 };
         let merge = self.plan_merge(i, at_nozzle);
         for part in self.parts() {
@@ -46,21 +46,21 @@ impl System {
         let [a, b] = merge.rest;
         if at_nozzle {
             let lost = merge.joined - a - b;
-            if let Some((_, f)) = &mut self.feed {
+            if let Some(f) = &mut self.state.feed {
                 // wire and tensioner shift alike, so that the line between them pulls as before
                 f.fed += lost;
                 f.paid += lost;
             }
-            self.past.fed.iter_mut().for_each(|fed| *fed += lost);
-            self.past.paid += lost;
-            self.balance.inflow += self.kinetic() - kinetic;
+            self.state.past.fed.iter_mut().for_each(|fed| *fed += lost);
+            self.state.past.paid += lost;
+            self.state.balance.inflow += self.kinetic() - kinetic;
         } else {
-            self.joined_away += a + b - merge.joined;
+            self.state.joined_away += a + b - merge.joined;
         }
     }
 
     fn plan_merge(&self, i: usize, at_nozzle: bool) -> Merge {
-        let rod = &self.rod;
+        let rod = &self.state.rod;
         let [a, b] = [rod.rest[i - 1], rod.rest[i]];
         let length = (rod.x[i] - rod.x[i - 1]).norm() + (rod.x[i + 1] - rod.x[i]).norm();
         let chord = rod.x[i + 1] - rod.x[i - 1];
@@ -72,7 +72,7 @@ impl System {
             at_nozzle,
         };
         // the joined edge's middle is this far from that of its first part
-        let roll = if self.twist.is_carried() {
+        let roll = if self.model.twist.is_carried() {
             merge.share(0.0, Joint::between(&rod.frame[i - 1], &rod.frame[i]).twist)
         } else {
             0.0
@@ -87,8 +87,8 @@ impl System {
         let Some(line) = self.contact.as_line_mut() else {
             return;
         };
-        let q = &self.past.q[0];
-        if q.len() != self.rod.nodes() {
+        let q = &self.state.past.q[0];
+        if q.len() != self.state.rod.nodes() {
             return;
         }
         if i > 1 {

@@ -36,10 +36,10 @@ impl System {
     /// The parts that follow a change of the wire.
     fn parts(&mut self) -> [&mut dyn Remesh; 4] {
         [
-            &mut self.rod,
-            &mut self.roll,
+            &mut self.state.rod,
+            &mut self.state.roll,
             &mut self.contact,
-            &mut self.past,
+            &mut self.state.past,
         ]
     }
 }

@@ -40,7 +40,7 @@ impl System {
     /// moves with their mean velocity, which keeps the momentum. Last edge: on the chord, since
     /// the wire leaves the nozzle straight.
     pub fn split(&mut self, j: usize) {
-        let at_nozzle = j + 1 == self.rod.edges() && self.feed.is_some();
+        let at_nozzle = j + 1 == self.state.rod.edges() && self.state.feed.is_some();
         let kinetic = if at_nozzle { self.kinetic() } else { 0.0 };
         let split = self.plan_split(j, at_nozzle);
         for part in self.parts() {
@@ -48,12 +48,12 @@ impl System {
         }
         if at_nozzle {
             // the half edge at the nozzle was not in the energy balance before
-            self.balance.inflow += self.kinetic() - kinetic;
+            self.state.balance.inflow += self.kinetic() - kinetic;
         }
     }
 
     fn plan_split(&self, j: usize, at_nozzle: bool) -> Split {
-        let rod = &self.rod;
+        let rod = &self.state.rod;
         let last = rod.edges() - 1;
         let (a, b) = (rod.x[j], rod.x[j + 1]);
         let chord = b - a;
@@ -72,7 +72,7 @@ impl System {
         let velocity = if at_nozzle {
             // at the nozzle the material moves in along the wire at the feed rate
             let stretch = chord.norm() / rod.rest[j];
-            let rate = self.feed.as_ref().map_or(0.0, |(_, f)| f.rate);
+            let rate = self.state.feed.as_ref().map_or(0.0, |f| f.rate);
             let inlet = rod.v[j + 1] - chord.normalize() * (rate * stretch);
             (rod.v[j] + inlet) * 0.5
         } else {
@@ -100,7 +100,7 @@ impl System {
         Split {
             edge: j,
             place: mid,
-            place_in_core: Spin::new(self.spindle.angle).to_core(mid),
+            place_in_core: Spin::new(self.state.spindle.angle).to_core(mid),
             velocity,
             ends: [rod.v[j], rod.v[j + 1]],
             half,
@@ -112,7 +112,7 @@ impl System {
             twist,
             at_nozzle,
             grown: self.growth_of_edge(j),
-            core_before: Spin::new(self.spindle.before(self.past.h[0]).angle),
+            core_before: Spin::new(self.state.spindle.before(self.state.past.h[0]).angle),
         }
     }
 
@@ -120,10 +120,10 @@ impl System {
     ///
     /// Only the implicit method, whose edges roll by what is asked of them, spreads twist over the halves of an edge.
     fn twist_along(&self, j: usize) -> f64 {
-        if !self.contact.is_line() || !self.twist.is_carried() {
+        if !self.contact.is_line() || !self.model.twist.is_carried() {
             return 0.0;
         }
-        let rod = &self.rod;
+        let rod = &self.state.rod;
         let at = |i: usize| {
             let before = if i == 0 {
                 self.clamp_frame(0)
@@ -138,9 +138,10 @@ impl System {
 
     /// Length of edge `j` one and two instants back, over the present one; only the edge at the nozzle grows.
     fn growth_of_edge(&self, j: usize) -> [f64; 2] {
-        let rest = self.rod.rest[j];
-        match &self.feed {
-            Some((_, f)) if j + 1 == self.rod.edges() => self
+        let rest = self.state.rod.rest[j];
+        match &self.state.feed {
+            Some(f) if j + 1 == self.state.rod.edges() => self
+                .state
                 .past
                 .fed
                 .map(|fed| ((rest - (f.fed - fed)) / rest).max(0.05)),
