@@ -7,12 +7,12 @@
 use coilwind::contact::{ContactLaw, Contacts, damping_for_restitution};
 use coilwind::geometry::Surface;
 use coilwind::geometry::generate::cylinder;
-use coilwind::integrate::{RK4_LIMIT, VERLET_LIMIT, highest_frequency, rk4, verlet};
+use coilwind::integrate::{Explicit, ExplicitMethod, highest_frequency};
 use coilwind::math::V3;
 use coilwind::rod::Rod;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::system::System;
+use coilwind::system::{ContactModel, System};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -62,7 +62,7 @@ fn lying(points: usize) -> System {
         mu_kinetic: scene.friction.kinetic,
         slip_speed: scene.friction.slip_speed,
     };
-    sys.contacts = Some(Contacts::new(
+    sys.contact = ContactModel::nodal(Contacts::new(
         surface,
         law,
         scene.wire.radius(),
@@ -71,22 +71,19 @@ fn lying(points: usize) -> System {
     ));
     // a body force that balances the contact keeps it there
     let load = scene.contact.stiffness * 1e-6 / scene.wire.mass_per_length();
-    sys.loads.gravity = V3::new(-load, 0.0, 0.0);
+    sys.model.loads.gravity = V3::new(-load, 0.0, 0.0);
     sys
 }
-
-/// A time step of the given length, s.
-type Step = fn(&mut System, f64);
 
 fn steps(c: &mut Criterion) {
     let wire = scene().wire;
     let frequency = highest_frequency(&wire, SPACING, scene().contact.stiffness, true);
-    let kinds: [(&str, Step, f64); 2] = [
-        ("verlet", verlet::step, VERLET_LIMIT),
-        ("rk4", rk4::step, RK4_LIMIT),
+    let kinds: [(&str, ExplicitMethod); 2] = [
+        ("verlet", ExplicitMethod::Verlet),
+        ("rk4", ExplicitMethod::Rk4),
     ];
     for (place, make) in [("free", free as fn(usize) -> System), ("contact", lying)] {
-        for (name, step, limit) in kinds {
+        for (name, method) in kinds {
             let mut group = c.benchmark_group(format!("{name}/{place}"));
             for points in [50, 200, 800] {
                 group.throughput(Throughput::Elements(points as u64));
@@ -95,11 +92,12 @@ fn steps(c: &mut Criterion) {
                     &points,
                     |b, &points| {
                         let mut sys = make(points);
-                        let dt = 0.5 * limit / frequency;
+                        let dt = 0.5 * method.limit() / frequency;
                         sys.evaluate(Some(dt));
-                        b.iter(|| step(black_box(&mut sys), dt));
+                        let mut explicit = Explicit::new(method);
+                        b.iter(|| explicit.step(black_box(&mut sys), dt));
                         assert!(
-                            sys.rod.x.iter().all(|p| p.sum().is_finite()),
+                            sys.state.rod.x.iter().all(|p| p.sum().is_finite()),
                             "the bench must stay stable"
                         );
                     },

@@ -13,7 +13,7 @@ use coilwind::rod::Rod;
 use coilwind::rod::Twist;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::system::{Support, System};
+use coilwind::system::{ContactModel, Support, System};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -39,8 +39,8 @@ fn tight(scene: &Scene, x: &[V3]) -> System {
     let rest = x.windows(2).map(|e| (e[1] - e[0]).norm() / stretch);
     let rod = Rod::through(x, Some(rest.collect()));
     let mut sys = System::new(scene.wire.clone(), rod);
-    sys.support = [Support::pinned(x[0]), Support::pinned(x[x.len() - 1])];
-    sys.twist = Twist::Off;
+    sys.state.support = [Support::pinned(x[0]), Support::pinned(x[x.len() - 1])];
+    sys.model.twist = Twist::Off;
     sys
 }
 
@@ -89,8 +89,8 @@ fn lying(scene: &Scene, nodes: usize, frozen: usize) -> System {
         let (p, arc) = wind(around, pitch, 2.0 * r - DEPTH, i);
         line.lay(p, arc);
     }
-    sys.line = Some(line);
-    sys.arc0 = 1e3;
+    sys.contact = ContactModel::line(line);
+    sys.state.arc0 = 1e3;
     sys.refresh();
     sys
 }
@@ -138,8 +138,8 @@ fn assembly(c: &mut Criterion) {
 fn search(c: &mut Criterion) {
     for (name, cold) in [("push", false), ("look_up_and_push", true)] {
         group(c, name, &KINDS[1..], |b, mut sys| {
-            let x = std::mem::take(&mut sys.rod.x);
-            let line = sys.line.as_mut().expect("contact");
+            let x = std::mem::take(&mut sys.state.rod.x);
+            let line = sys.contact.as_line_mut().expect("contact");
             b.iter(|| {
                 if cold {
                     line.forget_surroundings();
@@ -162,11 +162,11 @@ fn search(c: &mut Criterion) {
 /// Gathering the passages near each node, and their feet.
 fn tube(c: &mut Criterion) {
     group(c, "gather", &KINDS[2..], |b, sys| {
-        let tube = &sys.line.as_ref().expect("contact").tube;
+        let tube = &sys.contact.as_line().expect("contact").tube;
         let mut starts = Vec::new();
         b.iter(|| {
             let mut count = 0;
-            for x in &sys.rod.x {
+            for x in &sys.state.rod.x {
                 tube.gather(*x, 2.3 * tube.radius(), 1e3, &mut starts);
                 count += starts.len();
             }
@@ -174,9 +174,9 @@ fn tube(c: &mut Criterion) {
         });
     });
     group(c, "foot", &KINDS[2..], |b, sys| {
-        let tube = &sys.line.as_ref().expect("contact").tube;
+        let tube = &sys.contact.as_line().expect("contact").tube;
         let mut starts = Vec::new();
-        let known: Vec<(V3, u32)> = (sys.rod.x.iter())
+        let known: Vec<(V3, u32)> = (sys.state.rod.x.iter())
             .filter_map(|x| {
                 tube.gather(*x, 2.3 * tube.radius(), 1e3, &mut starts);
                 starts.first().map(|s| (*x, *s))

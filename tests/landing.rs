@@ -9,7 +9,7 @@ use coilwind::rod::Rod;
 use coilwind::rod::Twist;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::system::System;
+use coilwind::system::{ContactModel, System};
 
 /// Speed of a wire that is drawn onto a flat, m/s.
 const SPEED: f64 = 10.0;
@@ -65,17 +65,17 @@ fn falling(scene: &Scene, onto: Onto, fall: f64) -> System {
     };
     let points: Vec<V3> = (0..NODES).map(point).collect();
     let mut sys = System::new(scene.wire.clone(), Rod::through(&points, None));
-    sys.twist = Twist::Off;
-    sys.rod.v.fill(-V3::x() * SPEED);
+    sys.model.twist = Twist::Off;
+    sys.state.rod.v.fill(-V3::x() * SPEED);
     let mut line = LineContact::new(shape, law, r, NODES);
     if onto == Onto::Wire {
         for i in 0..NODES {
             line.lay(V3::new(6e-3 + r, along(i), 0.2e-3), SPACING * i as f64);
         }
     }
-    sys.line = Some(line);
+    sys.contact = ContactModel::line(line);
     // nothing is the falling wire's own neighbourhood
-    sys.arc0 = 1.0;
+    sys.state.arc0 = 1.0;
     sys.refresh();
     sys
 }
@@ -98,14 +98,14 @@ fn land(
             Err(stopped) => return Err(stopped),
         }
     }
-    let line = sys.line.as_ref().expect("contact");
+    let line = sys.contact.as_line().expect("contact");
     let r = scene.wire.radius();
-    let through = sys.rod.x.iter().any(|x| {
+    let through = sys.state.rod.x.iter().any(|x| {
         let core = line.shape.nearness(*x).distance < 0.5 * r;
         let past = onto == Onto::Wire && x.z.abs() < 0.3e-3 && x.x < 6e-3 + 2.0 * r;
         core || past
     });
-    Ok((sys.deepest / scene.wire.diameter, through))
+    Ok((sys.state.deepest / scene.wire.diameter, through))
 }
 
 #[test]
@@ -169,10 +169,10 @@ fn the_books_know_the_blow() {
     for fixed in [2e-6, 10e-6, 27e-6, 60e-6] {
         let mut sys = falling(&scene, Onto::Flat, FALL);
         let motion = sys.kinetic();
-        sys.balance.initial = motion;
+        sys.state.balance.initial = motion;
         let mut method = Implicit::new(Scheme::Bdf2, scene.solver.tolerance, 1e-9, 0.1);
         method.fixed = Some(fixed);
-        while sys.deepest == 0.0 {
+        while sys.state.deepest == 0.0 {
             method.step(&mut sys, 1.0).expect("a step");
         }
         let unexplained = sys.energy_residual(None) / motion;
@@ -180,7 +180,7 @@ fn the_books_know_the_blow() {
             unexplained.abs() < 1e-3,
             "steps of {fixed} s: {unexplained}"
         );
-        let balance = sys.balance;
+        let balance = sys.state.balance;
         assert!(
             balance.damping > 0.1 * motion && balance.damping + balance.numerical < motion,
             "steps of {fixed} s: {balance:?}"

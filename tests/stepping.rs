@@ -141,7 +141,7 @@ fn the_start_is_in_equilibrium() {
             };
             let sim = Simulation::starting_with(&scene, inputs).expect("starts");
             let o = sim.outputs();
-            let rod = &sim.system().rod;
+            let rod = &sim.system().state.rod;
             let (clamp, nozzle) = (rod.x[0], rod.x[rod.nodes() - 1]);
             let span = nozzle - clamp;
             let near = |got: f64, exact: f64, what: &str| {

@@ -92,11 +92,11 @@ fn freeze_and_thaw(mut m: Machine) {
     sys.freeze_front(6);
     sys.freeze_front(3);
     sys.refresh();
-    assert_eq!(sys.rod.nodes() + 9, before.rod.nodes());
+    assert_eq!(sys.state.rod.nodes() + 9, before.state.rod.nodes());
     assert_eq!(sys.thaw_front(5) + sys.thaw_front(4), 9);
     sys.refresh();
     assert_eq!(sys.frozen_lengths().count(), frozen);
-    let (a, b) = (&before.rod, &sys.rod);
+    let (a, b) = (&before.state.rod, &sys.state.rod);
     assert_eq!(a.rest, b.rest);
     for i in 0..a.nodes() {
         // live wire in the middle of yielding may go on by rounding each time it is looked at
@@ -113,31 +113,38 @@ fn freeze_and_thaw(mut m: Machine) {
         if i < a.edges() {
             let turned = (a.frame[i].conjugate() * b.frame[i]).imag().norm();
             assert!(turned < 1e-12, "edge {i}: {turned:.1e}");
-            let pull = before.load.tension[i] - sys.load.tension[i];
+            let pull = before.state.load.tension[i] - sys.state.load.tension[i];
             assert!(pull.abs() < 1e-6, "edge {i}: {pull:.1e} N");
         }
         // thawed wire comes back at rest on the turning core, whatever was left of its motion; the rest goes on
         let x = b.x[i];
-        let carried = V3::new(x.z, 0.0, -x.x) * sys.spindle.speed;
+        let carried = V3::new(x.z, 0.0, -x.x) * sys.state.spindle.speed;
         let expected = if i <= 9 { carried } else { a.v[i] };
         let nozzle = i + 1 == a.nodes();
         assert!(nozzle || (b.v[i] - expected).norm() < 1e-12, "node {i}");
     }
-    for (x, y) in before.load.force.iter().zip(&sys.load.force).skip(1) {
+    for (x, y) in before
+        .state
+        .load
+        .force
+        .iter()
+        .zip(&sys.state.load.force)
+        .skip(1)
+    {
         assert!(
             (x - y).norm() < 1e-6,
             "contact and friction are as they were"
         );
     }
-    assert!((before.arc0 - sys.arc0).abs() < 1e-15);
+    assert!((before.state.arc0 - sys.state.arc0).abs() < 1e-15);
     let moment = |s: &coilwind::system::System| s.clamp_frame(0).expect("clamped");
     let turned = (moment(&before).conjugate() * moment(&sys)).imag().norm();
     assert!(turned < 1e-12, "the clamp is as it was: {turned:.1e}");
     let (x, y) = (before.energy_residual(None), sys.energy_residual(None));
     // what little the frozen wire still moved by is gone: 0.3 % of 4 uJ
     assert!((x - y).abs() < 5e-8, "{x} {y}");
-    assert!((before.balance.frozen_stored - sys.balance.frozen_stored).abs() < 1e-12);
-    assert!((before.balance.frozen_kinetic - sys.balance.frozen_kinetic).abs() < 1e-12);
+    assert!((before.state.balance.frozen_stored - sys.state.balance.frozen_stored).abs() < 1e-12);
+    assert!((before.state.balance.frozen_kinetic - sys.state.balance.frozen_kinetic).abs() < 1e-12);
 }
 
 #[test]

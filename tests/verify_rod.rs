@@ -1,6 +1,6 @@
 //! The rod against exact answers: the packed reference cases, and the modes stepped in time.
 
-use coilwind::integrate::{highest_frequency, rk4, verlet};
+use coilwind::integrate::{Explicit, ExplicitMethod, highest_frequency};
 use coilwind::lab::verify::{CaseFile, Manner, Record, VerifyOptions, run, run_file};
 use coilwind::math::V3;
 use coilwind::rod::{Rod, Section};
@@ -99,37 +99,38 @@ fn stepped(
     rolls: bool,
     axis: usize,
     start: impl Fn(f64) -> f64,
-    step: fn(&mut System, f64),
+    method: ExplicitMethod,
 ) -> f64 {
-    let n = sys.rod.edges();
+    let n = sys.state.rod.edges();
     if rolls {
         for j in 0..n {
-            sys.rod.spin[j] = start((j as f64 + 0.5) / n as f64);
+            sys.state.rod.spin[j] = start((j as f64 + 0.5) / n as f64);
         }
     } else {
         for i in 0..=n {
-            sys.rod.v[i][axis] = 1e-3 * start(i as f64 / n as f64);
+            sys.state.rod.v[i][axis] = 1e-3 * start(i as f64 / n as f64);
         }
     }
-    let dt = 1.6 / highest_frequency(&sys.section, sys.rod.rest[0], 0.0, rolls);
+    let dt = 1.6 / highest_frequency(&sys.model.section, sys.state.rod.rest[0], 0.0, rolls);
     sys.evaluate(Some(dt));
     let seen = |sys: &System| -> f64 {
         if rolls {
             (0..n)
-                .map(|j| sys.rod.spin[j] * start((j as f64 + 0.5) / n as f64))
+                .map(|j| sys.state.rod.spin[j] * start((j as f64 + 0.5) / n as f64))
                 .sum()
         } else {
             (0..=n)
-                .map(|i| sys.rod.v[i][axis] * start(i as f64 / n as f64))
+                .map(|i| sys.state.rod.v[i][axis] * start(i as f64 / n as f64))
                 .sum()
         }
     };
+    let mut explicit = Explicit::new(method);
     let (mut last, mut zeros) = (seen(&sys), Vec::new());
     for _ in 0..400_000 {
-        step(&mut sys, dt);
+        explicit.step(&mut sys, dt);
         let now = seen(&sys);
         if last * now < 0.0 {
-            zeros.push(sys.time - dt * now / (now - last));
+            zeros.push(sys.state.time - dt * now / (now - last));
             if zeros.len() == 3 {
                 return 1.0 / (zeros[2] - zeros[0]);
             }
@@ -156,7 +157,7 @@ fn held(section: &Section, length: f64, n: usize, rest: f64) -> System {
         .collect();
     let rod = Rod::through(&points, Some(vec![rest / n as f64; n]));
     let mut sys = System::new(elastic(section), rod);
-    sys.support = [Support::pinned(V3::zeros()), Support::pinned(points[n])];
+    sys.state.support = [Support::pinned(V3::zeros()), Support::pinned(points[n])];
     sys
 }
 
@@ -168,17 +169,17 @@ fn expected(file: &CaseFile, case: usize, quantity: &str) -> f64 {
 
 #[test]
 fn modes_stepped_in_time_have_the_frequency_of_theory() {
-    for step in [verlet::step, rk4::step] {
+    for method in [ExplicitMethod::Verlet, ExplicitMethod::Rk4] {
         let file = packed("axial_wave");
         let sys = held(&file.section, 0.5, 60, 0.5);
-        let f = stepped(sys, false, 0, |s| libm::sin(PI * s), step);
+        let f = stepped(sys, false, 0, |s| libm::sin(PI * s), method);
         let theory = expected(&file, 0, "fixed_fixed_f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "axial {f} {theory}");
 
         let file = packed("torsion");
         let mut sys = held(&file.section, 0.1, 60, 0.1);
-        sys.support[0].frame = Some(sys.rod.frame[0]);
-        let f = stepped(sys, true, 0, |s| libm::sin(0.5 * PI * s), step);
+        sys.state.support[0].frame = Some(sys.state.rod.frame[0]);
+        let f = stepped(sys, true, 0, |s| libm::sin(0.5 * PI * s), method);
         let theory = expected(&file, 0, "fixed_free_f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "torsion {f} {theory}");
 
@@ -186,13 +187,13 @@ fn modes_stepped_in_time_have_the_frequency_of_theory() {
         let file = packed("bending_modes");
         assert_eq!(file.cases[4].id, "pinned-pinned_T5_L50mm");
         let mut sys = held(&file.section, 0.05, 40, 0.05 / (1.0 + 5.0 / 48900.0));
-        sys.support[1].hold = [false, true, true];
-        sys.loads = Loads {
+        sys.state.support[1].hold = [false, true, true];
+        sys.model.loads = Loads {
             nodal: vec![(40, V3::x() * 5.0)],
             ..Loads::default()
         };
-        sys.twist = coilwind::rod::Twist::Off;
-        let f = stepped(sys, false, 1, |s| libm::sin(PI * s), step);
+        sys.model.twist = coilwind::rod::Twist::Off;
+        let f = stepped(sys, false, 1, |s| libm::sin(PI * s), method);
         let theory = expected(&file, 4, "f1_Hz");
         assert!((f / theory - 1.0).abs() < 5e-3, "bending {f} {theory}");
     }

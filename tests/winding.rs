@@ -30,7 +30,7 @@ fn starts_as_the_reference_scene_says() {
     let sim = Simulation::new(&fig8(&[])).expect("starts");
     let sys = sim.system();
     assert!(
-        (sys.spindle.angle - 1.464764).abs() < 1e-6,
+        (sys.state.spindle.angle - 1.464764).abs() < 1e-6,
         "core angle at the start"
     );
     assert_eq!(
@@ -38,7 +38,7 @@ fn starts_as_the_reference_scene_says() {
         0.0,
         "the spindle counts from here"
     );
-    let rod = &sys.rod;
+    let rod = &sys.state.rod;
     let (first, last) = (rod.x[0], rod.x[rod.nodes() - 1]);
     // mid-face, so that the wire leaves on the -z side; nozzle on +x
     assert!((first.norm() - 6.35e-3).abs() < 1e-12 && first.z < 0.0 && first.y == 0.0);
@@ -47,14 +47,14 @@ fn starts_as_the_reference_scene_says() {
     for j in 0..rod.edges() {
         assert!((rod.tangent(j) - t).norm() < 1e-9, "straight");
         assert!(
-            (sys.load.tension[j] - 15.0).abs() < 1e-6,
+            (sys.state.load.tension[j] - 15.0).abs() < 1e-6,
             "at the set tension"
         );
         assert_eq!(rod.stretch[j].strain, 0.0, "unyielded");
     }
     assert!(t.dot(&first).abs() < 1e-12, "tangent to the face");
     assert!(
-        sys.load.force[1..rod.nodes() - 1]
+        sys.state.load.force[1..rod.nodes() - 1]
             .iter()
             .all(|f| f.norm() < 1e-6),
         "in equilibrium"
@@ -124,7 +124,7 @@ fn live_wire_does_not_notice_a_correct_exclusion() {
             wind(&scene, 0.9)
         };
         let (with, without) = (all("true"), all("false"));
-        let frozen = |sim: &Simulation| sim.system().contacts.as_ref().map(|c| c.tube.len());
+        let frozen = |sim: &Simulation| sim.system().frozen_tube().map(|tube| tube.len());
         assert!(frozen(&with).is_some_and(|n| n > 40), "wire did freeze");
         assert_eq!(frozen(&without), Some(0));
         let (t, u) = (with.outputs(), without.outputs());
@@ -162,9 +162,8 @@ fn live_wire_holds_live_wire_off() {
     );
     assert!(
         sim.system()
-            .contacts
-            .as_ref()
-            .is_some_and(|c| c.tube.is_empty())
+            .frozen_tube()
+            .is_some_and(|tube| tube.is_empty())
     );
     let turns = sim.coil_with_live_wire().turns();
     let gap = turns[1].gap_mean.expect("the second turn has a neighbour");

@@ -18,7 +18,7 @@ pub use friction::ContactResponse;
 pub use law::{ContactLaw, ContactLoss, damping_for_restitution};
 pub(crate) use line::SavedLine;
 pub use line::{ContactRecord, Coupling, LineContact, PairConditions, SelfContact, add_couplings};
-pub(crate) use nodal::SavedContacts;
 pub use nodal::{Body, Contacts, LiveContact, NodeContact, TouchForce, Wire};
+pub(crate) use nodal::{SavedContacts, far, restore_tube};
 pub use own_wire::own_wire;
 pub use stencil::{ContactPoint, NodeWeights};

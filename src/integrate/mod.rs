@@ -2,6 +2,11 @@
 
 mod explicit;
 pub mod implicit;
+mod stepper;
 
-pub use explicit::{RK4_LIMIT, VERLET_LIMIT, highest_frequency, longest_step, rk4, verlet};
+pub use explicit::{
+    Explicit, ExplicitMethod, RK4_LIMIT, VERLET_LIMIT, highest_frequency, longest_step,
+    shift_velocities,
+};
 pub use implicit::{Implicit, OutputSensitivity, Scheme, SolverStatistics, StepError};
+pub use stepper::Stepper;

@@ -22,11 +22,11 @@ const AHEAD: f64 = 0.4;
 impl Simulation {
     /// First node from the clamp that is less than `share` of the keep length behind lift-off.
     fn near_lift_off(&self, share: f64) -> usize {
-        let mut left = share * self.policy.keep_length;
+        let mut left = share * self.run.policy.keep_length;
         let mut i = self.lift_off();
         while i > 0 && left > 0.0 {
             i -= 1;
-            left -= self.sys.rod.rest[i];
+            left -= self.sys.state.rod.rest[i];
         }
         i
     }
@@ -44,12 +44,13 @@ impl Simulation {
         if end < 4 {
             return nodes;
         }
-        let rod = &self.sys.rod;
+        let rod = &self.sys.state.rod;
         let wire = &self.scene.wire;
-        let spin = Spin::new(self.sys.spindle.angle);
+        let spin = Spin::new(self.sys.state.spindle.angle);
         let bending = (wire.ei
             / self
                 .sys
+                .state
                 .set_tension
                 .max(0.01 * self.scene.tensioner.tension))
         .sqrt();

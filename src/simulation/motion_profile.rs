@@ -1,6 +1,7 @@
 //! The scene's own spindle ramp and traverse, as functions of time.
 
 use crate::scene::Scene;
+use crate::system::{Drive, NozzleDrive};
 use std::f64::consts::TAU;
 
 /// Share of a time by which sums of pieces of it may miss it.
@@ -14,17 +15,6 @@ pub struct MotionProfile {
     end_angle: f64,
     /// nozzle travel per core angle, m/rad
     pub travel_per_angle: f64,
-}
-
-/// A stretch of time with constant acceleration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
-    /// s
-    pub duration: f64,
-    /// at its start, rad/s
-    pub speed: f64,
-    /// rad/s^2
-    pub acceleration: f64,
 }
 
 impl MotionProfile {
@@ -80,8 +70,8 @@ impl MotionProfile {
         self.time_at(self.end_angle)
     }
 
-    /// Pieces of constant acceleration between two times.
-    pub fn pieces(&self, from: f64, to: f64) -> impl Iterator<Item = Piece> + use<> {
+    /// The motion between two times, s, in intervals of constant acceleration, at set tension `tension`, N.
+    pub fn drives(&self, from: f64, to: f64, tension: f64) -> [Option<Drive>; 2] {
         let mut ramp = self.ramp_time();
         for edge in [from, to] {
             // what is left between is not a time, but the rounding of two
@@ -89,26 +79,34 @@ impl MotionProfile {
                 ramp = edge;
             }
         }
-        let mut pieces = [None; 2];
+        let mut drives = [None; 2];
+        let drive = Drive {
+            duration: 0.0,
+            speed: self.speed,
+            acceleration: 0.0,
+            nozzle: NozzleDrive::WithSpindle(self.travel_per_angle),
+            tension,
+            tension_rate: 0.0,
+        };
         if from < ramp {
             let end = to.min(ramp);
             if end > from {
-                pieces[0] = Some(Piece {
+                drives[0] = Some(Drive {
                     duration: end - from,
                     speed: self.speed(from),
                     acceleration: self.speed / self.ramp_time(),
+                    ..drive
                 });
             }
         }
         let start = from.max(ramp);
         if to > start {
-            pieces[1] = Some(Piece {
+            drives[1] = Some(Drive {
                 duration: to - start,
-                speed: self.speed,
-                acceleration: 0.0,
+                ..drive
             });
         }
-        pieces.into_iter().flatten()
+        drives
     }
 }
 
@@ -135,7 +133,8 @@ mod tests {
                     let dt = motion_profile.end() / f64::from(count);
                     let (mut time, mut whole) = (0.0, 0.0);
                     for _ in 0..count {
-                        for piece in motion_profile.pieces(time, time + dt) {
+                        let drives = motion_profile.drives(time, time + dt, 15.0);
+                        for piece in drives.into_iter().flatten() {
                             assert!(piece.duration > 1e-9 * dt, "{speed} {count} {piece:?}");
                             whole += piece.duration;
                         }

@@ -16,7 +16,7 @@ use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN};
 use crate::rod::Twist;
 use crate::rod::{Bend, Rod, Section};
 use crate::scene::{Core, Scene};
-use crate::system::{Support, System};
+use crate::system::{ContactModel, Support, System};
 use std::sync::Arc;
 
 /// Node spacing of the loop, m; half of it moves the heights of the 0.7 mm wire by 4 um.
@@ -48,6 +48,7 @@ pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>) -> Option<Profile> 
     let sys = settle(scene, surface, width_x, height_z)?;
     let radius = scene.wire.radius();
     let quarter: Vec<(f64, f64)> = sys
+        .state
         .rod
         .x
         .iter()
@@ -114,9 +115,9 @@ fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Opt
         frame: Some(frame_along(&along, None)),
         turning: false,
     };
-    sys.twist = Twist::Off;
-    sys.support[0] = mirror(points[0], [false, true, true], V3::z());
-    sys.support[1] = mirror(points[count], [true, true, false], -V3::x());
+    sys.model.twist = Twist::Off;
+    sys.state.support[0] = mirror(points[0], [false, true, true], V3::z());
+    sys.state.support[1] = mirror(points[count], [true, true, false], -V3::x());
     let law = ContactLaw {
         stiffness: scene.contact.stiffness,
         damping_ratio: 0.0,
@@ -125,7 +126,7 @@ fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Opt
         slip_speed: scene.friction.slip_speed,
     };
     let shape = core_shape(&scene.core, surface);
-    sys.line = Some(LineContact::new(shape, law, r, sys.rod.nodes()));
+    sys.contact = ContactModel::line(LineContact::new(shape, law, r, sys.state.rod.nodes()));
     sys.refresh();
     let mut method = Implicit::new(Scheme::Bdf2, TOLERANCE, 1e-9, 1.0);
     // the loop is drawn tight by taking wire out evenly; a loose one gives way, a tight one stretches
@@ -135,9 +136,9 @@ fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Opt
     for _ in 0..MOST_DRAWS {
         // loading is monotonic: the law is a nonlinear elastic one from the virgin wire, not one that
         // remembers how wide the loop once was
-        sys.rod.bend.fill(Bend::default());
+        sys.state.rod.bend.fill(Bend::default());
         method.settle(&mut sys).ok()?;
-        let pull = sys.load.tension.iter().sum::<f64>() / count as f64;
+        let pull = sys.state.load.tension.iter().sum::<f64>() / count as f64;
         let missing = tension - pull;
         if missing.abs() < TENSION * tension {
             return Some(sys);
@@ -150,7 +151,7 @@ fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Opt
         before = Some((drawn, pull));
         let draw = (missing / stiffness).clamp(-DRAW, DRAW);
         drawn += draw;
-        sys.rod.rest.iter_mut().for_each(|l| *l *= 1.0 - draw);
+        sys.state.rod.rest.iter_mut().for_each(|l| *l *= 1.0 - draw);
     }
     None
 }

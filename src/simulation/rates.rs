@@ -16,10 +16,10 @@ pub(super) struct Instant {
 impl Instant {
     pub(super) fn of(sim: &Simulation) -> Self {
         Self {
-            time: sim.sys.time,
+            time: sim.sys.state.time,
             tension: sim.wire_tension(),
-            torque: sim.sys.torque_on_core,
-            feed_speed: sim.sys.feed.map_or(0.0, |(_, f)| f.rate),
+            torque: sim.sys.state.torque_on_core,
+            feed_speed: sim.sys.state.feed.map_or(0.0, |f| f.rate),
         }
     }
 }
@@ -27,24 +27,24 @@ impl Instant {
 impl Simulation {
     /// Slopes of the outputs at the communication point; `before` are those of the one before.
     pub(super) fn update_rates(&mut self, before: &Outputs, dt: f64) {
-        let step = self.sys.time - self.instant.time;
-        let (now, old) = (Instant::of(self), self.instant);
-        let o = self.outputs;
-        self.rates = Outputs {
-            spindle_angle: self.sys.spindle.speed,
+        let step = self.sys.state.time - self.run.instant.time;
+        let (now, old) = (Instant::of(self), self.run.instant);
+        let o = self.run.outputs;
+        self.run.rates = Outputs {
+            spindle_angle: self.sys.state.spindle.speed,
             ..Outputs::default()
         };
-        if self.broken || self.is_quiescent() || step <= 0.0 {
+        if self.run.broken || self.is_quiescent() || step <= 0.0 {
             return;
         }
-        self.rates.wire_tension = (now.tension - old.tension) / step;
-        self.rates.spindle_torque = (now.torque - old.torque) / step;
-        self.rates.feed_speed = (now.feed_speed - old.feed_speed) / step;
-        self.rates.fed_length = o.feed_speed;
-        self.rates.turns_wound = (o.turns_wound - before.turns_wound) / dt;
-        self.rates.free_length = (o.free_length - before.free_length) / dt;
-        self.rates.layon_position = (o.layon_position - before.layon_position) / dt;
-        self.rates.layon_angle = (o.layon_angle - before.layon_angle) / dt;
+        self.run.rates.wire_tension = (now.tension - old.tension) / step;
+        self.run.rates.spindle_torque = (now.torque - old.torque) / step;
+        self.run.rates.feed_speed = (now.feed_speed - old.feed_speed) / step;
+        self.run.rates.fed_length = o.feed_speed;
+        self.run.rates.turns_wound = (o.turns_wound - before.turns_wound) / dt;
+        self.run.rates.free_length = (o.free_length - before.free_length) / dt;
+        self.run.rates.layon_position = (o.layon_position - before.layon_position) / dt;
+        self.run.rates.layon_angle = (o.layon_angle - before.layon_angle) / dt;
     }
 
     /// First derivatives of the outputs with respect to time at the last communication point, per s.
@@ -54,6 +54,6 @@ impl Simulation {
     /// on it (`free_length`, `layon_*`, `turns_wound`) by its change over the communication step. Everything else
     /// changes only when wire comes to rest, and has 0.
     pub fn output_rates(&self) -> &Outputs {
-        &self.rates
+        &self.run.rates
     }
 }

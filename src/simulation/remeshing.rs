@@ -27,11 +27,11 @@ const RUNAWAY: f64 = 2.0;
 
 impl Simulation {
     pub(super) fn remesh(&mut self, dt: f64) -> Result<(), SimError> {
-        let look = self.implicit.is_some() || self.steps.is_multiple_of(REMESH_STEPS);
+        let look = self.stepper.is_implicit() || self.run.steps.is_multiple_of(REMESH_STEPS);
         if look {
             self.check_health()?;
         }
-        if self.implicit.is_some() {
+        if self.stepper.is_implicit() {
             self.take_back();
         }
         let insert = self.nozzle_edge_is_long();
@@ -40,10 +40,11 @@ impl Simulation {
         } else {
             Vec::new()
         };
-        let s = self.sys.spindle;
+        let s = self.sys.state.spindle;
         let due = self
+            .run
             .watch
-            .due(&self.policy, s.angle, s.speed, self.sys.time);
+            .due(&self.run.policy, s.angle, s.speed, self.sys.state.time);
         let freeze = if due { self.nodes_to_freeze() } else { 0 };
         let coarsen = if due && self.scene.solver.features.coarse_settled {
             self.nodes_to_coarsen()
@@ -56,7 +57,7 @@ impl Simulation {
         self.shift_velocities(0.5 * dt);
         let unexplained = self.sys.energy_residual(None);
         if insert {
-            let last = self.sys.rod.edges() - 1;
+            let last = self.sys.state.rod.edges() - 1;
             self.split(last);
         }
         // from the nozzle down, so that the numbers of the others stay
@@ -73,27 +74,27 @@ impl Simulation {
         }
         // bring the forces in line with the new arrays; what the change itself cost is the method's
         self.sys.refresh();
-        self.sys.balance.numerical += self.sys.energy_residual(None) - unexplained;
+        self.sys.state.balance.numerical += self.sys.energy_residual(None) - unexplained;
         self.shift_velocities(-0.5 * dt);
         Ok(())
     }
 
     /// With the staggered step, brings velocities to the time of the positions and back.
     fn shift_velocities(&mut self, half: f64) {
-        if self.staggered() {
-            crate::integrate::verlet::shift_velocities(&mut self.sys, half);
+        if self.stepper.is_staggered() {
+            crate::integrate::shift_velocities(&mut self.sys, half);
         }
     }
 
     fn split(&mut self, edge: usize) {
         self.sys.split(edge);
-        self.watch.insert(edge + 1);
+        self.run.watch.insert(edge + 1);
     }
 
     /// The last edge has grown to two spacings: time for a new node halfway.
     fn nozzle_edge_is_long(&self) -> bool {
-        let last = self.sys.rod.edges() - 1;
-        self.sys.rod.rest[last] >= 2.0 * self.scene.solver.spacing_free
+        let last = self.sys.state.rod.edges() - 1;
+        self.sys.state.rod.rest[last] >= 2.0 * self.scene.solver.spacing_free
     }
 
     /// Edges of the free span that came near the core and are too long for it, ascending.
@@ -102,11 +103,11 @@ impl Simulation {
         if solver.spacing_free < 1.5 * solver.spacing_near {
             return Vec::new();
         }
-        let spin = Spin::new(self.sys.spindle.angle);
+        let spin = Spin::new(self.sys.state.spindle.angle);
         let reach = solver.refine_distance + self.scene.wire.radius();
-        let rod = &self.sys.rod;
+        let rod = &self.sys.state.rod;
         // the edge at the nozzle keeps its length for the feed
-        let first = if self.implicit.is_some() {
+        let first = if self.stepper.is_implicit() {
             self.first_fine_edge()
         } else {
             0
@@ -125,22 +126,22 @@ impl Simulation {
 
     /// How many nodes from the clamp are at rest, settled long enough and in place (eq. 8, 9).
     fn nodes_to_freeze(&mut self) -> usize {
-        let angle = self.sys.spindle.angle;
+        let angle = self.sys.state.spindle.angle;
         let spin = Spin::new(angle);
         let lift = self.lift_off();
         self.behind.clear();
         self.behind.resize(lift + 1, 0.0);
-        let x = &self.sys.rod.x;
+        let x = &self.sys.state.rod.x;
         let mut last = polar_angle(spin.to_core(x[lift]));
         for i in (0..lift).rev() {
             let polar = polar_angle(spin.to_core(x[i]));
             self.behind[i] = self.behind[i + 1] + wrap_to_pi(last - polar).abs();
             last = polar;
         }
-        let still = self.watch.look(
-            &self.policy,
+        let still = self.run.watch.look(
+            &self.run.policy,
             angle,
-            self.sys.time,
+            self.sys.state.time,
             |i| spin.to_core(x[i]),
             |i| self.behind.get(i).copied().unwrap_or(0.0),
         );
@@ -150,9 +151,9 @@ impl Simulation {
         }
         // the last one that is at rest becomes the clamp
         let count = still.saturating_sub(1).min(self.behind_lift_off());
-        let reach = 2.0 * self.scene.wire.radius() + self.policy.margin;
+        let reach = 2.0 * self.scene.wire.radius() + self.run.policy.margin;
         (0..count)
-            .find(|&i| self.distance_to_coil(spin.to_core(self.sys.rod.x[i + 1])) > reach)
+            .find(|&i| self.distance_to_coil(spin.to_core(self.sys.state.rod.x[i + 1])) > reach)
             .unwrap_or(count)
     }
 
@@ -161,7 +162,7 @@ impl Simulation {
     fn watch_live_wire(&mut self) {
         // wire too stiff for its tension stands off and touches nothing: there all of a turn counts
         let turn = TAU;
-        let whole = self.sys.rod.nodes() - 1;
+        let whole = self.sys.state.rod.nodes() - 1;
         let watched = match self.scene.solver.features.live_contact {
             LiveContact::Always => true,
             LiveContact::WhenHalfATurnIsLive => {
@@ -171,21 +172,14 @@ impl Simulation {
             LiveContact::Never => false,
         };
         if watched {
-            match &mut self.sys.line {
-                Some(line) => {
-                    line.watch_live_wire();
-                }
-                None => {
-                    self.sys.live.get_or_insert_default();
-                }
-            }
+            self.sys.contact.watch_live_wire();
         }
     }
 
     /// Polar angle that the live wire covers from the clamp to a node, rad.
     fn angle_of_wire(&self, end: usize) -> f64 {
-        let spin = Spin::new(self.sys.spindle.angle);
-        let x = &self.sys.rod.x;
+        let spin = Spin::new(self.sys.state.spindle.angle);
+        let x = &self.sys.state.rod.x;
         let mut last = (0.0, polar_angle(spin.to_core(x[0])));
         for x in &x[..=end] {
             let polar = polar_angle(spin.to_core(*x));
@@ -196,53 +190,43 @@ impl Simulation {
 
     /// The first `count` nodes become fixed geometry.
     fn freeze(&mut self, count: usize) {
-        let angle = self.sys.spindle.angle;
+        let angle = self.sys.state.spindle.angle;
         let spin = Spin::new(angle);
         let back = turn_about_y(-angle);
-        let mut arc = self.sys.arc0;
-        if let Some(l) = &mut self.sys.line {
+        let mut arc = self.sys.state.arc0;
+        if let Some(l) = self.sys.contact.as_line_mut() {
             l.go_on(None);
         }
         for i in 0..count {
             let node = FrozenNode {
-                point: spin.to_core(self.sys.rod.x[i]),
-                frame: back * self.sys.rod.frame[i],
+                point: spin.to_core(self.sys.state.rod.x[i]),
+                frame: back * self.sys.state.rod.frame[i],
                 arc,
-                tension: self.sys.load.tension[i],
-                plastic_strain: self.sys.rod.stretch[i].strain,
+                tension: self.sys.state.load.tension[i],
+                plastic_strain: self.sys.state.rod.stretch[i].strain,
             };
             let centre = spin.to_core(self.sys.centre(i));
             let settled = self.settled(centre, arc, node.plastic_strain);
             if i > 0 {
-                self.rest_depth = self.rest_depth.max(self.sys.depth(i));
+                self.run.rest_depth = self.run.rest_depth.max(self.sys.depth(i));
             }
-            if let Some(l) = &mut self.sys.line {
-                l.lay(node.point, node.arc);
-            }
-            if let Some(c) = &mut self.sys.contacts {
-                c.tube.push(node);
-            }
+            self.sys.lay_frozen(node);
             let (turns, defects) = (self.coil.turns_settled(), self.coil.defect_count());
             self.coil.settle(settled);
             self.tell(turns, defects);
-            arc += self.sys.rod.rest[i];
+            arc += self.sys.state.rod.rest[i];
         }
         self.sys.freeze_front(count);
-        self.watch.remove_front(count);
-        if let Some(c) = &mut self.sys.contacts {
-            c.forget_surroundings();
-        }
+        self.run.watch.remove_front(count);
         self.join_frozen_to_live();
-        if let Some(l) = &mut self.sys.line {
-            l.forget_near(l.tube.len() - count);
-        }
+        self.sys.notice_laid(count);
     }
 
     /// Wire that comes off the core again: frozen wire thaws near lift-off, and what goes back into the
     /// nozzle takes its nodes along.
     fn take_back(&mut self) {
         let thaw = self.nodes_to_thaw();
-        let returning = self.sys.feed.is_some_and(|(_, f)| f.rate < 0.0);
+        let returning = self.sys.state.feed.is_some_and(|f| f.rate < 0.0);
         let join = if returning {
             self.nodes_to_join()
         } else {
@@ -257,23 +241,23 @@ impl Simulation {
             self.join(i);
         }
         while self.nozzle_edge_is_short() {
-            self.join(self.sys.rod.nodes() - 2);
+            self.join(self.sys.state.rod.nodes() - 2);
         }
         if thaw > 0 {
             self.thaw(thaw);
         }
         self.sys.refresh();
-        self.sys.balance.numerical += self.sys.energy_residual(None) - unexplained;
+        self.sys.state.balance.numerical += self.sys.energy_residual(None) - unexplained;
     }
 
     fn join(&mut self, node: usize) {
         self.sys.merge(node);
-        self.watch.remove(node);
+        self.run.watch.remove(node);
     }
 
     /// The edge at the nozzle has shrunk below half a spacing, and there is wire to join it to.
     fn nozzle_edge_is_short(&self) -> bool {
-        let rod = &self.sys.rod;
+        let rod = &self.sys.state.rod;
         rod.nodes() > FEWEST_NODES
             && rod.rest[rod.edges() - 1] < 0.5 * self.scene.solver.spacing_free
     }
@@ -281,10 +265,10 @@ impl Simulation {
     /// Nodes of the free span that lie close together far from the core, no two of them neighbours.
     fn nodes_to_join(&self) -> Vec<usize> {
         let solver = self.scene.solver;
-        let spin = Spin::new(self.sys.spindle.angle);
+        let spin = Spin::new(self.sys.state.spindle.angle);
         // twice the distance at which edges are split, or it would go to and fro
         let reach = 2.0 * solver.refine_distance + self.scene.wire.radius();
-        let rod = &self.sys.rod;
+        let rod = &self.sys.state.rod;
         let mut nodes = Vec::new();
         let mut i = self.lift_off() + 2;
         while i + 2 < rod.nodes() && rod.nodes() - nodes.len() > FEWEST_NODES {
@@ -305,11 +289,11 @@ impl Simulation {
     /// How many frozen nodes come back: once less than half of the keep length is left live behind
     /// lift-off, as many as restore it. Half, so that wire does not freeze and thaw in turns.
     fn nodes_to_thaw(&self) -> usize {
-        let left: f64 = self.sys.rod.rest[..self.lift_off()].iter().sum();
-        if left >= 0.5 * self.policy.keep_length {
+        let left: f64 = self.sys.state.rod.rest[..self.lift_off()].iter().sum();
+        if left >= 0.5 * self.run.policy.keep_length {
             return 0;
         }
-        let mut missing = self.policy.keep_length - left;
+        let mut missing = self.run.policy.keep_length - left;
         self.sys
             .frozen_lengths()
             .take_while(|length| {
@@ -322,35 +306,28 @@ impl Simulation {
 
     /// The curve of frozen wire runs on to the middle of the first live edge, where that of live wire begins.
     fn join_frozen_to_live(&mut self) {
-        let spin = Spin::new(self.sys.spindle.angle);
-        let (rod, arc) = (&self.sys.rod, self.sys.arc0);
+        let spin = Spin::new(self.sys.state.spindle.angle);
+        let (rod, arc) = (&self.sys.state.rod, self.sys.state.arc0);
         let ahead = [
             (spin.to_core(rod.x[0]), arc),
             (spin.to_core(rod.x[1]), arc + rod.rest[0]),
         ];
-        if let Some(l) = &mut self.sys.line {
+        if let Some(l) = self.sys.contact.as_line_mut() {
             l.go_on(Some(ahead));
         }
     }
 
     /// The last `count` frozen nodes come back to life.
     fn thaw(&mut self, count: usize) {
-        if let Some(l) = &mut self.sys.line {
+        if let Some(l) = self.sys.contact.as_line_mut() {
             l.go_on(None);
         }
         let count = self.sys.thaw_front(count);
-        for _ in 0..count {
-            if let Some(l) = &mut self.sys.line {
-                l.tube.pop();
-            }
-            if let Some(c) = &mut self.sys.contacts {
-                c.tube.pop();
-            }
-        }
+        self.sys.take_up_frozen(count);
         self.join_frozen_to_live();
         self.coil.unsettle(count);
-        self.watch.insert_front(count);
-        if let Some(l) = &mut self.sys.line {
+        self.run.watch.insert_front(count);
+        if let Some(l) = self.sys.contact.as_line_mut() {
             l.forget_surroundings();
         }
     }
@@ -386,25 +363,33 @@ impl Simulation {
 
     /// How many nodes from the clamp lie at least the keep length behind lift-off.
     fn behind_lift_off(&self) -> usize {
-        let mut left = self.policy.keep_length;
+        let mut left = self.run.policy.keep_length;
         let mut i = self.lift_off();
         while i > 0 && left > 0.0 {
             i -= 1;
-            left -= self.sys.rod.rest[i];
+            left -= self.sys.state.rod.rest[i];
         }
         if left > 0.0 { 0 } else { i }
     }
 
     /// Values must be finite, the wire below its strength and where it was sent.
     fn check_health(&mut self) -> Result<(), SimError> {
-        for (i, (x, v)) in self.sys.rod.x.iter().zip(&self.sys.rod.v).enumerate() {
+        for (i, (x, v)) in self
+            .sys
+            .state
+            .rod
+            .x
+            .iter()
+            .zip(&self.sys.state.rod.v)
+            .enumerate()
+        {
             if !(x.sum() + v.sum()).is_finite() {
                 return Err(SimError {
-                    time: self.sys.time,
+                    time: self.sys.state.time,
                     node: Some(i),
                     reason: format!(
                         "a node's position or velocity is not finite after {} steps; the step {:.3e} s is likely too long for the contact stiffness",
-                        self.steps, self.last_step
+                        self.run.steps, self.run.last_step
                     ),
                 });
             }
@@ -413,6 +398,7 @@ impl Simulation {
         let strength = self.scene.wire.strength;
         if let Some((j, t)) = self
             .sys
+            .state
             .load
             .tension
             .iter()
@@ -422,7 +408,7 @@ impl Simulation {
             let text = format!(
                 "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N"
             );
-            self.broken = true;
+            self.run.broken = true;
             self.report(EventKind::Break, text);
         } else if let Some((i, radius)) = self.kink() {
             let text = format!(
@@ -430,7 +416,7 @@ impl Simulation {
                 1e3 * radius,
                 1e3 * self.scene.wire.diameter
             );
-            self.broken = true;
+            self.run.broken = true;
             self.report(EventKind::Break, text);
         }
         Ok(())
@@ -442,24 +428,24 @@ impl Simulation {
     /// something has made it faster than its tension stops it, such as a coil of springy wire that opens or a loop
     /// whirling round without tension, metres come in, on the way to nowhere and ever dearer to compute.
     fn check_feed(&mut self) -> Result<(), SimError> {
-        let Some((_, feed)) = &self.sys.feed else {
+        let Some(feed) = &self.sys.state.feed else {
             return Ok(());
         };
-        let angle = (self.sys.spindle.angle - self.angle0).abs();
-        self.farthest = self.farthest.max(angle);
-        let rod = &self.sys.rod;
-        let way = (self.sys.support[1].point - rod.x[0]).norm();
+        let angle = (self.sys.state.spindle.angle - self.run.angle0).abs();
+        self.run.farthest = self.run.farthest.max(angle);
+        let rod = &self.sys.state.rod;
+        let way = (self.sys.state.support[1].point - rod.x[0]).norm();
         // a core cannot be larger than the nozzle's circle
-        let most = way + (self.farthest + TAU) * self.scene.nozzle.distance;
+        let most = way + (self.run.farthest + TAU) * self.scene.nozzle.distance;
         if feed.fed <= RUNAWAY * most {
             return Ok(());
         }
         Err(SimError {
-            time: self.sys.time,
+            time: self.sys.state.time,
             node: Some(rod.nodes() - 1),
             reason: format!(
                 "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up",
-                feed.rate, self.sys.set_tension, feed.fed
+                feed.rate, self.sys.state.set_tension, feed.fed
             ),
         })
     }
@@ -470,7 +456,7 @@ impl Simulation {
     /// their neighbours, so half of that is allowed. At half a turn the bend of a node has no direction any more and
     /// changes sides, with the work of a whole turn.
     fn kink(&self) -> Option<(usize, f64)> {
-        let (rod, radius) = (&self.sys.rod, 0.5 * self.scene.wire.diameter);
+        let (rod, radius) = (&self.sys.state.rod, 0.5 * self.scene.wire.diameter);
         (1..rod.edges()).find_map(|i| {
             let (a, b) = (rod.x[i] - rod.x[i - 1], rod.x[i + 1] - rod.x[i]);
             let own = rod.voronoi(i);

@@ -1,7 +1,8 @@
 //! Derivatives of the outputs by the inputs, for importers that solve loops or linearise.
 
-use super::{SimError, Simulation, check_finite};
-use crate::integrate::OutputSensitivity;
+use super::door::check_finite;
+use super::{SimError, Simulation};
+use crate::integrate::{OutputSensitivity, Stepper};
 use crate::math::V3;
 use crate::math::{polar_angle, wrap_to_pi};
 use crate::signals::{Inputs, Outputs};
@@ -19,21 +20,21 @@ impl Simulation {
     /// over its tangent; the run stays as it is. Measures of settled wire change only when wire comes to rest and have 0;
     /// extremes of the tension are none of the end of a step and have 0 too. Only the implicit method has a tangent.
     pub fn sensitivities(&mut self, inputs: Inputs) -> Result<[Outputs; 3], SimError> {
-        check_finite(&inputs, self.time)?;
+        check_finite(&inputs, self.run.time)?;
         let lift = self.lift_off();
-        let Some(method) = &mut self.implicit else {
+        let Stepper::Implicit(method) = &mut self.stepper else {
             return Err(SimError {
-                time: self.time,
+                time: self.run.time,
                 node: None,
                 reason: "only solver.integrator = implicit has derivatives by the inputs"
                     .to_owned(),
             });
         };
         let mut h = method.fixed.unwrap_or(method.next);
-        if self.last_span > 0.0 {
-            h = h.min(self.last_span);
+        if self.run.last_span > 0.0 {
+            h = h.min(self.run.last_span);
         }
-        if self.broken {
+        if self.run.broken {
             let turning = Outputs {
                 spindle_angle: h,
                 ..Outputs::default()
@@ -41,14 +42,14 @@ impl Simulation {
             return Ok([turning, Outputs::default(), Outputs::default()]);
         }
         let sys = &mut self.sys;
-        let kept = (sys.spindle, sys.support, sys.set_tension);
-        sys.spindle.speed = inputs.spindle_speed;
-        sys.support[1].point.y = inputs.nozzle_position;
-        sys.set_tension = inputs.tension_setpoint;
+        let kept = (sys.state.spindle, sys.state.support, sys.state.set_tension);
+        sys.state.spindle.speed = inputs.spindle_speed;
+        sys.state.support[1].point.y = inputs.nozzle_position;
+        sys.state.set_tension = inputs.tension_setpoint;
         let tangent = method.tangent(sys, h, lift);
-        (sys.spindle, sys.support, sys.set_tension) = kept;
+        (sys.state.spindle, sys.state.support, sys.state.set_tension) = kept;
         let (there, slopes) = tangent.map_err(|e| SimError {
-            time: self.time,
+            time: self.run.time,
             node: Some(e.node),
             reason: e.to_string(),
         })?;

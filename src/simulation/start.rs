@@ -1,10 +1,17 @@
 //! The state at the start: wire clamped at mid-face, straight to the nozzle, at the set tension.
 
-use super::SimError;
+use super::door::check_finite;
+use super::freezing::{FreezePolicy, Watch};
+use super::rates::Instant;
+use super::run_state::RunState;
+use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec};
 use crate::geometry::generate::{cylinder, rounded_box, segments_for_sagitta};
-use crate::geometry::{Shape, Surface, TriMesh};
+use crate::geometry::{Shape, Surface, TriMesh, Tube};
+use crate::integrate::{
+    Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency, longest_step,
+};
 use crate::math::frame_along;
 use crate::math::polar_angle;
 use crate::math::turn_about_y;
@@ -12,8 +19,8 @@ use crate::math::{Spin, V3};
 use crate::measure::{Coil, CoilSpec};
 use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene};
-use crate::signals::Inputs;
-use crate::system::{Spindle, Support, System};
+use crate::signals::{Inputs, Outputs};
+use crate::system::{ContactModel, FrozenWire, Spindle, Support, System};
 use std::sync::Arc;
 
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
@@ -104,7 +111,7 @@ fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
 }
 
 /// Builds the system at rest, an empty coil and the core angle at the start.
-pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
+fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
     let surface = Arc::new(core_surface(&scene.core)?);
     let mut section = scene.wire.clone();
     if !scene.solver.features.inertia {
@@ -136,20 +143,20 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
     let direction = (nozzle - clamp).normalize();
     let frame = turn_about_y(-angle0) * frame_along(&direction, Some(&rod.frame[0]));
     let mut sys = System::new(section.clone(), rod);
-    sys.spindle = Spindle {
+    sys.state.spindle = Spindle {
         angle: angle0,
         speed: 0.0,
         acceleration: 0.0,
     };
-    sys.support[0] = Support {
+    sys.state.support[0] = Support {
         hold: [true; 3],
         point: clamp_core,
         velocity: V3::zeros(),
         frame: Some(frame),
         turning: true,
     };
-    sys.support[1] = Support::pinned(nozzle);
-    sys.set_tension = tension;
+    sys.state.support[1] = Support::pinned(nozzle);
+    sys.state.set_tension = tension;
     let t = scene.tensioner;
     let line_stiffness = if t.line_length > 0.0 {
         section.ea / t.line_length
@@ -166,7 +173,7 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
         },
         exit_friction: scene.nozzle.exit_friction,
     };
-    sys.feed = Some((spec, Feed::at_rest(&spec, tension)));
+    sys.set_feed(spec, Feed::at_rest(&spec, tension));
     let law = ContactLaw {
         stiffness: scene.contact.stiffness,
         damping_ratio: damping_for_restitution(scene.contact.restitution),
@@ -174,18 +181,19 @@ pub(super) fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64)
         mu_kinetic: scene.friction.kinetic,
         slip_speed: scene.friction.slip_speed,
     };
-    sys.contacts = Some(Contacts::new(
-        surface.clone(),
-        law,
-        radius,
-        section.diameter,
-        sys.rod.nodes(),
-    ));
+    let nodes = sys.state.rod.nodes();
     if scene.solver.integrator == Integrator::Implicit {
         let shape = core_shape(&scene.core, &surface);
-        sys.line = Some(LineContact::new(shape, law, radius, sys.rod.nodes()));
+        sys.contact = ContactModel::line(LineContact::new(shape, law, radius, nodes));
+        sys.frozen_wire = Some(FrozenWire {
+            surface: surface.clone(),
+            tube: Tube::new(0.5 * section.diameter),
+        });
+    } else {
+        let (core, diameter) = (surface.clone(), section.diameter);
+        sys.contact = ContactModel::nodal(Contacts::new(core, law, radius, diameter, nodes));
     }
-    sys.twist = scene.solver.twist;
+    sys.model.twist = scene.solver.twist;
     let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,
@@ -245,4 +253,120 @@ fn line_of_nodes(scene: &Scene, surface: &Surface, clamp: V3, nozzle: V3, angle:
     }
     points.push(nozzle);
     points
+}
+
+impl Simulation {
+    /// Wire clamped to the core and straight to the nozzle at the set tension, everything at rest.
+    pub fn new(scene: &Scene) -> Result<Self, SimError> {
+        let inputs = Inputs {
+            spindle_speed: 0.0,
+            nozzle_position: scene.nozzle.y_start + scene.traverse.lead,
+            tension_setpoint: scene.tensioner.tension,
+        };
+        Self::starting_with(scene, inputs)
+    }
+
+    /// The same with these inputs at the start.
+    pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
+        check_finite(&inputs, 0.0)?;
+        let (mut sys, coil, angle0) = wire(scene, &inputs)?;
+        let (stepper, last_step) = stepper_for(scene)?;
+        sys.refresh();
+        sys.state.balance.initial = sys.stored() + sys.kinetic();
+        let policy = FreezePolicy {
+            window: scene.freeze.window,
+            time: scene.freeze.time,
+            displacement: scene.freeze.creep * scene.freeze.window,
+            keep_length: if scene.freeze.keep_length > 0.0 {
+                scene.freeze.keep_length
+            } else {
+                1.75 * (scene.wire.ei / inputs.tension_setpoint.max(0.01 * scene.tensioner.tension))
+                    .sqrt()
+            },
+            patience: scene.freeze.patience * std::f64::consts::TAU,
+            margin: scene.freeze.margin,
+        };
+        let run = RunState {
+            watch: Watch::new(sys.state.rod.nodes(), sys.state.spindle.angle),
+            policy,
+            angle0,
+            last_step,
+            last_span: 0.0,
+            time: 0.0,
+            time_lost: 0.0,
+            owed: 0.0,
+            steps: 0,
+            work: 0,
+            outputs: Outputs::default(),
+            rates: Outputs::default(),
+            instant: Instant::default(),
+            events: Vec::new(),
+            rest_depth: 0.0,
+            broken: false,
+            was_slack: false,
+            quiet: 0.0,
+            farthest: 0.0,
+            pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
+        };
+        let mut sim = Self {
+            scene: scene.clone(),
+            motion_profile: MotionProfile::new(scene),
+            sys,
+            coil,
+            stepper,
+            run,
+            behind: Vec::new(),
+            most_work: u64::MAX,
+        };
+        sim.sys.state.spindle.speed = inputs.spindle_speed;
+        sim.sys.place_supports();
+        sim.reset_extremes();
+        sim.update_outputs();
+        Ok(sim)
+    }
+
+    /// Starts over with other inputs; only before the first step.
+    pub fn set_start(&mut self, inputs: Inputs) -> Result<(), SimError> {
+        *self = Self::starting_with(&self.scene, inputs)?;
+        Ok(())
+    }
+}
+
+/// The method that a scene asks for, and the longest step of an explicit one on its wire, s.
+fn stepper_for(scene: &Scene) -> Result<(Stepper, f64), SimError> {
+    let solver = scene.solver;
+    let method = match solver.integrator {
+        Integrator::Rk4 => Some(ExplicitMethod::Rk4),
+        Integrator::Verlet => Some(ExplicitMethod::Verlet),
+        Integrator::Implicit => None,
+    };
+    let spacing = solver.spacing_near.min(solver.spacing_free);
+    let contact = scene.contact.stiffness;
+    let twist = solver.twist.is_carried();
+    let frequency = highest_frequency(&scene.wire, spacing, contact, twist);
+    let damping = damping_for_restitution(scene.contact.restitution);
+    let limit = method.unwrap_or(ExplicitMethod::Verlet).limit();
+    let stable = longest_step(limit, frequency, damping, contact, &scene.wire);
+    let longest = if solver.step > 0.0 {
+        solver.step
+    } else {
+        stable * solver.step_share
+    };
+    let Some(method) = method else {
+        // a step of a nanosecond resolves any contact: what fails there fails for another reason; a tenth
+        // of a second is longer than any motion of a wire takes
+        let mut method = Implicit::new(Scheme::Bdf2, solver.tolerance, 1e-9, 0.1);
+        method.fixed = (solver.step > 0.0).then_some(solver.step);
+        return Ok((Stepper::Implicit(Box::new(method)), longest));
+    };
+    if longest > stable {
+        return Err(SimError::setup(format!(
+            "solver.step = {:.4e} s is too long for the explicit method: the limit of this wire at {} mm spacing is {:.4e} s",
+            solver.step,
+            spacing * 1e3,
+            stable
+        )));
+    }
+    let method = Explicit::new(method);
+    Ok((Stepper::Explicit { method, longest }, longest))
 }

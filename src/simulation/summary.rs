@@ -94,7 +94,7 @@ pub struct PenetrationSummary {
 impl Simulation {
     /// Energy balance up to now.
     pub fn energy(&self) -> EnergySummary {
-        let b = self.sys.balance;
+        let b = self.sys.state.balance;
         let plastic: f64 = b.plastic.iter().sum();
         let dissipated = plastic + b.friction + b.damping;
         let scale = if dissipated > 0.0 {
@@ -114,8 +114,8 @@ impl Simulation {
             friction_J: b.friction,
             damping_J: b.damping,
             numerical_J: b.numerical,
-            residual_J: self.outputs.energy_residual,
-            residual_over_dissipated: self.outputs.energy_residual * scale,
+            residual_J: self.run.outputs.energy_residual,
+            residual_over_dissipated: self.run.outputs.energy_residual * scale,
             numerical_over_dissipated: b.numerical * scale,
         }
     }
@@ -139,21 +139,21 @@ impl Simulation {
                 self.scene.solver.spacing_near,
                 self.scene.solver.spacing_free,
             ],
-            step_s: self.last_step,
-            steps: self.steps,
-            simulated_s: self.time,
-            speed_rad_per_s: self.sys.spindle.speed,
-            spindle_angle_rad: self.outputs.spindle_angle,
-            turns_wound: self.outputs.turns_wound,
-            turns_settled: self.outputs.turns_settled,
-            fed_length_m: self.outputs.fed_length,
+            step_s: self.run.last_step,
+            steps: self.run.steps,
+            simulated_s: self.run.time,
+            speed_rad_per_s: self.sys.state.spindle.speed,
+            spindle_angle_rad: self.run.outputs.spindle_angle,
+            turns_wound: self.run.outputs.turns_wound,
+            turns_settled: self.run.outputs.turns_settled,
+            fed_length_m: self.run.outputs.fed_length,
             verdict: self.coil.verdict().as_str().to_owned(),
             energy: self.energy(),
             penetration: PenetrationSummary {
-                largest_m: self.sys.deepest,
-                at_rest_m: self.rest_depth,
-                largest_over_d: self.sys.deepest / d,
-                at_rest_over_d: self.rest_depth / d,
+                largest_m: self.sys.state.deepest,
+                at_rest_m: self.run.rest_depth,
+                largest_over_d: self.sys.state.deepest / d,
+                at_rest_over_d: self.run.rest_depth / d,
             },
             turns: self.coil.turns(),
         }

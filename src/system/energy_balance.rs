@@ -1,6 +1,6 @@
 //! Where energy comes from and where it goes.
 
-use super::{Mass, System};
+use super::{ContactModel, Mass, NodalContact, System};
 use crate::contact::{ContactPoint, LineContact};
 use crate::rod::stored_energy;
 
@@ -33,31 +33,40 @@ impl System {
     /// Elastic energy of the live wire and its touches, J.
     pub fn stored(&self) -> f64 {
         let clamp = [self.clamp_frame(0), self.clamp_frame(1)];
-        let rod = stored_energy(&self.rod, &self.laws, &clamp, self.twist.is_carried());
+        let rod = stored_energy(
+            &self.state.rod,
+            &self.model.laws,
+            &clamp,
+            self.model.twist.is_carried(),
+        );
         self.stored_with(rod.iter().sum())
     }
 
     /// The same with the energy of the `rod` known.
     fn stored_with(&self, rod: f64) -> f64 {
-        let touch: f64 = match &self.contacts {
-            Some(c) => self
-                .free_nodes()
-                .map(|i| c.stored(i, self.rod.voronoi(i)))
-                .sum(),
-            None => 0.0,
-        };
-        let between = match (&self.live, &self.contacts) {
-            (Some(l), Some(c)) => l.stored(&c.law, &self.wire.length),
-            _ => 0.0,
-        };
-        if let Some(line) = &self.line {
-            return rod + self.stored_in_points(line);
+        match &self.contact {
+            ContactModel::None => rod,
+            ContactModel::Line(line) => rod + self.stored_in_points(line),
+            ContactModel::Nodal(nodal) => {
+                let NodalContact {
+                    contacts,
+                    live,
+                    wire,
+                } = &**nodal;
+                let touch: f64 = self
+                    .free_nodes()
+                    .map(|i| contacts.stored(i, self.state.rod.voronoi(i)))
+                    .sum();
+                let between = live
+                    .as_ref()
+                    .map_or(0.0, |l| l.stored(&contacts.law, &wire.length));
+                rod + touch + between
+            }
         }
-        rod + touch + between
     }
 
     fn stored_in_points(&self, line: &LineContact) -> f64 {
-        let rod = &self.rod;
+        let rod = &self.state.rod;
         let at = |point: ContactPoint| line.stored(point.number(), point.length(rod));
         (0..rod.edges())
             .map(|j| {
@@ -79,33 +88,35 @@ impl System {
     /// Motion energy of the free nodes and spinning edges, J.
     pub fn kinetic(&self) -> f64 {
         let free = self.free_nodes();
-        let spin: f64 = (0..self.rod.edges())
+        let spin: f64 = (0..self.state.rod.edges())
             .map(|j| {
-                0.5 * self.section.spin_inertia_per_length()
-                    * self.rod.rest[j]
-                    * self.rod.spin[j].powi(2)
+                0.5 * self.model.section.spin_inertia_per_length()
+                    * self.state.rod.rest[j]
+                    * self.state.rod.spin[j].powi(2)
             })
             .sum();
-        free.map(|i| 0.5 * self.rod.mass(&self.section, i) * self.rod.v[i].norm_squared())
-            .sum::<f64>()
+        free.map(|i| {
+            0.5 * self.state.rod.mass(&self.model.section, i) * self.state.rod.v[i].norm_squared()
+        })
+        .sum::<f64>()
             + spin
             - self.kinetic_between()
     }
 
     /// What lumped mass has too much of motion energy where it is not lumped, J.
     fn kinetic_between(&self) -> f64 {
-        if self.mass == Mass::Lumped {
+        if self.model.mass == Mass::Lumped {
             return 0.0;
         }
-        let v = &self.rod.v;
-        (0..self.rod.edges())
+        let v = &self.state.rod.v;
+        (0..self.state.rod.edges())
             .map(|j| 0.5 * self.mass_between(j) * (v[j + 1] - v[j]).norm_squared())
             .sum()
     }
 
     /// Mass that couples the two ends of edge `j` where it is not lumped, kg.
     pub(crate) fn mass_between(&self, j: usize) -> f64 {
-        self.section.mass_per_length() * self.rod.rest[j] / 6.0
+        self.model.section.mass_per_length() * self.state.rod.rest[j] / 6.0
     }
 
     /// Energy that the books cannot explain, J: what should be there minus what is.
@@ -114,11 +125,11 @@ impl System {
     /// after this instant, which is the quantity the scheme conserves; `None` where velocities
     /// belong to the present time.
     pub fn energy_residual(&self, staggered: Option<f64>) -> f64 {
-        let b = self.balance;
+        let b = self.state.balance;
         let supply = b.initial + b.spindle + b.nozzle + b.inflow;
         let lost = b.plastic.iter().sum::<f64>() + b.friction + b.damping + b.numerical;
         // (the forces are those of this instant)
-        let stored = self.stored_with(self.load.stored);
+        let stored = self.stored_with(self.state.load.stored);
         let kinetic = match staggered {
             Some(dt) => self.staggered_kinetic(dt),
             None => self.kinetic(),
@@ -129,14 +140,17 @@ impl System {
     fn staggered_kinetic(&self, dt: f64) -> f64 {
         let mut e = 0.0;
         for i in self.free_nodes() {
-            let m = self.rod.mass(&self.section, i);
-            let v = self.rod.v[i];
-            e += 0.5 * m * v.dot(&(v + self.load.force[i] * (dt / m)));
+            let m = self.state.rod.mass(&self.model.section, i);
+            let v = self.state.rod.v[i];
+            e += 0.5 * m * v.dot(&(v + self.state.load.force[i] * (dt / m)));
         }
-        let inertia = self.section.spin_inertia_per_length();
-        for j in 0..self.rod.edges() {
-            let i = inertia * self.rod.rest[j];
-            e += 0.5 * i * self.rod.spin[j] * (self.rod.spin[j] + self.load.torque[j] * (dt / i));
+        let inertia = self.model.section.spin_inertia_per_length();
+        for j in 0..self.state.rod.edges() {
+            let i = inertia * self.state.rod.rest[j];
+            e += 0.5
+                * i
+                * self.state.rod.spin[j]
+                * (self.state.rod.spin[j] + self.state.load.torque[j] * (dt / i));
         }
         e
     }

@@ -32,7 +32,7 @@ pub struct Body {
 pub(crate) struct SavedContacts {
     nodes: Vec<NodeContact>,
     loss: ContactLoss,
-    pub(crate) frozen: Vec<FrozenNode>,
+    frozen: Vec<FrozenNode>,
 }
 
 /// Contact of the explicit methods: the surfaces that the wire can touch, the law, and the state of each live node.
@@ -108,27 +108,13 @@ impl Contacts {
                 return Err("a node's surroundings are beyond core and frozen wire");
             }
         }
-        let far = self.far();
-        let mut arc = f64::NEG_INFINITY;
-        let mut before = None;
-        for node in &saved.frozen {
-            let near = node.point.iter().all(|x| x.abs() < far);
-            let sound = near && node.arc >= arc && before != Some(node.point);
-            if !sound {
-                return Err("frozen wire is not one");
-            }
-            (arc, before) = (node.arc, Some(node.point));
-        }
-        let mut tube = Tube::new(self.tube.radius());
-        saved.frozen.into_iter().for_each(|node| tube.push(node));
+        let tube = restore_tube(
+            saved.frozen,
+            self.tube.radius(),
+            far(&self.surface, self.radius),
+        )?;
         (self.nodes, self.loss, self.tube) = (saved.nodes, saved.loss, tube);
         Ok(())
-    }
-
-    /// A distance from the origin far outside of what wire can lie on, m.
-    pub(crate) fn far(&self) -> f64 {
-        let (min, max) = self.surface.bounds();
-        10.0 * (max.amax() + min.amax() + self.radius)
     }
 
     /// Makes every node look its surroundings up again; call when frozen wire has changed.
@@ -267,4 +253,33 @@ impl Contacts {
             .map(|a| self.law.stored(a.depth, a.bristle, length))
             .sum()
     }
+}
+
+/// A distance from the origin far outside of what wire of this radius can lie on, m.
+pub(crate) fn far(core: &Surface, radius: f64) -> f64 {
+    let (min, max) = core.bounds();
+    10.0 * (max.amax() + min.amax() + radius)
+}
+
+/// Frozen wire of `radius`, m, through saved nodes, none of which is `far`, m, from the origin.
+///
+/// Fails with what is impossible about the nodes.
+pub(crate) fn restore_tube(
+    frozen: Vec<FrozenNode>,
+    radius: f64,
+    far: f64,
+) -> Result<Tube, &'static str> {
+    let mut tube = Tube::new(radius);
+    let mut arc = f64::NEG_INFINITY;
+    let mut before = None;
+    for node in frozen {
+        let near = node.point.iter().all(|x| x.abs() < far);
+        let sound = near && node.arc >= arc && before != Some(node.point);
+        if !sound {
+            return Err("frozen wire is not one");
+        }
+        (arc, before) = (node.arc, Some(node.point));
+        tube.push(node);
+    }
+    Ok(tube)
 }

@@ -11,8 +11,8 @@ mod force;
 mod live;
 mod node;
 
-pub(crate) use contacts::SavedContacts;
 pub use contacts::{Body, Contacts};
+pub(crate) use contacts::{SavedContacts, far, restore_tube};
 pub use force::TouchForce;
 pub use live::{LiveContact, Wire};
 pub use node::NodeContact;

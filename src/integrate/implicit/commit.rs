@@ -20,18 +20,18 @@ impl Implicit {
         nozzle: Option<NozzleEdge>,
     ) {
         let h = step.h;
-        w.force.clone_from(&sys.load.force);
+        w.force.clone_from(&sys.state.load.force);
         let spin = Spin::new(spindle.angle);
-        let nodes = sys.rod.nodes();
+        let nodes = sys.state.rod.nodes();
         let (x0, v0) = (&mut w.start, &mut w.guess);
-        x0.clone_from(&sys.rod.x);
-        v0.clone_from(&sys.rod.v);
+        x0.clone_from(&sys.state.rod.x);
+        v0.clone_from(&sys.state.rod.v);
         let kinetic = sys.kinetic();
         let before = (
-            sys.spindle,
-            sys.torque_on_core,
-            sys.unbalanced,
-            sys.load.tension.last().copied(),
+            sys.state.spindle,
+            sys.state.torque_on_core,
+            sys.state.unbalanced,
+            sys.state.load.tension.last().copied(),
         );
         if Work::<D>::ROLLS {
             w.rolls.keep_torques(sys);
@@ -42,85 +42,87 @@ impl Implicit {
             let x = spin.to_lab(w.q[i]);
             match self.scheme {
                 Scheme::Bdf2 => {
-                    sys.rod.x[i] = x;
-                    sys.rod.v[i] = (x - w.star[0][i]) / step.gamma;
+                    sys.state.rod.x[i] = x;
+                    sys.state.rod.v[i] = (x - w.star[0][i]) / step.gamma;
                 }
                 Scheme::Midpoint => {
-                    sys.rod.x[i] = x * 2.0 - w.start[i];
-                    sys.rod.v[i] = (x - w.start[i]) * (4.0 / h) - w.guess[i];
+                    sys.state.rod.x[i] = x * 2.0 - w.start[i];
+                    sys.state.rod.v[i] = (x - w.start[i]) * (4.0 / h) - w.guess[i];
                 }
             }
         }
         if self.scheme == Scheme::Midpoint {
-            sys.spindle = sys.spindle.after(h);
+            sys.state.spindle = sys.state.spindle.after(h);
             sys.carry_supports(h);
         } else {
-            sys.spindle = spindle;
-            sys.support = *support;
+            sys.state.spindle = spindle;
+            sys.state.support = *support;
         }
-        sys.set_tension = sys.set_tension_after(h);
-        sys.time += h;
+        sys.state.set_tension = sys.set_tension_after(h);
+        sys.state.time += h;
         sys.place_supports();
-        let inflow = grown * 0.5 * sys.section.mass_per_length();
-        let feeds = sys.feed.is_some();
-        if let (Some(f), Some((_, feed))) = (fed, &mut sys.feed) {
+        let inflow = grown * 0.5 * sys.model.section.mass_per_length();
+        let feeds = sys.state.feed.is_some();
+        if let (Some(f), Some(feed)) = (fed, &mut sys.state.feed) {
             *feed = f;
-            let last = sys.rod.edges() - 1;
-            sys.rod.rest[last] += grown;
+            let last = sys.state.rod.edges() - 1;
+            sys.state.rod.rest[last] += grown;
             sys.keep_set_at_nozzle(grown);
             // the node before the nozzle gains mass that moves as it does
-            sys.balance.inflow += 0.5 * inflow * sys.rod.v[last].norm_squared();
+            sys.state.balance.inflow += 0.5 * inflow * sys.state.rod.v[last].norm_squared();
         }
-        if let Some(line) = &mut sys.line {
+        if let Some(line) = sys.contact.as_line_mut() {
             // late Newton steps hold the friction limits of the iterate before; what is accepted goes by its own
             line.hold_limits = false;
         }
         if self.scheme == Scheme::Bdf2 {
-            sys.turning =
-                Some(sys.moment_of(|i| (sys.rod.v[i] - w.star[1][i]) * (w.mass[i] / step.gamma)));
+            sys.state.turning = Some(
+                sys.moment_of(|i| (sys.state.rod.v[i] - w.star[1][i]) * (w.mass[i] / step.gamma)),
+            );
         }
         sys.settle_forces(h, true);
         // books: work of forces at both ends of the step
-        let turned = sys.spindle.angle - before.0.angle;
-        sys.balance.spindle -= 0.5 * (sys.torque_on_core + before.1) * turned;
+        let turned = sys.state.spindle.angle - before.0.angle;
+        sys.state.balance.spindle -= 0.5 * (sys.state.torque_on_core + before.1) * turned;
         if feeds {
-            let last = sys.rod.edges() - 1;
+            let last = sys.state.rod.edges() - 1;
             // a moment at the node before, spread over more or less wire: the grid's doing
-            sys.balance.numerical += 0.5 * sys.bent_at_nozzle() * grown;
-            let plastic = sys.rod.stretch[last].strain;
-            let now = sys.load.tension[last];
+            sys.state.balance.numerical += 0.5 * sys.bent_at_nozzle() * grown;
+            let plastic = sys.state.rod.stretch[last].strain;
+            let now = sys.state.load.tension[last];
             let tension = 0.5 * (now + before.3.unwrap_or(now));
-            let law = sys.laws.stretch;
-            sys.balance.nozzle -=
+            let law = sys.model.laws.stretch;
+            sys.state.balance.nozzle -=
                 (tension * (1.0 + plastic) + 0.5 * tension * tension / law.modulus) * grown;
             let n = nodes - 1;
-            let force = (sys.load.force[n] + w.force[n]) * 0.5;
-            sys.balance.nozzle -= force.dot(&sys.support[1].velocity) * h;
+            let force = (sys.state.load.force[n] + w.force[n]) * 0.5;
+            sys.state.balance.nozzle -= force.dot(&sys.state.support[1].velocity) * h;
         }
         // what Newton's law and the forces at both ends of the step do not agree on is the method's
         let mut work = 0.0;
         for i in sys.free_nodes() {
-            work += 0.5 * (sys.load.force[i] + w.force[i]).dot(&(sys.rod.x[i] - w.start[i]));
+            work += 0.5
+                * (sys.state.load.force[i] + w.force[i]).dot(&(sys.state.rod.x[i] - w.start[i]));
         }
         if Work::<D>::ROLLS {
             work += w.rolls.work(sys);
         }
         let gained = if feeds {
-            0.5 * inflow * sys.rod.v[sys.rod.edges() - 1].norm_squared()
+            0.5 * inflow * sys.state.rod.v[sys.state.rod.edges() - 1].norm_squared()
         } else {
             0.0
         };
-        let held = 0.5 * (sys.unbalanced + before.2) * turned;
+        let held = 0.5 * (sys.state.unbalanced + before.2) * turned;
         // (what yields within the step is known better than by the forces at its ends)
-        work -= sys.load.beyond;
-        sys.balance.numerical += work - held - (sys.kinetic() - kinetic - gained);
-        let past = &mut sys.past;
+        work -= sys.state.load.beyond;
+        sys.state.balance.numerical += work - held - (sys.kinetic() - kinetic - gained);
+        let past = &mut sys.state.past;
         std::mem::swap(&mut past.x, &mut w.start);
         std::mem::swap(&mut past.v, &mut w.guess);
         past.q.rotate_right(1);
         past.q[0].clear();
-        let spin = Spin::new(sys.spindle.angle);
-        past.q[0].extend(sys.rod.x.iter().map(|x| spin.to_core(*x)));
+        let spin = Spin::new(sys.state.spindle.angle);
+        past.q[0].extend(sys.state.rod.x.iter().map(|x| spin.to_core(*x)));
         past.h = [h, past.h[0]];
         past.known = (past.known + 1).min(2);
     }
@@ -133,16 +135,16 @@ fn feed(
     nozzle: Option<NozzleEdge>,
     q: &[V3],
 ) -> (Option<crate::feed::Feed>, f64) {
-    let (Some(nozzle), Some((spec, feed))) = (nozzle, &sys.feed) else {
+    let (Some(nozzle), Some(spec), Some(feed)) = (nozzle, &sys.model.feed, &sys.state.feed) else {
         return (None, 0.0);
     };
-    let last = sys.rod.edges() - 1;
+    let last = sys.state.rod.edges() - 1;
     let length = (q[last + 1] - q[last]).norm();
-    let grown = nozzle.rest(length) - sys.rod.rest[last];
+    let grown = nozzle.rest(length) - sys.state.rod.rest[last];
     let line = nozzle.line(length);
     let set = sys.set_tension_after(step.share * step.h);
-    let next = advance(spec, feed, &sys.past, step, (grown, line, set));
-    let past = &mut sys.past;
+    let next = advance(spec, feed, &sys.state.past, step, (grown, line, set));
+    let past = &mut sys.state.past;
     past.fed = [feed.fed, past.fed[0]];
     (past.paid, past.paid_rate) = (feed.paid, feed.paid_rate);
     (Some(next), grown)
@@ -151,40 +153,40 @@ fn feed(
 impl System {
     /// Makes the history of the present instant complete: at the start and after changes of the wire.
     pub(super) fn begin_past(&mut self) {
-        let nodes = self.rod.nodes();
-        if self.past.q[0].len() != nodes || self.past.known == 0 {
-            let spin = Spin::new(self.spindle.angle);
-            self.past.known = 0;
-            self.past.q[0].clear();
-            self.past.q[0].extend(self.rod.x.iter().map(|x| spin.to_core(*x)));
-            if let Some((_, f)) = &self.feed {
-                self.past.fed = [f.fed; 2];
-                (self.past.paid, self.past.paid_rate) = (f.paid, f.paid_rate);
+        let nodes = self.state.rod.nodes();
+        if self.state.past.q[0].len() != nodes || self.state.past.known == 0 {
+            let spin = Spin::new(self.state.spindle.angle);
+            self.state.past.known = 0;
+            self.state.past.q[0].clear();
+            self.state.past.q[0].extend(self.state.rod.x.iter().map(|x| spin.to_core(*x)));
+            if let Some(f) = &self.state.feed {
+                self.state.past.fed = [f.fed; 2];
+                (self.state.past.paid, self.state.past.paid_rate) = (f.paid, f.paid_rate);
             }
-            if self.twist.is_carried() {
-                self.past.forget_rolls(self.rod.edges());
+            if self.model.twist.is_carried() {
+                self.state.past.forget_rolls(self.state.rod.edges());
             }
             self.place_points();
         }
-        if self.load.force.len() != nodes {
+        if self.state.load.force.len() != nodes {
             self.settle_forces(0.0, false);
         }
     }
 
     /// Time in which the nozzle goes past the wire before it by `angle` as seen along the edge there, s.
     pub(super) fn time_to_turn_nozzle_edge(&self, angle: f64) -> f64 {
-        if self.feed.is_none() {
+        if self.state.feed.is_none() {
             return f64::INFINITY;
         }
-        let last = self.rod.edges() - 1;
-        let edge = self.rod.x[last + 1] - self.rod.x[last];
-        let way = self.support[1].velocity - self.rod.v[last];
+        let last = self.state.rod.edges() - 1;
+        let edge = self.state.rod.x[last + 1] - self.state.rod.x[last];
+        let way = self.state.support[1].velocity - self.state.rod.v[last];
         angle * edge.norm_squared() / edge.cross(&way).norm()
     }
 
     /// Forces of the present state after it was set up or changed; nothing moves on but the frames.
     pub fn refresh(&mut self) {
-        if self.line.is_none() {
+        if !self.contact.is_line() {
             return self.evaluate(Some(0.0));
         }
         self.internal_at_once(true);
@@ -195,8 +197,10 @@ impl System {
 
     /// Puts the present places of the contact points on record.
     fn place_points(&mut self) {
-        let Some(line) = &mut self.line else { return };
-        let q = &self.past.q[0];
+        let Some(line) = self.contact.as_line_mut() else {
+            return;
+        };
+        let q = &self.state.past.q[0];
         for point in ContactPoint::all(q.len() - 1) {
             line.place(point.number(), point.place(q));
         }
@@ -213,10 +217,10 @@ impl System {
     /// business of the core's.
     fn moment_of(&self, force: impl Fn(usize) -> V3) -> f64 {
         let free = self.free_nodes();
-        let end = free.end.min(self.rod.nodes().saturating_sub(3));
+        let end = free.end.min(self.state.rod.nodes().saturating_sub(3));
         (free.start..end)
             .map(|i| {
-                let (x, f) = (self.rod.x[i], force(i));
+                let (x, f) = (self.state.rod.x[i], force(i));
                 x.z * f.x - x.x * f.z
             })
             .sum()
@@ -227,19 +231,21 @@ impl System {
     /// Taken so, the torque is that of the nozzle's force less what turns the wire's mass. Were it summed up from stiff touches alone,
     /// what they are off by would go with the core's whole way, and that is far longer than any way on the core.
     fn hold_unbalanced(&mut self) {
-        let Some(turning) = self.turning else { return };
-        self.unbalanced = self.moment_of(|i| self.load.force[i]) - turning;
-        self.torque_on_core += self.unbalanced;
+        let Some(turning) = self.state.turning else {
+            return;
+        };
+        self.state.unbalanced = self.moment_of(|i| self.state.load.force[i]) - turning;
+        self.state.torque_on_core += self.state.unbalanced;
     }
 
     /// Adds the forces of contact to those in `load`.
     fn touch_forces(&mut self, h: f64, commit: bool) {
-        let spin = Spin::new(self.spindle.angle);
+        let spin = Spin::new(self.state.spindle.angle);
         let mut moment = 0.0;
-        if let Some(line) = &mut self.line {
-            let (rod, force) = (&self.rod, &mut self.load.force);
-            let diameter = self.section.diameter;
-            let mut arc = self.arc0;
+        if let Some(line) = self.contact.as_line_mut() {
+            let (rod, force) = (&self.state.rod, &mut self.state.load.force);
+            let diameter = self.model.section.diameter;
+            let mut arc = self.state.arc0;
             let step = if h > 0.0 { h } else { f64::INFINITY };
             for j in 0..rod.edges() {
                 let rest = rod.rest[j];
@@ -266,15 +272,23 @@ impl System {
                 }
                 arc += rest;
             }
-            self.deepest = self.deepest.max(line.deepest);
-            moment += between_forces(line, rod, force, &self.past, spin, (diameter, step), commit);
+            self.state.deepest = self.state.deepest.max(line.deepest);
+            moment += between_forces(
+                line,
+                rod,
+                force,
+                &self.state.past,
+                spin,
+                (diameter, step),
+                commit,
+            );
             let pairs = line.self_contact.as_ref();
             let pairs = pairs.map(|pairs| pairs.loss).unwrap_or_default();
-            self.balance.friction = line.loss.friction + pairs.friction;
-            self.balance.damping = line.loss.damping + pairs.damping;
-            self.balance.numerical -= std::mem::take(&mut line.lifted);
+            self.state.balance.friction = line.loss.friction + pairs.friction;
+            self.state.balance.damping = line.loss.damping + pairs.damping;
+            self.state.balance.numerical -= std::mem::take(&mut line.lifted);
         }
-        self.torque_on_core = moment + self.clamp_torque();
+        self.state.torque_on_core = moment + self.clamp_torque();
         self.hold_unbalanced();
     }
 }

@@ -69,6 +69,13 @@ pub struct Implicit {
     twisted: Work<WITH_ROLL>,
 }
 
+impl SolverStatistics {
+    /// Steps tried, taken or not.
+    pub fn tried(&self) -> u64 {
+        self.steps + self.rejects + self.newton_failures
+    }
+}
+
 /// Counts since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SolverStatistics {
@@ -210,7 +217,7 @@ impl Implicit {
 
     /// Takes one step of at most `most` seconds; returns its length.
     pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, StepError> {
-        if sys.twist == Twist::Off {
+        if sys.model.twist == Twist::Off {
             let mut work = std::mem::take(&mut self.work);
             let taken = self.step_with(&mut work, sys, most);
             self.work = work;
@@ -242,19 +249,19 @@ impl Implicit {
         let mut failures = 0;
         loop {
             let step = step_of(sys, self.scheme, h);
-            let spindle = sys.spindle.after(step.share * h);
-            let support = moved(&sys.support, step.share * h);
+            let spindle = sys.state.spindle.after(step.share * h);
+            let support = moved(&sys.state.support, step.share * h);
             let nozzle = work.prepare(sys, &step, &spindle, &support, true);
             let share = work.share_of_way(sys);
             if share < 1.0 && h > self.shortest && self.fixed.is_none() {
                 h = (share * h).max(self.shortest);
                 continue;
             }
-            if let Some(line) = &mut sys.line {
+            if let Some(line) = sys.contact.as_line_mut() {
                 line.begin_attempt();
                 if let Some(b) = &mut line.self_contact {
-                    let (from, guess) = (&sys.past.q[0], &work.guess);
-                    b.list(from, guess, &sys.rod.rest, sys.section.diameter);
+                    let (from, guess) = (&sys.state.past.q[0], &work.guess);
+                    b.list(from, guess, &sys.state.rod.rest, sys.model.section.diameter);
                 }
             }
             let mut model = model_of(sys, &step, &spindle, &support, nozzle);
@@ -276,9 +283,9 @@ impl Implicit {
             self.statistics.solves += std::mem::take(&mut work.solves);
             self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
             self.statistics.cg_iterations += std::mem::take(&mut work.gradients.cg_iterations);
-            let missed = sys.line.as_ref().and_then(|l| {
+            let missed = sys.contact.as_line().and_then(|l| {
                 let pairs = l.self_contact.as_ref()?;
-                pairs.missed(&sys.past.q[0], &work.q)
+                pairs.missed(&sys.state.past.q[0], &work.q)
             });
             let retry = match solved {
                 // farther than the pairs of wire were looked for
@@ -323,7 +330,7 @@ impl Implicit {
             };
             h = retry.max(self.shortest);
             self.next = h;
-            if let Some(line) = &mut sys.line {
+            if let Some(line) = sys.contact.as_line_mut() {
                 line.undo_attempt();
             }
         }
@@ -338,7 +345,7 @@ impl Implicit {
         h: f64,
         with: impl FnOnce(&mut dyn FnMut() -> f64),
     ) {
-        if sys.twist == Twist::Off {
+        if sys.model.twist == Twist::Off {
             evaluating_with(self.scheme, &mut self.work, sys, h, with);
         } else {
             evaluating_with(self.scheme, &mut self.twisted, sys, h, with);
@@ -356,8 +363,8 @@ fn evaluating_with<const D: usize>(
     sys.begin_past();
     let step = step_of(sys, scheme, h);
     let (spindle, support) = (
-        sys.spindle.after(step.share * h),
-        moved(&sys.support, step.share * h),
+        sys.state.spindle.after(step.share * h),
+        moved(&sys.state.support, step.share * h),
     );
     let nozzle = work.prepare(sys, &step, &spindle, &support, true);
     let mut model = model_of(sys, &step, &spindle, &support, nozzle);
@@ -370,9 +377,11 @@ impl<const D: usize> Work<D> {
     /// estimate and contact search
     /// both know nothing of a surface that lies between the ends of a step.
     fn share_of_way(&self, sys: &System) -> f64 {
-        let Some(line) = &sys.line else { return 1.0 };
+        let Some(line) = sys.contact.as_line() else {
+            return 1.0;
+        };
         let mut share: f64 = 1.0;
-        for (q, guess) in sys.past.q[0].iter().zip(&self.guess) {
+        for (q, guess) in sys.state.past.q[0].iter().zip(&self.guess) {
             let way = (guess - q).norm();
             if way > line.radius {
                 let room = (line.shape.lower_bound(*q) - line.height).max(line.radius);
@@ -395,16 +404,16 @@ impl<const D: usize> Work<D> {
         inert: bool,
     ) -> Option<NozzleEdge> {
         let w = &mut *self;
-        let (rod, past) = (&sys.rod, &sys.past);
+        let (rod, past) = (&sys.state.rod, &sys.state.past);
         let nodes = rod.nodes();
         let spin = Spin::new(spindle.angle);
         let e = extrapolation(step.share * step.h, past);
-        let density = sys.section.mass_per_length();
+        let density = sys.model.section.mass_per_length();
         w.guess.clear();
         w.target.clear();
         w.mass.clear();
         w.shared_mass.clear();
-        if sys.mass == Mass::Consistent {
+        if sys.model.mass == Mass::Consistent {
             w.shared_mass
                 .extend((0..rod.edges()).map(|j| sys.mass_between(j)));
         }
@@ -447,7 +456,7 @@ impl<const D: usize> Work<D> {
             self.rolls.prepare(sys, step, spindle, support, inert);
             self.rolls.lay_out(&mut self.assembly.rolling);
             let (state, ends) = ((&rod.bend[..], &rod.twist[..]), self.rolls.joints());
-            (self.assembly.rolling).lay(&sys.laws, state, ends, |j| {
+            (self.assembly.rolling).lay(&sys.model.laws, state, ends, |j| {
                 (voronoi(rod, step.grown, j), set_share(rod, step.grown, j))
             });
         } else {
@@ -456,7 +465,7 @@ impl<const D: usize> Work<D> {
             self.assembly.plain.begin(rod.edges(), clamps);
         }
         self.assembly.begin(&self.target, &self.mass);
-        let (spec, feed) = sys.feed.as_ref()?;
+        let (spec, feed) = sys.model.feed.as_ref().zip(sys.state.feed.as_ref())?;
         let last = rod.edges() - 1;
         Some(NozzleEdge::new(
             spec,
@@ -467,7 +476,7 @@ impl<const D: usize> Work<D> {
                 rod.rest[last],
                 sys.set_tension_after(step.share * step.h),
                 sys.exit_grip(),
-                sys.laws.stretch.modulus,
+                sys.model.laws.stretch.modulus,
                 rod.stretch[last].strain,
             ),
         ))
@@ -482,7 +491,7 @@ impl<const D: usize> Work<D> {
         grown: f64,
     ) {
         let w = &mut *self;
-        let rod = &sys.rod;
+        let rod = &sys.state.rod;
         let back = turn_about_y(-spindle.angle);
         w.set.clear();
         w.set.resize(rod.nodes(), V3::zeros());
@@ -541,9 +550,9 @@ impl<const D: usize> Work<D> {
 
 /// The step of `h` from the present instant.
 fn step_of(sys: &System, scheme: Scheme, h: f64) -> Step {
-    let step = Step::new(scheme, &sys.past, h);
-    match (&sys.feed, sys.rod.rest.last()) {
-        (Some((_, feed)), Some(rest)) => step.with_feed(&sys.past, feed.fed, *rest),
+    let step = Step::new(scheme, &sys.state.past, h);
+    match (&sys.state.feed, sys.state.rod.rest.last()) {
+        (Some(feed), Some(rest)) => step.with_feed(&sys.state.past, feed.fed, *rest),
         _ => step,
     }
 }
@@ -581,18 +590,18 @@ fn model_of<'a>(
     nozzle: Option<NozzleEdge>,
 ) -> Model<'a> {
     Model {
-        rod: &sys.rod,
-        laws: &sys.laws,
-        line: sys.line.as_mut(),
-        loads: &sys.loads,
-        last: &sys.past.q[0],
-        tension: &sys.load.tension,
+        rod: &sys.state.rod,
+        laws: &sys.model.laws,
+        line: sys.contact.as_line_mut(),
+        loads: &sys.model.loads,
+        last: &sys.state.past.q[0],
+        tension: &sys.state.load.tension,
         nozzle,
         grown: step.grown,
         gamma: step.gamma,
         elapsed: step.share * step.h,
-        diameter: sys.section.diameter,
-        arc0: sys.arc0,
+        diameter: sys.model.section.diameter,
+        arc0: sys.state.arc0,
         back: Spin::new(spindle.angle),
         held: [support[0].hold, support[1].hold],
         flat: false,

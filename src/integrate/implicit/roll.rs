@@ -55,10 +55,10 @@ impl Rolls {
         support: &[Support; 2],
         inert: bool,
     ) {
-        let (rod, past) = (&sys.rod, &sys.past);
+        let (rod, past) = (&sys.state.rod, &sys.state.past);
         let back = turn_about_y(-spindle.angle);
         let e = extrapolation(step.share * step.h, past);
-        let dynamic = inert && sys.twist == Twist::Dynamic;
+        let dynamic = inert && sys.model.twist == Twist::Dynamic;
         let [star, rate] = &mut self.star;
         for v in [
             &mut self.guess,
@@ -78,7 +78,7 @@ impl Rolls {
             let s = &support[end];
             s.frame.map(|f| if s.turning { f } else { back * f })
         });
-        let density = sys.section.spin_inertia_per_length();
+        let density = sys.model.section.spin_inertia_per_length();
         for j in 0..rod.edges() {
             let (roll, spin) = if step.weight[1] == 0.0 {
                 (0.0, rod.spin[j])
@@ -175,13 +175,13 @@ impl Rolls {
 
     /// Keeps the torques of the present instant for the books of the step to come.
     pub(super) fn keep_torques(&mut self, sys: &System) {
-        self.before.clone_from(&sys.load.torque);
+        self.before.clone_from(&sys.state.load.torque);
     }
 
     /// Hands rolls and spins over to the rod, whose frames turn with the next evaluation, and moves history on.
     pub(super) fn hand_over(&mut self, sys: &mut System, scheme: Scheme, step: &Step) {
-        let past = &mut sys.past;
-        past.spin.clone_from(&sys.rod.spin);
+        let past = &mut sys.state.past;
+        past.spin.clone_from(&sys.state.rod.spin);
         for j in 0..self.angle.len() {
             let (roll, spin) = match scheme {
                 Scheme::Bdf2 => (
@@ -190,21 +190,21 @@ impl Rolls {
                 ),
                 Scheme::Midpoint => (
                     2.0 * self.angle[j],
-                    self.angle[j] * (4.0 / step.h) - sys.rod.spin[j],
+                    self.angle[j] * (4.0 / step.h) - sys.state.rod.spin[j],
                 ),
             };
-            sys.roll[j] = roll;
+            sys.state.roll[j] = roll;
             // without inertia a rate means nothing and would count as motion energy
-            sys.rod.spin[j] = if self.inertia[j] > 0.0 { spin } else { 0.0 };
+            sys.state.rod.spin[j] = if self.inertia[j] > 0.0 { spin } else { 0.0 };
         }
         past.roll.rotate_right(1);
-        past.roll[0].clone_from(&sys.roll);
+        past.roll[0].clone_from(&sys.state.roll);
     }
 
     /// Work of the torques in the step just committed, J.
     pub(super) fn work(&self, sys: &System) -> f64 {
-        (self.before.iter().zip(&sys.load.torque))
-            .zip(&sys.past.roll[0])
+        (self.before.iter().zip(&sys.state.load.torque))
+            .zip(&sys.state.past.roll[0])
             .map(|((a, b), roll)| 0.5 * (a + b) * roll)
             .sum()
     }

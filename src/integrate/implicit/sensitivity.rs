@@ -80,10 +80,10 @@ impl Implicit {
         lift: usize,
     ) -> Result<(OutputSensitivity, [OutputSensitivity; INPUTS]), StepError> {
         sys.begin_past();
-        let kept = sys.line.as_ref().map(|l| l.saved());
-        let inputs = (sys.spindle, sys.support, sys.set_tension);
+        let kept = sys.contact.as_line().map(|l| l.saved());
+        let inputs = (sys.state.spindle, sys.state.support, sys.state.set_tension);
         let statistics = self.statistics;
-        let tangent = if sys.twist == Twist::Off {
+        let tangent = if sys.model.twist == Twist::Off {
             let mut work = std::mem::take(&mut self.work);
             let tangent = self.tangent_with(&mut work, sys, h, lift);
             self.work = work;
@@ -95,8 +95,8 @@ impl Implicit {
             tangent
         };
         self.statistics = statistics;
-        (sys.spindle, sys.support, sys.set_tension) = inputs;
-        if let (Some(line), Some(kept)) = (&mut sys.line, kept) {
+        (sys.state.spindle, sys.state.support, sys.state.set_tension) = inputs;
+        if let (Some(line), Some(kept)) = (sys.contact.as_line_mut(), kept) {
             line.take_back(kept);
         }
         tangent
@@ -110,13 +110,13 @@ impl Implicit {
         lift: usize,
     ) -> Result<(OutputSensitivity, [OutputSensitivity; INPUTS]), StepError> {
         let step = step_of(sys, self.scheme, h);
-        let base = (sys.spindle, sys.support, sys.set_tension);
+        let base = (sys.state.spindle, sys.state.support, sys.state.set_tension);
         let now = set(work, sys, &step, &base, 0, 0.0);
-        if let Some(line) = &mut sys.line {
+        if let Some(line) = sys.contact.as_line_mut() {
             line.begin_attempt();
             if let Some(b) = &mut line.self_contact {
-                let (from, guess) = (&sys.past.q[0], &work.guess);
-                b.list(from, guess, &sys.rod.rest, sys.section.diameter);
+                let (from, guess) = (&sys.state.past.q[0], &work.guess);
+                b.list(from, guess, &sys.state.rod.rest, sys.model.section.diameter);
             }
         }
         let mut model = model_of(sys, &step, &now.spindle, &now.support, now.nozzle);
@@ -193,7 +193,7 @@ impl Implicit {
                 if settled {
                     break;
                 }
-                match sys.line.as_ref().map_or(&[][..], |l| l.couplings()) {
+                match sys.contact.as_line().map_or(&[][..], |l| l.couplings()) {
                     [] => work.matrix.solve(&mut residual),
                     couplings => {
                         let scratch = &mut work.gradients;
@@ -233,14 +233,14 @@ fn set<const D: usize>(
     input: usize,
     by: f64,
 ) -> Setting {
-    (sys.spindle, sys.support, sys.set_tension) = *base;
+    (sys.state.spindle, sys.state.support, sys.state.set_tension) = *base;
     match input {
-        0 => sys.spindle.speed += by,
-        1 => sys.support[1].point.y += by,
-        _ => sys.set_tension += by,
+        0 => sys.state.spindle.speed += by,
+        1 => sys.state.support[1].point.y += by,
+        _ => sys.state.set_tension += by,
     }
-    let spindle = sys.spindle.after(step.share * step.h);
-    let support = moved(&sys.support, step.share * step.h);
+    let spindle = sys.state.spindle.after(step.share * step.h);
+    let support = moved(&sys.state.support, step.share * step.h);
     let nozzle = work.prepare(sys, step, &spindle, &support, true);
     Setting {
         spindle,
@@ -287,13 +287,15 @@ fn look<const D: usize>(
         angle: setting.spindle.angle,
         ..OutputSensitivity::default()
     };
-    if let (Some(nozzle), Some((spec, feed))) = (&setting.nozzle, &sys.feed) {
-        let grown = nozzle.rest(length) - sys.rod.rest[last - 1];
+    if let (Some(nozzle), Some(spec), Some(feed)) =
+        (&setting.nozzle, &sys.model.feed, &sys.state.feed)
+    {
+        let grown = nozzle.rest(length) - sys.state.rod.rest[last - 1];
         let set = sys.set_tension_after(step.share * step.h);
         let next = advance(
             spec,
             feed,
-            &sys.past,
+            &sys.state.past,
             step,
             (grown, nozzle.line(length), set),
         );

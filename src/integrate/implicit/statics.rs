@@ -52,7 +52,13 @@ impl Implicit {
             apply(sys, to);
             match self.equilibrium(sys, &trend.0, (to - at) / trend.1) {
                 Ok(taken) => {
-                    let moved = sys.rod.x.iter().zip(&before.rod.x).map(|(x, b)| x - b);
+                    let moved = sys
+                        .state
+                        .rod
+                        .x
+                        .iter()
+                        .zip(&before.state.rod.x)
+                        .map(|(x, b)| x - b);
                     trend = (moved.collect(), to - at);
                     at = to;
                     if taken <= QUICK {
@@ -81,7 +87,7 @@ impl Implicit {
 
     /// The same, and the torques on the edges about themselves, N m; none where twist is off.
     pub fn out_of_balance(&mut self, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
-        if sys.twist == Twist::Off {
+        if sys.model.twist == Twist::Off {
             forces_with(&mut self.work, sys)
         } else {
             forces_with(&mut self.twisted, sys)
@@ -95,7 +101,7 @@ impl Implicit {
         moved: &[V3],
         share: f64,
     ) -> Result<usize, StepError> {
-        if sys.twist == Twist::Off {
+        if sys.model.twist == Twist::Off {
             let mut work = std::mem::take(&mut self.work);
             let taken = self.equilibrium_with(&mut work, sys, moved, share);
             self.work = work;
@@ -115,10 +121,10 @@ impl Implicit {
         share: f64,
     ) -> Result<usize, StepError> {
         let step = still(sys);
-        let (spindle, support) = (sys.spindle, sys.support);
+        let (spindle, support) = (sys.state.spindle, sys.state.support);
         work.prepare(sys, &step, &spindle, &support, false);
         let spin = Spin::new(spindle.angle);
-        let last = sys.rod.nodes() - 1;
+        let last = sys.state.rod.nodes() - 1;
         for (i, d) in moved.iter().enumerate() {
             let d = spin.to_core(d * share);
             for a in 0..3 {
@@ -159,24 +165,24 @@ impl Implicit {
         self.statistics.evaluations += std::mem::take(&mut work.evaluations);
         self.statistics.solves += std::mem::take(&mut work.solves);
         self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
-        for (x, q) in sys.rod.x.iter_mut().zip(&work.q) {
+        for (x, q) in sys.state.rod.x.iter_mut().zip(&work.q) {
             *x = spin.to_lab(*q);
         }
         if Work::<D>::ROLLS {
-            sys.roll.clone_from(&work.rolls.angle);
+            sys.state.roll.clone_from(&work.rolls.angle);
         }
         sys.place_supports();
         sys.settle_forces(f64::INFINITY, true);
-        sys.past.forget();
+        sys.state.past.forget();
         Ok(taken)
     }
 }
 
 /// Brings everything to rest; the step that a static solve is.
 fn still(sys: &mut System) -> Step {
-    sys.rod.v.fill(V3::zeros());
-    sys.rod.spin.fill(0.0);
-    sys.past.forget();
+    sys.state.rod.v.fill(V3::zeros());
+    sys.state.rod.spin.fill(0.0);
+    sys.state.past.forget();
     sys.begin_past();
     Step {
         h: LONG,
@@ -190,7 +196,7 @@ fn still(sys: &mut System) -> Step {
 
 fn forces_with<const D: usize>(work: &mut Work<D>, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
     let step = still(sys);
-    let (spindle, support) = (sys.spindle, sys.support);
+    let (spindle, support) = (sys.state.spindle, sys.state.support);
     work.prepare(sys, &step, &spindle, &support, false);
     let mut model = model_at_rest(sys);
     model.held = [[false; 3]; 2];
@@ -200,7 +206,7 @@ fn forces_with<const D: usize>(work: &mut Work<D>, sys: &mut System) -> (Vec<V3>
         e.length = (work.q[j + 1] - work.q[j]).norm();
     }
     model.evaluate(work);
-    let spin = Spin::new(sys.spindle.angle);
+    let spin = Spin::new(sys.state.spindle.angle);
     let forces = work.gradient.iter().map(|g| -spin.to_lab(*g));
     let rolls = work.rolls.angle.len();
     let torques = work.rolls.gradient.iter().take(rolls).map(|g| -g);
@@ -208,21 +214,21 @@ fn forces_with<const D: usize>(work: &mut Work<D>, sys: &mut System) -> (Vec<V3>
 }
 
 fn model_at_rest(sys: &mut System) -> Model<'_> {
-    let held = [sys.support[0].hold, sys.support[1].hold];
+    let held = [sys.state.support[0].hold, sys.state.support[1].hold];
     Model {
-        last: &sys.past.q[0],
-        rod: &sys.rod,
-        laws: &sys.laws,
-        line: sys.line.as_mut(),
-        loads: &sys.loads,
-        tension: &sys.load.tension,
+        last: &sys.state.past.q[0],
+        rod: &sys.state.rod,
+        laws: &sys.model.laws,
+        line: sys.contact.as_line_mut(),
+        loads: &sys.model.loads,
+        tension: &sys.state.load.tension,
         nozzle: None,
         grown: 0.0,
         gamma: LONG,
         elapsed: f64::INFINITY,
-        diameter: sys.section.diameter,
-        arc0: sys.arc0,
-        back: Spin::new(sys.spindle.angle),
+        diameter: sys.model.section.diameter,
+        arc0: sys.state.arc0,
+        back: Spin::new(sys.state.spindle.angle),
         held,
         flat: false,
     }
@@ -246,28 +252,34 @@ mod tests {
         let along = V3::new(0.8, 0.36, 0.48);
         let points: Vec<V3> = (0..=30).map(|i| along * (1e-3 * f64::from(i))).collect();
         let mut sys = System::new(section, Rod::through(&points, None));
-        sys.support[0] = Support::clamped(points[0], frame_along(&along, None));
-        sys.twist = Twist::Off;
+        sys.state.support[0] = Support::clamped(points[0], frame_along(&along, None));
+        sys.model.twist = Twist::Off;
         sys
     }
 
     fn load(sys: &mut System, share: f64) {
-        sys.loads.nodal = vec![(30, V3::new(-0.3, 0.5, 0.2) * share)];
-        sys.loads.gravity = V3::new(0.0, 0.0, -50.0 * share);
+        sys.model.loads.nodal = vec![(30, V3::new(-0.3, 0.5, 0.2) * share)];
+        sys.model.loads.gravity = V3::new(0.0, 0.0, -50.0 * share);
     }
 
     #[test]
     fn forces_are_those_of_the_joints() {
         let mut sys = cantilever();
-        for (i, x) in sys.rod.x.iter_mut().enumerate().skip(1) {
+        for (i, x) in sys.state.rod.x.iter_mut().enumerate().skip(1) {
             let s = i as f64;
             *x += V3::new(0.0, 1e-4 * libm::sin(s), 4e-6 * s * s);
         }
         load(&mut sys, 1.0);
         sys.evaluate(Some(0.0));
         let forces = Implicit::new(Scheme::Bdf2, 1e-11, 1e-9, 1.0).forces(&mut sys);
-        let largest = sys.load.force.iter().map(V3::norm).fold(0.0, f64::max);
-        for (a, b) in forces.iter().zip(&sys.load.force) {
+        let largest = sys
+            .state
+            .load
+            .force
+            .iter()
+            .map(V3::norm)
+            .fold(0.0, f64::max);
+        for (a, b) in forces.iter().zip(&sys.state.load.force) {
             assert!((a - b).norm() < 1e-6 * largest, "{a:?} {b:?}");
         }
     }

@@ -68,7 +68,7 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
             tol.max(ON_THE_WAY)
         };
         method.fixed = Some(duration * (next - share));
-        sys.loads.nodal = vec![(n, V3::new(0.0, force * next, 0.0))];
+        sys.model.loads.nodal = vec![(n, V3::new(0.0, force * next, 0.0))];
         let before = method.statistics.solves;
         match method.step(&mut sys, f64::INFINITY) {
             Ok(_) => {
@@ -87,7 +87,7 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
         }
     }
     outcome.spent = watch.spent();
-    outcome.error = Some((sys.rod.x[n] - exact).norm() / LENGTH);
+    outcome.error = Some((sys.state.rod.x[n] - exact).norm() / LENGTH);
     outcome.steps = method.statistics.steps;
     outcome.iterations = method.statistics.solves;
     Ok(outcome)

@@ -9,7 +9,7 @@ use super::problem::Method;
 use super::record::{Details, Outcome};
 use super::setup::{along_x, cantilever, clamped_edges, elastic_wire, iterations, stable_step};
 use super::watch::Watch;
-use crate::integrate::{Implicit, Scheme, rk4, verlet};
+use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, shift_velocities};
 use crate::math::V3;
 use crate::rod::Section;
 use crate::system::{Mass, System};
@@ -74,12 +74,16 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     };
     let mut sys = released(section, rest);
     if method == Method::Implicit {
-        sys.mass = Mass::Consistent;
+        sys.model.mass = Mass::Consistent;
     }
     let mut implicit = Implicit::new(Scheme::Midpoint, tol.unwrap_or(TOLERANCE), dt, dt);
     implicit.fixed = Some(dt);
+    let mut explicit = Explicit::new(match method {
+        Method::Rk4 => ExplicitMethod::Rk4,
+        Method::Verlet | Method::Implicit => ExplicitMethod::Verlet,
+    });
     if method == Method::Verlet {
-        verlet::shift_velocities(&mut sys, -0.5 * dt);
+        shift_velocities(&mut sys, -0.5 * dt);
     }
     for _ in 0..count as u64 {
         match method {
@@ -89,10 +93,9 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
                     break;
                 }
             }
-            Method::Verlet => verlet::step(&mut sys, dt),
-            Method::Rk4 => rk4::step(&mut sys, dt),
+            Method::Verlet | Method::Rk4 => explicit.step(&mut sys, dt),
         }
-        tip.push(sys.rod.x[n].y);
+        tip.push(sys.state.rod.x[n].y);
     }
     outcome.spent = watch.spent();
     outcome.steps = tip.len() as u64;
@@ -122,7 +125,7 @@ fn first_frequency(section: &Section) -> f64 {
 fn released(section: Section, rest: Vec<f64>) -> System {
     let mut sys = cantilever(section, &along_x(&rest), rest);
     let amplitude = AMPLITUDE / mode(1.0) * (ROOT / LENGTH).powi(2);
-    let rod = &mut sys.rod;
+    let rod = &mut sys.state.rod;
     let (mut angle, mut arc) = (0.0, 0.0);
     for i in 0..rod.edges() {
         angle += amplitude * curvature(arc / LENGTH) * rod.voronoi(i);

@@ -15,7 +15,7 @@ use crate::integrate::{Implicit, Scheme};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
-use crate::system::{Support, System};
+use crate::system::{ContactModel, Support, System};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Cylinder radius, m; force on the slack side, N; friction; share of the bending stiffness.
@@ -66,7 +66,7 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
                 Ok(h) => {
                     left = if h >= left { 0.0 } else { left - h };
                     if counts {
-                        ratio -= sys.load.force[n].x / HOLD * (h / duration);
+                        ratio -= sys.state.load.force[n].x / HOLD * (h / duration);
                     }
                 }
                 Err(stopped) => outcome.failure = Some(stopped.to_string()),
@@ -131,7 +131,7 @@ fn capstan(section: &Section, n: usize) -> (System, f64) {
         .map(|p| (p[1] - p[0]).norm() / stretch)
         .collect();
     let mut sys = System::new(section.clone(), Rod::through(&points, Some(rest)));
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     let law = ContactLaw {
         stiffness: STIFFNESS,
         damping_ratio: 0.0,
@@ -143,9 +143,9 @@ fn capstan(section: &Section, n: usize) -> (System, f64) {
         radius: RADIUS,
         half_y: RADIUS,
     };
-    sys.line = Some(LineContact::new(shape, law, section.radius(), points.len()));
-    sys.loads.nodal = vec![(0, V3::x() * HOLD)];
-    sys.support[1] = Support {
+    sys.contact = ContactModel::line(LineContact::new(shape, law, section.radius(), points.len()));
+    sys.model.loads.nodal = vec![(0, V3::x() * HOLD)];
+    sys.state.support[1] = Support {
         hold: [true, false, false],
         velocity: V3::x() * SPEED,
         point: points[n],

@@ -8,7 +8,7 @@ use super::problem::Method;
 use super::record::{Details, Outcome};
 use super::setup::{elastic_wire, iterations, stable_step};
 use super::watch::Watch;
-use crate::integrate::{Implicit, Scheme, rk4, verlet};
+use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, shift_velocities};
 use crate::math::V3;
 use crate::rod::Rod;
 use crate::rod::Twist;
@@ -57,17 +57,21 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
         .map(|i| V3::new(SPACING * i as f64, HEIGHT * wave(i), 0.0))
         .collect();
     let mut sys = System::new(section, Rod::through(&x, None));
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     for i in 0..=n {
-        sys.rod.v[i] = V3::new(0.0, 0.0, SPEED * wave(i));
+        sys.state.rod.v[i] = V3::new(0.0, 0.0, SPEED * wave(i));
     }
     sys.refresh();
     let mut implicit = Implicit::new(Scheme::Midpoint, tol.unwrap_or(TOLERANCE), dt, dt);
     implicit.fixed = Some(dt);
+    let mut explicit = Explicit::new(match method {
+        Method::Rk4 => ExplicitMethod::Rk4,
+        Method::Verlet | Method::Implicit => ExplicitMethod::Verlet,
+    });
     let energy = |sys: &System| sys.stored() + sys.kinetic();
     let before = energy(&sys);
     if method == Method::Verlet {
-        verlet::shift_velocities(&mut sys, -0.5 * dt);
+        shift_velocities(&mut sys, -0.5 * dt);
     }
     let count = (WORK / (n + 1)).max(10) as u64;
 
@@ -80,14 +84,13 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
                     break;
                 }
             }
-            Method::Verlet => verlet::step(&mut sys, dt),
-            Method::Rk4 => rk4::step(&mut sys, dt),
+            Method::Verlet | Method::Rk4 => explicit.step(&mut sys, dt),
         }
         outcome.steps += 1;
     }
     outcome.spent = watch.spent();
     if method == Method::Verlet {
-        verlet::shift_velocities(&mut sys, 0.5 * dt);
+        shift_velocities(&mut sys, 0.5 * dt);
     }
     outcome.iterations = iterations(method, implicit.statistics, outcome.steps);
     outcome.error = Some((energy(&sys) / before - 1.0).abs());

@@ -33,8 +33,8 @@ pub(super) fn cantilever(section: Section, points: &[V3], rest: Vec<f64>) -> Sys
     let mut rod = Rod::through(points, Some(rest));
     rod.refine_clamp();
     let mut sys = System::new(section, rod);
-    sys.twist = Twist::Off;
-    sys.support[0] = Support::clamped(points[0], frame_along(&V3::x(), None));
+    sys.model.twist = Twist::Off;
+    sys.state.support[0] = Support::clamped(points[0], frame_along(&V3::x(), None));
     sys.refresh();
     sys
 }

@@ -12,30 +12,31 @@ pub(super) struct Balance {
 
 impl Balance {
     pub(super) fn of(sys: &System) -> Result<Self, RelaxError> {
-        let length: f64 = sys.rod.rest.iter().sum();
-        for i in 0..sys.rod.nodes() {
-            let torque = sys.load.torque.get(i).copied().unwrap_or(0.0);
-            if !(sys.load.force[i].norm() + torque.abs()).is_finite() {
+        let length: f64 = sys.state.rod.rest.iter().sum();
+        for i in 0..sys.state.rod.nodes() {
+            let torque = sys.state.load.torque.get(i).copied().unwrap_or(0.0);
+            if !(sys.state.load.force[i].norm() + torque.abs()).is_finite() {
                 return Err(RelaxError::Broken {
                     node: i,
                     share: 1.0,
                 });
             }
         }
-        let last = sys.rod.nodes() - 1;
-        let mut force = sys.loads.gravity.norm() * sys.section.mass_per_length() * length;
+        let last = sys.state.rod.nodes() - 1;
+        let mut force =
+            sys.model.loads.gravity.norm() * sys.model.section.mass_per_length() * length;
         for i in [0, last] {
             for a in 0..3 {
                 if held(sys, i, a) {
-                    force = force.max(sys.load.force[i][a].abs());
+                    force = force.max(sys.state.load.force[i][a].abs());
                 }
             }
         }
-        for (_, f) in &sys.loads.nodal {
+        for (_, f) in &sys.model.loads.nodal {
             force = force.max(f.norm());
         }
-        let couples = sys.loads.moments.iter().map(|(_, m)| m.norm());
-        let clamps = sys.load.clamp_moment.iter().map(|m| m.norm());
+        let couples = sys.model.loads.moments.iter().map(|(_, m)| m.norm());
+        let clamps = sys.state.load.clamp_moment.iter().map(|m| m.norm());
         let moment = couples.chain(clamps).fold(force * length, f64::max);
         Ok(Self {
             force: moment / length,
@@ -45,25 +46,26 @@ impl Balance {
 
     /// Rounding of positions felt as force at node `i`, N.
     fn noise(sys: &System, i: usize) -> f64 {
-        let after = sys.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
+        let after = sys.state.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
         let before = if i > 0 {
-            sys.rod.rest[i - 1]
+            sys.state.rod.rest[i - 1]
         } else {
             f64::INFINITY
         };
         let h = after.min(before);
-        let stiffness = sys.section.ea / h + 4.0 * sys.section.ei / (h * h * h);
-        16.0 * f64::EPSILON * sys.rod.x[i].norm().max(h) * stiffness
+        let stiffness = sys.model.section.ea / h + 4.0 * sys.model.section.ei / (h * h * h);
+        16.0 * f64::EPSILON * sys.state.rod.x[i].norm().max(h) * stiffness
     }
 
     pub(super) fn holds(&self, sys: &System, tolerance: f64) -> bool {
-        let forces = (0..sys.rod.nodes()).all(|i| {
+        let forces = (0..sys.state.rod.nodes()).all(|i| {
             let limit = tolerance * self.force + Self::noise(sys, i);
-            (0..3).all(|a| held(sys, i, a) || sys.load.force[i][a].abs() <= limit)
+            (0..3).all(|a| held(sys, i, a) || sys.state.load.force[i][a].abs() <= limit)
         });
-        let torques = (0..sys.rod.edges()).all(|j| {
-            let noise = 64.0 * f64::EPSILON * sys.section.gj / sys.rod.rest[j];
-            !sys.twist.is_carried() || sys.load.torque[j].abs() <= tolerance * self.moment + noise
+        let torques = (0..sys.state.rod.edges()).all(|j| {
+            let noise = 64.0 * f64::EPSILON * sys.model.section.gj / sys.state.rod.rest[j];
+            !sys.model.twist.is_carried()
+                || sys.state.load.torque[j].abs() <= tolerance * self.moment + noise
         });
         forces && torques
     }
@@ -71,10 +73,10 @@ impl Balance {
     /// Largest force out of balance over the load.
     pub(super) fn worst(&self, sys: &System) -> f64 {
         let mut worst = 0.0_f64;
-        for i in 0..sys.rod.nodes() {
+        for i in 0..sys.state.rod.nodes() {
             for a in 0..3 {
                 if !held(sys, i, a) {
-                    worst = worst.max(sys.load.force[i][a].abs());
+                    worst = worst.max(sys.state.load.force[i][a].abs());
                 }
             }
         }

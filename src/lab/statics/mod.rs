@@ -72,10 +72,10 @@ const SHRINK: f64 = 0.5;
 /// Velocities and spins become zero. Held coordinates may start away from their supports: they go
 /// there with the rest of the wire.
 pub fn relax(sys: &mut System, limits: &Limits) -> Result<Relaxed, RelaxError> {
-    sys.rod.v.fill(V3::zeros());
-    sys.rod.spin.fill(0.0);
-    sys.roll.clear();
-    sys.roll.resize(sys.rod.edges(), 0.0);
+    sys.state.rod.v.fill(V3::zeros());
+    sys.state.rod.spin.fill(0.0);
+    sys.state.roll.clear();
+    sys.state.roll.resize(sys.state.rod.edges(), 0.0);
     let target = support_places(sys);
     sys.evaluate(None);
     let mut iterations = 0;
@@ -130,8 +130,8 @@ pub fn ramp(
         }
         match relax(sys, limits) {
             Ok(done) => {
-                let mut moved = vec![0.0; PER_NODE * sys.rod.nodes()];
-                for (i, (x, x0)) in sys.rod.x.iter().zip(&before.rod.x).enumerate() {
+                let mut moved = vec![0.0; PER_NODE * sys.state.rod.nodes()];
+                for (i, (x, x0)) in sys.state.rod.x.iter().zip(&before.state.rod.x).enumerate() {
                     moved[PER_NODE * i..PER_NODE * i + 3].copy_from_slice((x - x0).as_slice());
                 }
                 trend = Some((moved, to - at));
@@ -157,8 +157,8 @@ pub fn ramp(
 
 /// A first guess: the wire goes on as it went before.
 fn carry_on(sys: &mut System, moved: &[f64], share: f64) {
-    sys.roll.clear();
-    sys.roll.resize(sys.rod.edges(), 0.0);
-    let start = (sys.rod.x.clone(), sys.roll.clone());
+    sys.state.roll.clear();
+    sys.state.roll.resize(sys.state.rod.edges(), 0.0);
+    let start = (sys.state.rod.x.clone(), sys.state.roll.clone());
     advance(sys, &start, moved, share, None);
 }

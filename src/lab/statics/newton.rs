@@ -17,7 +17,7 @@ const MOST_CUTS: usize = 8;
 /// One Newton step, shortened where an edge would turn or stretch too far or where the wire
 /// yields and a shorter step does better.
 pub(super) fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), RelaxError> {
-    let nodes = sys.rod.nodes();
+    let nodes = sys.state.rod.nodes();
     let before = residual(sys);
     let mut step = before.clone();
     let yielding = plastic_tangent::yields(sys);
@@ -27,13 +27,13 @@ pub(super) fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), Rela
         for a in 0..PER_NODE {
             let k = PER_NODE * i + a;
             if a == 3 {
-                if i + 1 == nodes || !sys.twist.is_carried() {
+                if i + 1 == nodes || !sys.model.twist.is_carried() {
                     tangent.fix(k);
                     step[k] = 0.0;
                 }
             } else if held(sys, i, a) {
                 tangent.fix(k);
-                step[k] = target[usize::from(i > 0)][a] - sys.rod.x[i][a];
+                step[k] = target[usize::from(i > 0)][a] - sys.state.rod.x[i][a];
                 carried |= step[k] != 0.0;
             }
         }
@@ -47,8 +47,8 @@ pub(super) fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), Rela
     let mut largest = 0.0_f64;
     for j in 0..nodes - 1 {
         largest = largest
-            .max((part(&step, j + 1) - part(&step, j)).norm() / sys.rod.rest[j])
-            .max(step[PER_NODE * j + 3].abs() / sys.rod.rest[j]);
+            .max((part(&step, j + 1) - part(&step, j)).norm() / sys.state.rod.rest[j])
+            .max(step[PER_NODE * j + 3].abs() / sys.state.rod.rest[j]);
     }
     let whole = (LARGEST_TURN / largest).min(1.0);
     if !whole.is_finite() {
@@ -57,7 +57,7 @@ pub(super) fn newton_step(sys: &mut System, target: &[V3; 2]) -> Result<(), Rela
             share: 1.0,
         });
     }
-    let start = (sys.rod.x.clone(), sys.roll.clone());
+    let start = (sys.state.rod.x.clone(), sys.state.roll.clone());
     advance(sys, &start, &step, whole, Some(target));
     sys.evaluate(None);
     // work of the forces out of balance along the step: 0 at the best share

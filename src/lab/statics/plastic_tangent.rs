@@ -55,28 +55,28 @@ impl Flows {
     /// At the present place.
     pub(crate) fn of(sys: &System) -> Self {
         let mut flows = Self {
-            bend: sys.rod.bend.clone(),
-            twist: sys.rod.twist.clone(),
-            stretch: sys.rod.stretch.clone(),
+            bend: sys.state.rod.bend.clone(),
+            twist: sys.state.rod.twist.clone(),
+            stretch: sys.state.rod.stretch.clone(),
             lacks: Vec::new(),
         };
-        let laws = &sys.laws;
-        for i in 0..sys.rod.nodes() {
+        let laws = &sys.model.laws;
+        for i in 0..sys.state.rod.nodes() {
             let Some([k1, k2, k3]) = strains(sys, i) else {
                 continue;
             };
-            let (m, _, work) = respond_bend(&laws.bend, &sys.rod.bend[i], [k1, k2]);
-            let (t, _, twist_work) = respond_scalar(&laws.twist, &sys.rod.twist[i], k3);
-            let twists = sys.twist.is_carried() && twist_work > 0.0;
+            let (m, _, work) = respond_bend(&laws.bend, &sys.state.rod.bend[i], [k1, k2]);
+            let (t, _, twist_work) = respond_scalar(&laws.twist, &sys.state.rod.twist[i], k3);
+            let twists = sys.model.twist.is_carried() && twist_work > 0.0;
             let (mut bend, mut twist) = ([[0.0; 2]; 2], 0.0);
             if work > 0.0 {
-                let (e, p) = (laws.bend.modulus, sys.rod.bend[i].curvature);
+                let (e, p) = (laws.bend.modulus, sys.state.rod.bend[i].curvature);
                 let d = FINE * ((k1 - p[0]).abs() + (k2 - p[1]).abs());
                 for a in 0..2 {
                     let at = |s: f64| {
                         let mut k = [k1, k2];
                         k[a] += s * d;
-                        respond_bend(&laws.bend, &sys.rod.bend[i], k).0
+                        respond_bend(&laws.bend, &sys.state.rod.bend[i], k).0
                     };
                     let (ahead, behind) = (at(1.0), at(-1.0));
                     for b in 0..2 {
@@ -87,19 +87,20 @@ impl Flows {
                 flows.bend[i].curvature = [k1 - m[0] / e, k2 - m[1] / e];
             }
             if twists {
-                twist = lack(&laws.twist, &sys.rod.twist[i], k3);
+                twist = lack(&laws.twist, &sys.state.rod.twist[i], k3);
                 flows.twist[i].strain = k3 - t / laws.twist.modulus;
             }
             if work > 0.0 || twists {
                 flows.lacks.push(Lack::Joint(i, bend, twist));
             }
         }
-        for j in 0..sys.rod.edges() {
-            let strain = (sys.rod.x[j + 1] - sys.rod.x[j]).norm() / sys.rod.rest[j] - 1.0;
-            let (n, _, work) = respond_scalar(&laws.stretch, &sys.rod.stretch[j], strain);
+        for j in 0..sys.state.rod.edges() {
+            let strain =
+                (sys.state.rod.x[j + 1] - sys.state.rod.x[j]).norm() / sys.state.rod.rest[j] - 1.0;
+            let (n, _, work) = respond_scalar(&laws.stretch, &sys.state.rod.stretch[j], strain);
             if work > 0.0 {
                 flows.stretch[j].strain = strain - n / laws.stretch.modulus;
-                let lack = lack(&laws.stretch, &sys.rod.stretch[j], strain);
+                let lack = lack(&laws.stretch, &sys.state.rod.stretch[j], strain);
                 flows.lacks.push(Lack::Edge(j, lack));
             }
         }
@@ -114,13 +115,13 @@ impl Flows {
             m_y: open,
             t_y: open,
             moment_cap: open,
-            ..sys.section.clone()
+            ..sys.model.section.clone()
         });
         Plastic {
-            bend: std::mem::replace(&mut sys.rod.bend, self.bend.clone()),
-            twist: std::mem::replace(&mut sys.rod.twist, self.twist.clone()),
-            stretch: std::mem::replace(&mut sys.rod.stretch, self.stretch.clone()),
-            laws: std::mem::replace(&mut sys.laws, elastic),
+            bend: std::mem::replace(&mut sys.state.rod.bend, self.bend.clone()),
+            twist: std::mem::replace(&mut sys.state.rod.twist, self.twist.clone()),
+            stretch: std::mem::replace(&mut sys.state.rod.stretch, self.stretch.clone()),
+            laws: std::mem::replace(&mut sys.model.laws, elastic),
         }
     }
 
@@ -130,13 +131,13 @@ impl Flows {
             match *lack {
                 Lack::Joint(i, bend, twist) => soften_joint(sys, band, i, &bend, twist),
                 Lack::Edge(j, lack) => {
-                    let d = sys.rod.x[j + 1] - sys.rod.x[j];
+                    let d = sys.state.rod.x[j + 1] - sys.state.rod.x[j];
                     let t = d / d.norm();
                     for (p, a) in (0..6).map(|q| (q / 3, q % 3)) {
                         for (r, b) in (0..6).map(|q| (q / 3, q % 3)) {
                             let sign = if p == r { 1.0 } else { -1.0 };
                             *band.at(PER_NODE * (j + p) + a, PER_NODE * (j + r) + b) -=
-                                sign * lack * t[a] * t[b] / sys.rod.rest[j];
+                                sign * lack * t[a] * t[b] / sys.state.rod.rest[j];
                         }
                     }
                 }
@@ -148,10 +149,10 @@ impl Flows {
 impl Plastic {
     /// Puts state and laws back.
     pub(crate) fn restore(self, sys: &mut System) {
-        sys.rod.bend = self.bend;
-        sys.rod.twist = self.twist;
-        sys.rod.stretch = self.stretch;
-        sys.laws = self.laws;
+        sys.state.rod.bend = self.bend;
+        sys.state.rod.twist = self.twist;
+        sys.state.rod.stretch = self.stretch;
+        sys.model.laws = self.laws;
     }
 }
 
@@ -165,7 +166,7 @@ fn lack(law: &crate::rod::Law, state: &Scalar, strain: f64) -> f64 {
 
 /// Strains of joint `i`; none at an end that is not clamped.
 fn strains(sys: &System, i: usize) -> Option<Strains> {
-    let (rod, roll) = (&sys.rod, &sys.roll);
+    let (rod, roll) = (&sys.state.rod, &sys.state.roll);
     let edge = |j: usize| -> Quat {
         let d = rod.x[j + 1] - rod.x[j];
         align(&rod.frame[j], &(d / d.norm()), roll[j])
@@ -186,28 +187,28 @@ fn strains(sys: &System, i: usize) -> Option<Strains> {
 }
 
 fn soften_joint(sys: &mut System, band: &mut Band, i: usize, bend: &[[f64; 2]; 2], twist: f64) {
-    let (nodes, edges) = (sys.rod.nodes(), sys.rod.edges());
-    let lv = sys.rod.voronoi(i);
+    let (nodes, edges) = (sys.state.rod.nodes(), sys.state.rod.edges());
+    let lv = sys.state.rod.voronoi(i);
     let mut rows: Vec<(usize, Strains)> = Vec::with_capacity(12);
     for k in i.saturating_sub(1)..(i + 2).min(nodes) {
         for a in 0..PER_NODE {
             if a == 3 && (k >= edges || k > i) {
                 continue;
             }
-            let rest = sys.rod.rest[k.min(edges - 1)];
+            let rest = sys.state.rod.rest[k.min(edges - 1)];
             let width = 2.0 * NUDGE * rest;
             let mut sides = [[0.0; 3]; 2];
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 if a < 3 {
-                    let before = sys.rod.x[k][a];
-                    sys.rod.x[k][a] += sign * NUDGE * rest;
+                    let before = sys.state.rod.x[k][a];
+                    sys.state.rod.x[k][a] += sign * NUDGE * rest;
                     sides[side] = strains(sys, i).unwrap_or_default();
-                    sys.rod.x[k][a] = before;
+                    sys.state.rod.x[k][a] = before;
                 } else {
-                    let before = sys.roll[k];
-                    sys.roll[k] += sign * NUDGE;
+                    let before = sys.state.roll[k];
+                    sys.state.roll[k] += sign * NUDGE;
                     sides[side] = strains(sys, i).unwrap_or_default();
-                    sys.roll[k] = before;
+                    sys.state.roll[k] = before;
                 }
             }
             let mut b = [0.0; 3];

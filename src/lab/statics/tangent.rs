@@ -14,19 +14,19 @@ const NUDGE: f64 = 1e-5;
 
 /// Minus the derivative of [`residual`] with respect to positions and rolls (times edge length).
 pub(super) fn tangent(sys: &mut System) -> Band {
-    let nodes = sys.rod.nodes();
+    let nodes = sys.state.rod.nodes();
     let size = PER_NODE * nodes;
     let mut band = Band::new(size, HALF_BAND);
     // a law with a kink has no difference quotient: go round it with the elastic law at the same
     // forces, and take off afterwards what the yielding joints lack of it
     let flows = plastic_tangent::Flows::of(sys);
     let plastic = flows.hide(sys);
-    let (x, roll) = (sys.rod.x.clone(), sys.roll.clone());
+    let (x, roll) = (sys.state.rod.x.clone(), sys.state.roll.clone());
     let nudge: Vec<f64> = (0..nodes)
         .map(|i| {
-            let after = sys.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
+            let after = sys.state.rod.rest.get(i).copied().unwrap_or(f64::INFINITY);
             let before = if i > 0 {
-                sys.rod.rest[i - 1]
+                sys.state.rod.rest[i - 1]
             } else {
                 f64::INFINITY
             };
@@ -39,20 +39,20 @@ pub(super) fn tangent(sys: &mut System) -> Band {
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 for i in (colour..nodes).step_by(COLOURS) {
                     if a < 3 {
-                        sys.rod.x[i][a] = x[i][a] + sign * nudge[i];
+                        sys.state.rod.x[i][a] = x[i][a] + sign * nudge[i];
                     } else if i + 1 < nodes {
-                        sys.roll[i] = roll[i] + sign * NUDGE;
+                        sys.state.roll[i] = roll[i] + sign * NUDGE;
                     }
                 }
                 sys.evaluate(None);
                 sides[side] = residual(sys);
-                sys.rod.x.copy_from_slice(&x);
-                sys.roll.copy_from_slice(&roll);
+                sys.state.rod.x.copy_from_slice(&x);
+                sys.state.roll.copy_from_slice(&roll);
             }
             for i in (colour..nodes).step_by(COLOURS) {
                 let width = match (a < 3, i + 1 < nodes) {
                     (true, _) => 2.0 * nudge[i],
-                    (false, true) => 2.0 * NUDGE * sys.rod.rest[i],
+                    (false, true) => 2.0 * NUDGE * sys.state.rod.rest[i],
                     (false, false) => continue,
                 };
                 let column = PER_NODE * i + a;

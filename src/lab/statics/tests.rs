@@ -23,15 +23,15 @@ fn cantilever(section: Section) -> System {
     let along = V3::new(0.6, 0.48, 0.64);
     let points: Vec<V3> = (0..=20).map(|i| along * (1e-3 * i as f64)).collect();
     let mut sys = System::new(section, Rod::through(&points, None));
-    sys.support[0] = Support::clamped(V3::zeros(), frame_along(&along, None));
+    sys.state.support[0] = Support::clamped(V3::zeros(), frame_along(&along, None));
     sys
 }
 
 /// Bends, twists and pulls it past all limits.
 fn push(sys: &mut System, share: f64) {
     let force = V3::new(20.0, 25.0, 30.0) + V3::new(0.8, -0.6, 0.0);
-    sys.loads.nodal = vec![(20, force * share)];
-    sys.loads.moments = vec![(19, V3::new(4e-3, 3.2e-3, 4.2e-3) * share)];
+    sys.model.loads.nodal = vec![(20, force * share)];
+    sys.model.loads.moments = vec![(19, V3::new(4e-3, 3.2e-3, 4.2e-3) * share)];
 }
 
 #[test]
@@ -39,9 +39,9 @@ fn the_tangent_is_the_derivative_of_the_forces_where_all_laws_yield() {
     let mut sys = cantilever(section());
     ramp(&mut sys, &Limits::default(), push).expect("the load is carried");
     assert!(
-        sys.rod.stretch[5].strain > 0.0
-            && sys.rod.twist[5].strain != 0.0
-            && sys.rod.bend[1].rise > 0.0
+        sys.state.rod.stretch[5].strain > 0.0
+            && sys.state.rod.twist[5].strain != 0.0
+            && sys.state.rod.bend[1].rise > 0.0
     );
     push(&mut sys, 1.05);
     sys.evaluate(None);
@@ -49,26 +49,26 @@ fn the_tangent_is_the_derivative_of_the_forces_where_all_laws_yield() {
     newton_step(&mut sys, &[V3::zeros(); 2]).expect("forces are finite");
     // forces are derivatives with the frames carried along from where the wire is now
     for j in 0..20 {
-        let t = sys.rod.tangent(j);
-        sys.rod.frame[j] = align(&sys.rod.frame[j], &t, sys.roll[j]);
-        sys.roll[j] = 0.0;
+        let t = sys.state.rod.tangent(j);
+        sys.state.rod.frame[j] = align(&sys.state.rod.frame[j], &t, sys.state.roll[j]);
+        sys.state.roll[j] = 0.0;
     }
     let mut band = tangent(&mut sys);
-    let (x, roll) = (sys.rod.x.clone(), sys.roll.clone());
+    let (x, roll) = (sys.state.rod.x.clone(), sys.state.roll.clone());
     let mut worst = 0.0_f64;
     for k in [9usize, 10, 11] {
         for a in 0..PER_NODE {
             let mut sides = [Vec::new(), Vec::new()];
             for (side, sign) in [(0, 1.0), (1, -1.0)] {
                 if a < 3 {
-                    sys.rod.x[k][a] += sign * 1e-10;
+                    sys.state.rod.x[k][a] += sign * 1e-10;
                 } else {
-                    sys.roll[k] += sign * 1e-7;
+                    sys.state.roll[k] += sign * 1e-7;
                 }
                 sys.evaluate(None);
                 sides[side] = residual(&sys);
-                sys.rod.x.clone_from(&x);
-                sys.roll.clone_from(&roll);
+                sys.state.rod.x.clone_from(&x);
+                sys.state.roll.clone_from(&roll);
             }
             let column = PER_NODE * k + a;
             let diagonal = band.at(column, column).abs();
@@ -92,10 +92,10 @@ fn a_ramp_leaves_the_same_yielding_however_it_is_cut() {
         };
         ramp(&mut sys, &limits, |sys, share| {
             // in one plane, where the law does not depend on the path
-            sys.loads.nodal = vec![(20, V3::new(0.8, -0.6, 0.0).cross(&V3::z()) * share)];
+            sys.model.loads.nodal = vec![(20, V3::new(0.8, -0.6, 0.0).cross(&V3::z()) * share)];
         })
         .expect("the load is carried");
-        (sys.rod.x[20], sys.rod.bend[0].rise)
+        (sys.state.rod.x[20], sys.state.rod.bend[0].rise)
     };
     let (coarse, fine) = (strains(0.5), strains(0.02));
     assert!(fine.1 > 1e-4, "{fine:?}");
@@ -109,11 +109,11 @@ fn a_ramp_leaves_the_same_yielding_however_it_is_cut() {
 #[test]
 fn what_has_no_equilibrium_is_an_error() {
     let mut sys = cantilever(section());
-    sys.support[0] = Support::free();
-    sys.loads.nodal = vec![(20, V3::x())];
+    sys.state.support[0] = Support::free();
+    sys.model.loads.nodal = vec![(20, V3::x())];
     assert!(relax(&mut sys, &Limits::default()).is_err());
     let mut sys = cantilever(section());
-    sys.loads.nodal = vec![(20, V3::x() * f64::NAN)];
+    sys.model.loads.nodal = vec![(20, V3::x() * f64::NAN)];
     assert!(matches!(
         relax(&mut sys, &Limits::default()),
         Err(RelaxError::Broken { .. })

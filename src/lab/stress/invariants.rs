@@ -75,7 +75,7 @@ fn wind(case: &Case, measures: &mut Measures) -> Outcome {
                     "{} steps tried in {:.3} turns, {} live nodes, {:.3} m of wire fed",
                     measures.attempts(),
                     measures.turns,
-                    sim.system().rod.nodes(),
+                    sim.system().state.rod.nodes(),
                     sim.outputs().fed_length
                 );
                 return broken(e.time, Invariant::Steps, text);
@@ -110,7 +110,7 @@ fn broken(time: f64, what: Invariant, text: String) -> Outcome {
 fn gave_up(error: &SimError, sim: Option<&Simulation>) -> Outcome {
     let place = sim.zip(error.node).map(|(sim, node)| {
         let sys = sim.system();
-        sys.arc0 + sys.rod.rest.iter().take(node).sum::<f64>()
+        sys.state.arc0 + sys.state.rod.rest.iter().take(node).sum::<f64>()
     });
     Outcome::GaveUp {
         time: error.time,
@@ -165,9 +165,9 @@ impl Watch {
         );
         m.evaluations = statistics.evaluations;
         let sys = sim.system();
-        m.nodes = m.nodes.max(sys.rod.nodes());
-        m.depth = sys.deepest / sys.section.diameter;
-        let b = sys.balance;
+        m.nodes = m.nodes.max(sys.state.rod.nodes());
+        m.depth = sys.state.deepest / sys.model.section.diameter;
+        let b = sys.state.balance;
         let now = [b.spindle, b.nozzle];
         self.through += (0..2).map(|k| (now[k] - self.before[k]).abs()).sum::<f64>();
         self.before = now;
@@ -198,10 +198,10 @@ impl Watch {
     fn energy(&self, sim: &Simulation, m: &mut Measures) -> Found {
         let sys = sim.system();
         let residual = sys.energy_residual(None);
-        let draw = sim.scene().tensioner.tension * sys.section.diameter;
+        let draw = sim.scene().tensioner.tension * sys.model.section.diameter;
         let scale = self.through + sys.stored() + sys.kinetic() + draw;
         m.energy = m.energy.max((residual / scale).abs());
-        m.added = m.added.max(-sys.balance.numerical / scale);
+        m.added = m.added.max(-sys.state.balance.numerical / scale);
         if residual.abs() > ENERGY * scale {
             let text = format!("{residual:.3e} J unexplained of {scale:.3e} J that went through");
             return Err((Invariant::Energy, text));
@@ -210,7 +210,7 @@ impl Watch {
     }
 
     fn plastic_work(&mut self, sim: &Simulation) -> Found {
-        let now: f64 = sim.system().balance.plastic.iter().sum();
+        let now: f64 = sim.system().state.balance.plastic.iter().sum();
         let before = std::mem::replace(&mut self.plastic, now);
         // (rounding of sums)
         if now < before - 1e-12 * before.abs() {
@@ -222,7 +222,7 @@ impl Watch {
 
     fn wire(&self, sim: &Simulation) -> Found {
         let (is, fed) = (wire_length(sim), sim.outputs().fed_length);
-        let joined = sim.system().joined_away;
+        let joined = sim.system().state.joined_away;
         let all = self.length + fed.abs();
         if joined > JOINED * all {
             let text = format!("{joined:.3e} m of {all:.3e} m lost where nodes went");
@@ -239,7 +239,7 @@ impl Watch {
     }
 
     fn frozen_wire(&mut self, sim: &Simulation) -> Found {
-        let Some(line) = &sim.system().line else {
+        let Some(line) = sim.system().contact.as_line() else {
             return Ok(());
         };
         let now = line.tube.points();
@@ -259,7 +259,7 @@ impl Watch {
 /// Unstretched wire from clamp to nozzle, m.
 fn wire_length(sim: &Simulation) -> f64 {
     let sys = sim.system();
-    sys.arc0 + sys.rod.rest.iter().sum::<f64>()
+    sys.state.arc0 + sys.state.rod.rest.iter().sum::<f64>()
 }
 
 fn finite(sim: &Simulation) -> Found {
@@ -287,7 +287,7 @@ fn finite(sim: &Simulation) -> Found {
     if let Some((name, x)) = numbers.into_iter().find(|(_, x)| !x.is_finite()) {
         return Err((Invariant::Finite, format!("{name} = {x}")));
     }
-    let rod = &sim.system().rod;
+    let rod = &sim.system().state.rod;
     let bad = |i: &usize| !(rod.x[*i].sum() + rod.v[*i].sum()).is_finite();
     match (0..rod.nodes()).find(bad) {
         Some(i) => Err((Invariant::Finite, format!("live node {i}"))),
@@ -298,14 +298,21 @@ fn finite(sim: &Simulation) -> Found {
 /// Tells nodes from others: their number may be the same where one came and one went. The unstretched lengths between them
 /// are theirs, but for the last, which grows.
 fn nodes_of(sim: &Simulation) -> Vec<u64> {
-    let rest = &sim.system().rod.rest;
+    let rest = &sim.system().state.rod.rest;
     let lengths = rest[..rest.len() - 1].iter().map(|l| l.to_bits());
     lengths.chain([sim.centreline().frozen as u64]).collect()
 }
 
 fn tension(sim: &Simulation) -> Found {
     let o = sim.outputs();
-    let at_nozzle = sim.system().load.tension.last().copied().unwrap_or(0.0);
+    let at_nozzle = sim
+        .system()
+        .state
+        .load
+        .tension
+        .last()
+        .copied()
+        .unwrap_or(0.0);
     let strength = sim.scene().wire.strength;
     // (a slack line lets the wire hang: what is left is what the solve left)
     let least = -1e-3 * strength.min(1e3);
@@ -317,7 +324,7 @@ fn tension(sim: &Simulation) -> Found {
 }
 
 fn cone(sim: &Simulation, m: &mut Measures) -> Found {
-    let Some(line) = &sim.system().line else {
+    let Some(line) = sim.system().contact.as_line() else {
         return Ok(());
     };
     let (point, share) = line.friction_over_limit();
@@ -332,17 +339,17 @@ fn cone(sim: &Simulation, m: &mut Measures) -> Found {
 fn penetration(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
     let sys = sim.system();
     let (r, d) = (scene.wire.radius(), scene.wire.diameter);
-    let spin = Spin::new(sys.spindle.angle);
+    let spin = Spin::new(sys.state.spindle.angle);
     // the stiffness allows for so much where the wire is drawn round the tightest bend, within reason
     let bend = match scene.core {
         Core::RoundedBox { corner_radius, .. } => corner_radius + r,
         Core::Cylinder { radius, .. } => radius + r,
         Core::Mesh { .. } => r,
     };
-    let pull = sys.load.tension.iter().copied().fold(0.0, f64::max);
+    let pull = sys.state.load.tension.iter().copied().fold(0.0, f64::max);
     let soft = (pull / bend / scene.contact.stiffness).min(0.2 * d);
     let allowed = SUNK * d + soft;
-    for i in 1..sys.rod.nodes() - 1 {
+    for i in 1..sys.state.rod.nodes() - 1 {
         let depth = r - sys.distance_to_core(spin.to_core(sys.centre(i)));
         m.sunk = m.sunk.max(depth / d);
         if depth > allowed {
@@ -361,13 +368,13 @@ fn penetration(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
 /// method's own search found.
 fn wire_in_wire(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
     let sys = sim.system();
-    let Some(line) = &sys.line else {
+    let Some(line) = sys.contact.as_line() else {
         return Ok(());
     };
     let d = scene.wire.diameter;
-    let spin = Spin::new(sys.spindle.angle);
+    let spin = Spin::new(sys.state.spindle.angle);
     let frozen = line.tube.points();
-    let live = (0..sys.rod.nodes()).map(|i| spin.to_core(sys.rod.x[i]));
+    let live = (0..sys.state.rod.nodes()).map(|i| spin.to_core(sys.state.rod.x[i]));
     let all: Vec<V3> = frozen.iter().copied().chain(live).collect();
     // polar angle along the wire from its end
     let mut turned = vec![0.0];

@@ -4,11 +4,11 @@ use super::equilibrium::{follow, no_answer};
 use super::modes::{Motion, lowest};
 use super::wire::{clamp_along_x, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Implicit, RK4_LIMIT, Scheme, VERLET_LIMIT, highest_frequency, rk4, verlet};
+use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::scene::Integrator;
-use crate::system::{Support, System};
+use crate::system::Support;
 
 /// Edges along the wire: for modes and stretch, and for the pulse.
 const EDGES: f64 = 200.0;
@@ -29,14 +29,14 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let (length, force) = (ctx.positive("L_m")?, ctx.number("P_N")?);
     let n = ctx.edges(length, length / EDGES)?;
     let mut sys = straight(ctx.elastic(), &vec![length / n as f64; n]);
-    sys.support[0] = clamp_along_x(V3::zeros());
+    sys.state.support[0] = clamp_along_x(V3::zeros());
     let one = lowest(ctx, &mut sys, Motion::Along(0), 2)?;
-    sys.support[1] = clamp_along_x(V3::x() * length);
+    sys.state.support[1] = clamp_along_x(V3::x() * length);
     let both = lowest(ctx, &mut sys, Motion::Along(0), 1)?;
 
-    sys.support[1] = Support::free();
+    sys.state.support[1] = Support::free();
     follow(ctx, &mut sys, |sys, share| {
-        sys.loads.nodal = vec![(n, V3::x() * (force * share))];
+        sys.model.loads.nodal = vec![(n, V3::x() * (force * share))];
     })?;
     Ok(vec![
         (
@@ -48,7 +48,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         ("fixed_fixed_f1_Hz", Answer::Number(both[0])),
         (
             "static_extension_m",
-            Answer::Number(sys.rod.x[n].x - length),
+            Answer::Number(sys.state.rod.x[n].x - length),
         ),
     ])
 }
@@ -58,41 +58,42 @@ fn wave_speed(ctx: &Context, length: f64) -> Result<f64, VerifyError> {
     let n = ctx.edges(length, length / PULSE_EDGES)?;
     let h = length / n as f64;
     let mut sys = straight(ctx.elastic(), &vec![h; n]);
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     for i in 0..=n {
-        let z = (sys.rod.x[i].x / length - 0.3) / PULSE_WIDTH;
-        sys.rod.v[i].x = PULSE_SPEED * libm::exp(-0.5 * z * z);
+        let z = (sys.state.rod.x[i].x / length - 0.3) / PULSE_WIDTH;
+        sys.state.rod.v[i].x = PULSE_SPEED * libm::exp(-0.5 * z * z);
     }
-    let top = highest_frequency(&sys.section, h, 0.0, false);
-    let limit = match ctx.integrator {
-        Integrator::Rk4 => RK4_LIMIT,
-        // the midpoint rule has no limit, but it is to follow the pulse
-        Integrator::Verlet | Integrator::Implicit => VERLET_LIMIT,
+    let top = highest_frequency(&sys.model.section, h, 0.0, false);
+    let explicit = match ctx.integrator {
+        Integrator::Rk4 => Some(ExplicitMethod::Rk4),
+        Integrator::Verlet => Some(ExplicitMethod::Verlet),
+        Integrator::Implicit => None,
     };
+    // the midpoint rule has no limit, but it is to follow the pulse
+    let limit = explicit.unwrap_or(ExplicitMethod::Verlet).limit();
     let dt = STEP_SHARE * limit / top;
-    let mut method = Implicit::new(Scheme::Midpoint, TOLERANCE, dt, dt);
-    method.fixed = Some(dt);
-    let mut step = |sys: &mut System| -> Result<(), VerifyError> {
-        match ctx.integrator {
-            Integrator::Rk4 => rk4::step(sys, dt),
-            Integrator::Verlet => verlet::step(sys, dt),
-            Integrator::Implicit => {
-                method.step(sys, dt).map_err(no_answer)?;
-            }
+    let mut stepper = match explicit {
+        Some(method) => Stepper::Explicit {
+            method: Explicit::new(method),
+            longest: dt,
+        },
+        None => {
+            let mut method = Implicit::new(Scheme::Midpoint, TOLERANCE, dt, dt);
+            method.fixed = Some(dt);
+            Stepper::Implicit(Box::new(method))
         }
-        Ok(())
     };
     sys.evaluate(Some(dt));
     // half of the pulse runs right: when its crest passes two nodes
     let stations = [n / 2, 3 * n / 4];
     let mut crests = [Crest::default(), Crest::default()];
     for _ in 0..MOST_STEPS {
-        step(&mut sys)?;
+        stepper.step(&mut sys, dt).map_err(no_answer)?;
         for (crest, node) in crests.iter_mut().zip(stations) {
-            crest.see(sys.rod.v[node].x, sys.time, dt);
+            crest.see(sys.state.rod.v[node].x, sys.state.time, dt);
         }
         if let [Some(first), Some(second)] = [crests[0].time, crests[1].time] {
-            let distance: f64 = sys.rod.rest[stations[0]..stations[1]].iter().sum();
+            let distance: f64 = sys.state.rod.rest[stations[0]..stations[1]].iter().sum();
             return Ok(distance / (second - first));
         }
     }

@@ -6,13 +6,15 @@ use super::{Context, VerifyError};
 use crate::contact::{ContactLaw, Contacts, LineContact};
 use crate::geometry::{FrozenNode, SIDES, Tube};
 use crate::geometry::{Shape, Surface, Touch, TriMesh, generate};
-use crate::integrate::{Implicit, Scheme, VERLET_LIMIT, highest_frequency, verlet};
+use crate::integrate::{
+    Explicit, ExplicitMethod, Implicit, Scheme, VERLET_LIMIT, highest_frequency,
+};
 use crate::math::V3;
 use crate::math::{align, frame_along};
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{Support, System};
+use crate::system::{ContactModel, NodalContact, Support, System};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -53,7 +55,7 @@ const DEPTH: f64 = 1.5e-5;
 /// How steps are taken.
 pub(super) enum Stepper {
     /// steps of a given length
-    Explicit(fn(&mut System, f64)),
+    Explicit(Explicit),
     /// the production method, with its own choice of step
     Implicit(Box<Implicit>),
 }
@@ -77,9 +79,9 @@ impl Stepper {
         dt: f64,
     ) -> Result<(), VerifyError> {
         match self {
-            Self::Explicit(step) => {
+            Self::Explicit(explicit) => {
                 for _ in 0..(time / dt).ceil() as usize {
-                    step(sys, dt);
+                    explicit.step(sys, dt);
                 }
             }
             Self::Implicit(method) => {
@@ -139,7 +141,7 @@ impl Bench {
             .collect();
         let mut sys = System::new(section.clone(), Rod::through(&points, None));
         // the section does not turn: nothing in these checks rolls
-        sys.twist = Twist::Off;
+        sys.model.twist = Twist::Off;
         let implicit = ctx.integrator == Integrator::Implicit;
         if implicit {
             let floor = Shape::RoundedBox {
@@ -153,7 +155,7 @@ impl Bench {
             for node in straight_wires(neighbours, height, length) {
                 line.lay(node.point, node.arc);
             }
-            sys.line = Some(line);
+            sys.contact = ContactModel::line(line);
         } else {
             let floor = box_mesh(4.0 * length, 2.0 * half_height, 2.0 * reach)?;
             let diameter = section.diameter;
@@ -162,16 +164,16 @@ impl Bench {
             for node in straight_wires(neighbours, height, length) {
                 contacts.tube.push(node);
             }
-            sys.contacts = Some(contacts);
+            sys.contact = ContactModel::nodal(contacts);
         }
         // guided along itself: ridges of rolled wire are screws
-        sys.support[0] = Support {
+        sys.state.support[0] = Support {
             hold: [true, false, false],
             point: points[0],
             ..Support::free()
         };
         // far along the wire, so that nothing counts as the piece's own neighbourhood
-        sys.arc0 = 100.0 * length;
+        sys.state.arc0 = 100.0 * length;
         let load = law.stiffness * DEPTH * r;
         let m = section.mass_per_length();
         let dt = stable_step(section, spacing, law.stiffness, false);
@@ -184,7 +186,7 @@ impl Bench {
             step: if implicit {
                 Stepper::implicit(TOLERANCE * r, LONGEST * (m * r / load).sqrt())
             } else {
-                Stepper::Explicit(verlet::step)
+                Stepper::Explicit(Explicit::new(ExplicitMethod::Verlet))
             },
             full: V3::new(0.0, sideways * load, -load) / m,
         };
@@ -204,7 +206,7 @@ impl Bench {
         };
         for i in 0..steps {
             let s = (i as f64 + 1.0) / steps as f64;
-            self.sys.loads.gravity = self.full * (0.5 - 0.5 * libm::cos(PI * s));
+            self.sys.model.loads.gravity = self.full * (0.5 - 0.5 * libm::cos(PI * s));
             self.step.through(&mut self.sys, dt, dt)?;
         }
         Ok(())
@@ -217,16 +219,16 @@ impl Bench {
 
     /// Centre of mass.
     pub(super) fn centre(&self) -> V3 {
-        self.mean(|i| self.sys.rod.x[i])
+        self.mean(|i| self.sys.state.rod.x[i])
     }
 
     /// Its velocity.
     pub(super) fn velocity(&self) -> V3 {
-        self.mean(|i| self.sys.rod.v[i])
+        self.mean(|i| self.sys.state.rod.v[i])
     }
 
     fn mean(&self, of: impl Fn(usize) -> V3) -> V3 {
-        let rod = &self.sys.rod;
+        let rod = &self.sys.state.rod;
         let length: f64 = rod.rest.iter().sum();
         (0..rod.nodes())
             .map(|i| of(i) * (rod.voronoi(i) / length))
@@ -235,7 +237,7 @@ impl Bench {
 
     /// Unstretched length of the piece, m.
     pub(super) fn length(&self) -> f64 {
-        self.sys.rod.rest.iter().sum()
+        self.sys.state.rod.rest.iter().sum()
     }
 }
 
@@ -303,9 +305,9 @@ pub(super) fn stable_step(section: &Section, h: f64, stiffness: f64, twist: bool
 
 /// Force of each touch of node `i` at rest, from the law that moves the wire, N.
 pub(super) fn touch_forces(sys: &System, i: usize) -> Vec<V3> {
-    if let Some(line) = &sys.line {
+    if let Some(line) = sys.contact.as_line() {
         // the node's own point and the middle of the edge after it
-        let rod = &sys.rod;
+        let rod = &sys.state.rod;
         let mut forces = Vec::new();
         if i > 0 && i < rod.edges() {
             forces.extend(line.normal_forces(2 * i, 0.5 * rod.voronoi(i)));
@@ -315,10 +317,10 @@ pub(super) fn touch_forces(sys: &System, i: usize) -> Vec<V3> {
         }
         return forces;
     }
-    let Some(contacts) = &sys.contacts else {
+    let Some(NodalContact { contacts, .. }) = sys.contact.as_nodal() else {
         return Vec::new();
     };
-    let p = crate::math::Spin::new(sys.spindle.angle).to_core(sys.rod.x[i]);
+    let p = crate::math::Spin::new(sys.state.spindle.angle).to_core(sys.state.rod.x[i]);
     let (mut triangles, mut segments, mut touches) = (Vec::new(), Vec::new(), Vec::new());
     contacts.surface.near(p, contacts.radius, &mut triangles);
     contacts
@@ -331,7 +333,10 @@ pub(super) fn touch_forces(sys: &System, i: usize) -> Vec<V3> {
         .tube
         .touching(p, contacts.radius, &segments, &mut touches);
     let force = |t: &Touch| {
-        let (length, mass) = (sys.rod.voronoi(i), sys.rod.mass(&sys.section, i));
+        let (length, mass) = (
+            sys.state.rod.voronoi(i),
+            sys.state.rod.mass(&sys.model.section, i),
+        );
         contacts
             .law
             .force(t.normal, t.depth, V3::zeros(), V3::zeros(), length, mass)

@@ -46,9 +46,9 @@ fn stretched(ctx: &Context) -> Result<System, VerifyError> {
     // the length is meant under tension
     let rest = length / (1.0 + tension / section.ea);
     let mut sys = straight(section, &vec![rest / n as f64; n]);
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     let frame = |clamps: bool| clamps.then(|| heading(0.0));
-    sys.support = [
+    sys.state.support = [
         Support {
             frame: frame(clamped),
             ..Support::pinned(V3::zeros())
@@ -60,7 +60,7 @@ fn stretched(ctx: &Context) -> Result<System, VerifyError> {
         },
     ];
     follow(ctx, &mut sys, |sys, share| {
-        sys.loads.nodal = vec![(n, V3::x() * (tension * share))];
+        sys.model.loads.nodal = vec![(n, V3::x() * (tension * share))];
     })?;
     Ok(sys)
 }

@@ -30,7 +30,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     // the span is meant under tension
     let rest = span / (1.0 + pull / section.ea);
     let mut sys = straight(section, &vec![rest / n as f64; n]);
-    sys.support = [
+    sys.state.support = [
         Support::pinned(V3::zeros()),
         Support {
             hold: [false, true, true],
@@ -38,17 +38,17 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         },
     ];
     // the pinned ends leave the wire free to roll about its axis
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     follow(ctx, &mut sys, |sys, s| {
-        sys.loads.nodal = vec![(n, V3::x() * (pull * s))];
+        sys.model.loads.nodal = vec![(n, V3::x() * (pull * s))];
     })?;
     follow(ctx, &mut sys, |sys, s| {
         let m = V3::z() * (couple * share * s);
-        sys.loads.moments = vec![(0, m), (n - 1, -m)];
+        sys.model.loads.moments = vec![(0, m), (n - 1, -m)];
     })?;
-    let end_slope = angle(&sys, 0) - 0.5 * curvature(&sys, 1) * sys.rod.rest[0];
+    let end_slope = angle(&sys, 0) - 0.5 * curvature(&sys, 1) * sys.state.rod.rest[0];
     Ok(vec![
-        ("bulge_m", Answer::Number(sys.rod.x[n / 2].y / share)),
+        ("bulge_m", Answer::Number(sys.state.rod.x[n / 2].y / share)),
         ("end_slope_rad", Answer::Number(end_slope / share)),
     ])
 }

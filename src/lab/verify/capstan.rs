@@ -9,12 +9,12 @@ use super::{Answer, Answers, Context, VerifyError};
 use crate::contact::{Contacts, LineContact};
 use crate::geometry::Shape;
 use crate::geometry::generate::cylinder;
-use crate::integrate::verlet;
+use crate::integrate::{Explicit, ExplicitMethod};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{Support, System};
+use crate::system::{ContactModel, Support, System};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -113,7 +113,7 @@ impl Capstan {
             .collect();
         let mut sys = System::new(section.clone(), Rod::through(&points, Some(rest)));
         // plane, so untwisted
-        sys.twist = Twist::Off;
+        sys.model.twist = Twist::Off;
         let stiffness = hold / (bend * bend * DEPTH);
         let law = law(stiffness, 1.0, mu);
         let (count, r) = (points.len(), section.radius());
@@ -126,17 +126,18 @@ impl Capstan {
             };
             let mut line = LineContact::new(core, law, r, count);
             line.damping = line_damping(&law, section);
-            sys.line = Some(line);
+            sys.contact = ContactModel::line(line);
             step = Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave));
         } else {
             let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
-            sys.contacts = Some(Contacts::new(core, law, r, section.diameter, count));
-            step = Stepper::Explicit(verlet::step);
+            let contacts = Contacts::new(core, law, r, section.diameter, count);
+            sys.contact = ContactModel::nodal(contacts);
+            step = Stepper::Explicit(Explicit::new(ExplicitMethod::Verlet));
         }
         let start = FRAC_PI_2 + wrap;
         let out = V3::new(-libm::sin(start), 0.0, libm::cos(start));
-        sys.loads.nodal = vec![(0, out * hold)];
-        sys.support[1] = Support {
+        sys.model.loads.nodal = vec![(0, out * hold)];
+        sys.state.support[1] = Support {
             hold: [true, false, false],
             point: points[edges],
             ..Support::free()
@@ -157,31 +158,31 @@ impl Capstan {
     /// Lets the legs find their shape under drag.
     fn settle(&mut self) -> Result<(), VerifyError> {
         let transit = self.leg / self.wave;
-        self.sys.loads.drag = 4.0 / transit;
+        self.sys.model.loads.drag = 4.0 / transit;
         self.step.through(&mut self.sys, 4.0 * transit, self.dt)
     }
 
     /// Draws the wire at constant speed; mean force ratios over two stretches one after the other.
     fn draw(&mut self) -> Result<Vec<f64>, VerifyError> {
         let speed = SPEED * self.wave;
-        let last = self.sys.rod.nodes() - 1;
+        let last = self.sys.state.rod.nodes() - 1;
         let run_in = RUN_IN * self.bend / speed;
         let (steps, dt) = self.parts(run_in);
         for i in 0..steps {
             // a sudden start would be a blow; drag fades out to where it takes nothing off
             let s = (i as f64 + 1.0) / steps as f64;
-            self.sys.support[1].velocity.x = speed * (10.0 * s).min(1.0);
-            self.sys.loads.drag = (1.0 - s) * self.wave / self.leg;
+            self.sys.state.support[1].velocity.x = speed * (10.0 * s).min(1.0);
+            self.sys.model.loads.drag = (1.0 - s) * self.wave / self.leg;
             self.step.through(&mut self.sys, dt, dt)?;
         }
-        self.sys.loads.drag = 0.0;
+        self.sys.model.loads.drag = 0.0;
         let (steps, dt) = self.parts(MEAN_EDGES * self.edge / speed);
         (0..2)
             .map(|_| {
                 let mut mean = SmoothMean::over(steps);
                 for _ in 0..steps {
                     self.step.through(&mut self.sys, dt, dt)?;
-                    mean.add(-self.sys.load.force[last].x / self.hold);
+                    mean.add(-self.sys.state.load.force[last].x / self.hold);
                 }
                 Ok(mean.value())
             })

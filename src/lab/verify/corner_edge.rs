@@ -51,19 +51,19 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         .unwrap_or(finest.min(yielded_layer(&section, pull) / 20.0));
     let rest = graded(12.0 * layer, finest, GROWTH, finest.max(layer / 10.0));
     let mut sys = straight(section, &rest);
-    sys.support[0] = clamp_along_x(V3::zeros());
+    sys.state.support[0] = clamp_along_x(V3::zeros());
     let n = rest.len();
     let leg = |share: f64| {
         let psi = 0.5 * turn * share;
         V3::new(libm::cos(psi), -libm::sin(psi), 0.0)
     };
     follow(ctx, &mut sys, |sys, share| {
-        sys.loads.nodal = vec![(n, V3::x() * (pull * share))];
+        sys.model.loads.nodal = vec![(n, V3::x() * (pull * share))];
     })?;
     follow(ctx, &mut sys, |sys: &mut System, share| {
-        sys.loads.nodal = vec![(n, leg(share) * pull)];
+        sys.model.loads.nodal = vec![(n, leg(share) * pull)];
     })?;
-    let standoff = sys.rod.x[n].cross(&leg(1.0)).z;
+    let standoff = sys.state.rod.x[n].cross(&leg(1.0)).z;
     Ok(vec![
         (
             "peak_curvature_1_per_m",
@@ -74,7 +74,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         // the mirrored half pushes as much
         (
             "edge_force_N",
-            Answer::Number(2.0 * sys.load.force[0].y.abs()),
+            Answer::Number(2.0 * sys.state.load.force[0].y.abs()),
         ),
     ])
 }

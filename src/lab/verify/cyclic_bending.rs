@@ -19,7 +19,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let sharpest = path.iter().fold(0.0_f64, |a, k| a.max(k.abs()));
     let edge = ctx.spacing.unwrap_or(2.0 * WIDEST / sharpest.max(1.0));
     let mut sys = straight(ctx.section.clone(), &[edge]);
-    sys.support = [
+    sys.state.support = [
         Support::pinned(V3::zeros()),
         Support::pinned(V3::x() * edge),
     ];
@@ -27,16 +27,16 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let mut moments = Vec::with_capacity(path.len());
     for curvature in path {
         // the wire leaves its clamp downwards and turns up into the edge
-        let angle = -curvature * sys.rod.voronoi(0);
-        sys.support[0].frame = Some(heading(angle));
+        let angle = -curvature * sys.state.rod.voronoi(0);
+        sys.state.support[0].frame = Some(heading(angle));
         if ctx.integrator == Integrator::Implicit {
-            sys.twist = Twist::Off;
+            sys.model.twist = Twist::Off;
             // before the path goes on the moment is the work of the step; the shear couple carries it
             moments.push(-method.forces(&mut sys)[1].y * edge);
             method.settle(&mut sys).map_err(no_answer)?;
         } else {
             sys.evaluate(Some(0.0));
-            moments.push(-sys.load.clamp_moment[0].z);
+            moments.push(-sys.state.load.clamp_moment[0].z);
         }
     }
     Ok(vec![("moment_isotropic_Nm", Answer::List(moments))])

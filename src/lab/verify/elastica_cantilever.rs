@@ -15,20 +15,20 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     // the bent part at the clamp is about L / sqrt(alpha) long
     let n = ctx.edges(length, length / (150.0 * alpha.abs().sqrt().max(1.0)))?;
     let mut sys = straight(section, &vec![length / n as f64; n]);
-    sys.support[0] = clamp_along_x(V3::zeros());
+    sys.state.support[0] = clamp_along_x(V3::zeros());
     follow(ctx, &mut sys, |sys, share| {
-        sys.loads.nodal = vec![(n, V3::new(0.0, force * share, 0.0))];
+        sys.model.loads.nodal = vec![(n, V3::new(0.0, force * share, 0.0))];
     })?;
-    let tip = sys.rod.x[n];
+    let tip = sys.state.rod.x[n];
     // curvature falls to 0 at the tip: a quarter of its value one node before, over half an edge
-    let tip_angle = angle(&sys, n - 1) + curvature(&sys, n - 1) * 0.125 * sys.rod.rest[n - 1];
+    let tip_angle = angle(&sys, n - 1) + curvature(&sys, n - 1) * 0.125 * sys.state.rod.rest[n - 1];
     Ok(vec![
         ("extensible_tip_x_m", Answer::Number(tip.x)),
         ("extensible_tip_y_m", Answer::Number(tip.y)),
         ("extensible_tip_angle_rad", Answer::Number(tip_angle)),
         (
             "clamp_moment_Nm",
-            Answer::Number(-sys.load.clamp_moment[0].z),
+            Answer::Number(-sys.state.load.clamp_moment[0].z),
         ),
     ])
 }

@@ -17,16 +17,16 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let couple = V3::z() * (fraction * TAU * section.ei / length);
     let n = ctx.edges(length, length / (turn / TURN_PER_EDGE).max(50.0))?;
     let mut sys = straight(section, &vec![length / n as f64; n]);
-    sys.support[0] = clamp_along_x(V3::zeros());
+    sys.state.support[0] = clamp_along_x(V3::zeros());
     follow_in_plane(ctx, &mut sys, |sys, share| {
-        sys.loads.moments = vec![(n - 1, couple * share)];
+        sys.model.loads.moments = vec![(n - 1, couple * share)];
     })?;
     let mean = (1..n).map(|i| curvature(&sys, i)).sum::<f64>() / (n - 1) as f64;
-    let tip_angle = angle(&sys, n - 1) + 0.5 * mean * sys.rod.rest[n - 1];
+    let tip_angle = angle(&sys, n - 1) + 0.5 * mean * sys.state.rod.rest[n - 1];
     Ok(vec![
         ("curvature_1_per_m", Answer::Number(mean)),
-        ("tip_x_m", Answer::Number(sys.rod.x[n].x)),
-        ("tip_y_m", Answer::Number(sys.rod.x[n].y)),
+        ("tip_x_m", Answer::Number(sys.state.rod.x[n].x)),
+        ("tip_y_m", Answer::Number(sys.state.rod.x[n].y)),
         ("tip_angle_rad", Answer::Number(tip_angle)),
     ])
 }

@@ -20,7 +20,7 @@ pub(super) fn follow(
     apply: impl FnMut(&mut System, f64),
 ) -> Result<(), VerifyError> {
     if ctx.integrator == Integrator::Implicit {
-        sys.twist = Twist::Off;
+        sys.model.twist = Twist::Off;
         return method(sys).follow(sys, apply).map_err(no_answer);
     }
     ramp(sys, &Limits::default(), apply)?;
@@ -37,7 +37,7 @@ pub(super) fn follow_in_plane(
     if ctx.integrator != Integrator::Implicit {
         return follow(ctx, sys, apply);
     }
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     let mut method = method(sys);
     method.flat = true;
     method.follow(sys, apply).map_err(no_answer)
@@ -50,7 +50,7 @@ pub(super) fn follow_with_twist(
     apply: impl FnMut(&mut System, f64),
 ) -> Result<(), VerifyError> {
     if ctx.integrator == Integrator::Implicit {
-        sys.twist = Twist::QuasiStatic;
+        sys.model.twist = Twist::QuasiStatic;
         return method(sys).follow(sys, apply).map_err(no_answer);
     }
     follow(ctx, sys, apply)
@@ -59,7 +59,7 @@ pub(super) fn follow_with_twist(
 /// Moves to equilibrium under the present loads and supports; without twist, see [`follow`].
 pub(super) fn settle(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
     if ctx.integrator == Integrator::Implicit {
-        sys.twist = Twist::Off;
+        sys.model.twist = Twist::Off;
         return method(sys).settle(sys).map_err(no_answer);
     }
     relax(sys, &Limits::default())?;
@@ -69,7 +69,7 @@ pub(super) fn settle(ctx: &Context, sys: &mut System) -> Result<(), VerifyError>
 /// The same with twist.
 pub(super) fn settle_with_twist(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
     if ctx.integrator == Integrator::Implicit {
-        sys.twist = Twist::QuasiStatic;
+        sys.model.twist = Twist::QuasiStatic;
         return method(sys).settle(sys).map_err(no_answer);
     }
     settle(ctx, sys)
@@ -77,7 +77,7 @@ pub(super) fn settle_with_twist(ctx: &Context, sys: &mut System) -> Result<(), V
 
 /// The production method as static solves use it.
 pub(super) fn method(sys: &System) -> Implicit {
-    let length: f64 = sys.rod.rest.iter().sum();
+    let length: f64 = sys.state.rod.rest.iter().sum();
     // bounds of the step mean nothing here
     Implicit::new(Scheme::Bdf2, TOLERANCE * length, 1e-9, 1.0)
 }

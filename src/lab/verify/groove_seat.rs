@@ -22,11 +22,11 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         -lam,
         law(1e10, 1.0, 0.0),
     )?;
-    bench.sys.loads.drag = DRAG / bench.unit;
+    bench.sys.model.loads.drag = DRAG / bench.unit;
     bench.apply_load()?;
     bench.run(SETTLE)?;
     let (mut left, mut right) = (V3::zeros(), V3::zeros());
-    for i in 0..bench.sys.rod.nodes() {
+    for i in 0..bench.sys.state.rod.nodes() {
         for f in touch_forces(&bench.sys, i) {
             if f.y > 0.0 {
                 left += f;

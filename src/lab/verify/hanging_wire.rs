@@ -26,18 +26,21 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let layer = (section.ei / pull).sqrt();
     let n = ctx.edges(length, (length / 200.0).min(layer / 15.0))?;
     let mut sys = straight(section, &vec![length / n as f64; n]);
-    sys.support = [clamp_along_x(V3::zeros()), clamp_along_x(V3::x() * length)];
+    sys.state.support = [clamp_along_x(V3::zeros()), clamp_along_x(V3::x() * length)];
     follow(ctx, &mut sys, |sys, share| {
-        sys.loads.gravity = V3::new(0.0, -GRAVITY * share, 0.0);
+        sys.model.loads.gravity = V3::new(0.0, -GRAVITY * share, 0.0);
     })?;
     follow(ctx, &mut sys, |sys, share| {
-        sys.support[1].point.x = length + share * (span - length);
+        sys.state.support[1].point.x = length + share * (span - length);
     })?;
-    let mid = sys.rod.x[n / 2];
+    let mid = sys.state.rod.x[n / 2];
     Ok(vec![
-        ("H_N", Answer::Number(-sys.load.force[n].x)),
+        ("H_N", Answer::Number(-sys.state.load.force[n].x)),
         ("sag_m", Answer::Number(-mid.y)),
         ("mid_moment_Nm", Answer::Number(moment(&sys, n / 2))),
-        ("end_moment_Nm", Answer::Number(-sys.load.clamp_moment[0].z)),
+        (
+            "end_moment_Nm",
+            Answer::Number(-sys.state.load.clamp_moment[0].z),
+        ),
     ])
 }

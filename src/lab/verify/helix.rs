@@ -71,13 +71,13 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     }
     rod.realign();
     let mut sys = System::new(ctx.elastic(), rod);
-    sys.support = [
+    sys.state.support = [
         Support::clamped(points[0], helix.frame(0.0)),
         Support::clamped(points[n], helix.frame(TAU)),
     ];
     settle_with_twist(ctx, &mut sys)?;
-    let force = -sys.load.force[n];
-    let couple = sys.load.clamp_moment[1] + points[n].cross(&force);
+    let force = -sys.state.load.force[n];
+    let couple = sys.state.load.clamp_moment[1] + points[n].cross(&force);
     Ok(vec![
         ("axial_force_N", Answer::Number(force.z)),
         ("axial_moment_Nm", Answer::Number(couple.z)),

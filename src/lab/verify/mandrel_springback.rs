@@ -19,15 +19,15 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let edge = ctx.spacing.unwrap_or(TURN_PER_EDGE * radius);
     let turn = EDGES as f64 * edge / radius;
     let mut sys = straight(ctx.section.clone(), &[edge; EDGES]);
-    sys.support[0] = clamp_along_x(V3::zeros());
+    sys.state.support[0] = clamp_along_x(V3::zeros());
     follow(ctx, &mut sys, |sys, share| {
-        sys.support[1] = Support {
+        sys.state.support[1] = Support {
             frame: Some(heading(turn * share)),
             ..Support::free()
         };
     })?;
     let loaded = moment(&sys, EDGES / 2);
-    sys.support[1] = Support::free();
+    sys.state.support[1] = Support::free();
     settle(ctx, &mut sys)?;
     Ok(vec![
         ("moment_loaded_Nm", Answer::Number(loaded)),

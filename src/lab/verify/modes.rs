@@ -37,8 +37,10 @@ pub(super) fn lowest(
     count: usize,
 ) -> Result<Vec<f64>, VerifyError> {
     let parts: Vec<usize> = match motion {
-        Motion::Along(a) => (0..sys.rod.nodes()).filter(|&i| free(sys, i, a)).collect(),
-        Motion::Roll => (0..sys.rod.edges()).collect(),
+        Motion::Along(a) => (0..sys.state.rod.nodes())
+            .filter(|&i| free(sys, i, a))
+            .collect(),
+        Motion::Roll => (0..sys.state.rod.edges()).collect(),
     };
     if parts.len() > MOST_PARTS {
         return Err(VerifyError::NoAnswer(format!(
@@ -49,8 +51,8 @@ pub(super) fn lowest(
     let inertia: Vec<f64> = parts
         .iter()
         .map(|&i| match motion {
-            Motion::Along(_) => sys.rod.mass(&sys.section, i),
-            Motion::Roll => sys.section.spin_inertia_per_length() * sys.rod.rest[i],
+            Motion::Along(_) => sys.state.rod.mass(&sys.model.section, i),
+            Motion::Roll => sys.model.section.spin_inertia_per_length() * sys.state.rod.rest[i],
         })
         .collect();
     let mut forces: Forces = match motion {
@@ -60,7 +62,7 @@ pub(super) fn lowest(
         }
         Motion::Along(a) => Box::new(move |sys| {
             sys.evaluate(None);
-            along(&sys.load.force, a)
+            along(&sys.state.load.force, a)
         }),
         Motion::Roll if ctx.integrator == Integrator::Implicit => {
             let mut method = method(sys);
@@ -68,7 +70,7 @@ pub(super) fn lowest(
         }
         Motion::Roll => Box::new(|sys| {
             sys.evaluate(None);
-            sys.load.torque.clone()
+            sys.state.load.torque.clone()
         }),
     };
     let mut scaled = DMatrix::zeros(parts.len(), parts.len());
@@ -97,8 +99,8 @@ pub(super) fn lowest(
 }
 
 fn free(sys: &System, i: usize, a: usize) -> bool {
-    let last = sys.rod.nodes() - 1;
-    !(i == 0 && sys.support[0].hold[a] || i == last && sys.support[1].hold[a])
+    let last = sys.state.rod.nodes() - 1;
+    !(i == 0 && sys.state.support[0].hold[a] || i == last && sys.state.support[1].hold[a])
 }
 
 fn along(forces: &[V3], a: usize) -> Vec<f64> {
@@ -115,19 +117,19 @@ fn nudged(
     let mut width = 2.0 * NUDGE;
     let [ahead, behind] = [1.0, -1.0].map(|sign| match motion {
         Motion::Along(a) => {
-            let before = sys.rod.x[i];
-            let step = NUDGE * sys.rod.rest[i.min(sys.rod.edges() - 1)];
+            let before = sys.state.rod.x[i];
+            let step = NUDGE * sys.state.rod.rest[i.min(sys.state.rod.edges() - 1)];
             width = 2.0 * step;
-            sys.rod.x[i][a] += sign * step;
+            sys.state.rod.x[i][a] += sign * step;
             let forces = forces(sys);
-            sys.rod.x[i] = before;
+            sys.state.rod.x[i] = before;
             forces
         }
         Motion::Roll => {
-            let before = sys.rod.frame[i];
-            sys.rod.frame[i] = align(&before, &sys.rod.tangent(i), sign * NUDGE);
+            let before = sys.state.rod.frame[i];
+            sys.state.rod.frame[i] = align(&before, &sys.state.rod.tangent(i), sign * NUDGE);
             let forces = forces(sys);
-            sys.rod.frame[i] = before;
+            sys.state.rod.frame[i] = before;
             forces
         }
     });

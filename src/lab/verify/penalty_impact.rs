@@ -9,10 +9,10 @@
 use super::bench::{box_mesh, law};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::contact::Contacts;
-use crate::integrate::rk4;
+use crate::integrate::{Explicit, ExplicitMethod};
 use crate::math::V3;
 use crate::rod::Rod;
-use crate::system::System;
+use crate::system::{ContactModel, System};
 use std::sync::Arc;
 
 /// Steps in `sqrt(m / k)`; a contact takes pi or more of these times.
@@ -34,20 +34,21 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let at = |x: f64| V3::new(x, 0.0, half + r + gap);
     let points = [at(-length), at(length)];
     let mut sys = System::new(section.clone(), Rod::through(&points, None));
-    sys.rod.v = vec![V3::new(0.0, 0.0, -speed); 2];
+    sys.state.rod.v = vec![V3::new(0.0, 0.0, -speed); 2];
     let law = law(stiffness / length, damping_ratio, 0.0);
     let floor = Arc::new(box_mesh(side, side, side)?);
-    sys.contacts = Some(Contacts::new(floor, law, r, section.diameter, 2));
+    sys.contact = ContactModel::nodal(Contacts::new(floor, law, r, section.diameter, 2));
     sys.evaluate(Some(0.0));
-    let depth = |s: &System| half + r - s.rod.x[0].z;
+    let depth = |s: &System| half + r - s.state.rod.x[0].z;
     let mut deepest: f64 = 0.0;
     let mut entered = None;
+    let mut rk4 = Explicit::new(ExplicitMethod::Rk4);
     for _ in 0..(40.0 * STEPS) as usize {
-        let before = (depth(&sys), sys.rod.v[0].z);
-        rk4::step(&mut sys, dt);
+        let before = (depth(&sys), sys.state.rod.v[0].z);
+        rk4.step(&mut sys, dt);
         let after = depth(&sys);
         // the surface is crossed evenly within a step
-        let crossed = sys.time - dt * after / (after - before.0);
+        let crossed = sys.state.time - dt * after / (after - before.0);
         if before.0 <= 0.0 && after > 0.0 {
             entered = Some(crossed);
         }
@@ -55,7 +56,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         if before.0 > 0.0 && after <= 0.0 {
             let Some(entered) = entered else { break };
             let share = before.0 / (before.0 - after);
-            let leaving = before.1 + share * (sys.rod.v[0].z - before.1);
+            let leaving = before.1 + share * (sys.state.rod.v[0].z - before.1);
             return Ok(vec![
                 ("contact_time_s", Answer::Number(crossed - entered)),
                 ("restitution", Answer::Number(leaving / speed)),

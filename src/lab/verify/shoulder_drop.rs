@@ -5,7 +5,7 @@
 
 use super::bench::{Bench, Stepper, law};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::rk4;
+use crate::integrate::{Explicit, ExplicitMethod};
 
 /// Line load per depth, N/m^2. Only the depth matters; softer allows the strong dashpot.
 const STIFFNESS: f64 = 1e9;
@@ -44,8 +44,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     )?;
     // a staggered velocity is half a step old: on a curved way the dashpot takes that for a
     // departure, and pulls with damping_ratio * omega * dt / 2 of the load, here 8 %
-    if let Stepper::Explicit(step) = &mut bench.step {
-        *step = rk4::step;
+    if let Stepper::Explicit(explicit) = &mut bench.step {
+        *explicit = Explicit::new(ExplicitMethod::Rk4);
     }
     bench.apply_load()?;
     let mut time = 0.0;

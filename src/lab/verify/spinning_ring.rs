@@ -13,13 +13,13 @@ use crate::contact::{Contacts, LineContact};
 use crate::feed::{Feed, FeedSpec};
 use crate::geometry::Shape;
 use crate::geometry::generate::cylinder;
-use crate::integrate::{Implicit, Scheme, rk4};
+use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme};
 use crate::math::frame_along;
 use crate::math::{V3, spin_velocity};
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{Spindle, Support, System};
+use crate::system::{ContactModel, NodalContact, Spindle, Support, System};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -122,29 +122,29 @@ fn ring(ctx: &Context, section: &Section, radius: f64, pull: f64) -> System {
     let along = V3::y().cross(&points[0]).normalize() * -1.0;
     let mut sys = System::new(section.clone(), rod);
     for end in 0..2 {
-        sys.support[end] = Support {
+        sys.state.support[end] = Support {
             turning: true,
             ..Support::clamped(points[0], frame_along(&along, Some(&frames[end])))
         };
     }
     // a plane ring carries no twist
-    sys.twist = Twist::Off;
+    sys.model.twist = Twist::Off;
     sys
 }
 
 /// Turns with the core at `omega` from now on.
 fn spin(sys: &mut System, omega: f64) {
-    sys.spindle = Spindle {
+    sys.state.spindle = Spindle {
         angle: 0.0,
         speed: omega,
         acceleration: 0.0,
     };
-    for i in 0..sys.rod.nodes() {
-        sys.rod.v[i] += spin_velocity(omega, sys.rod.x[i]);
+    for i in 0..sys.state.rod.nodes() {
+        sys.state.rod.v[i] += spin_velocity(omega, sys.state.rod.x[i]);
     }
     sys.place_supports();
     // what was before says nothing about what comes
-    sys.past.forget();
+    sys.state.past.forget();
     sys.refresh();
 }
 
@@ -164,13 +164,13 @@ fn free_tension(
     spin(&mut sys, omega);
     let breath = breath(section, radius);
     let (mut step, dt) = stepper(ctx, radius, breath, || {
-        stable_step(section, sys.rod.rest[0], 0.0, false)
+        stable_step(section, sys.state.rod.rest[0], 0.0, false)
     });
     let steps = (200.0 * breath / dt) as usize;
     let mut mean = SmoothMean::over(steps);
     for _ in 0..steps {
         step.through(&mut sys, dt, dt)?;
-        mean.add(sys.load.tension[sys.rod.edges() / 2]);
+        mean.add(sys.state.load.tension[sys.state.rod.edges() / 2]);
     }
     Ok(mean.value())
 }
@@ -178,7 +178,10 @@ fn free_tension(
 /// How to step, and the step.
 fn stepper(ctx: &Context, radius: f64, breath: f64, stable: impl Fn() -> f64) -> (Stepper, f64) {
     if ctx.integrator != Integrator::Implicit {
-        return (Stepper::Explicit(rk4::step), stable());
+        return (
+            Stepper::Explicit(Explicit::new(ExplicitMethod::Rk4)),
+            stable(),
+        );
     }
     let dt = breath / PER_BREATH;
     let mut method = Implicit::new(Scheme::Bdf2, TOLERANCE * radius, dt, dt);
@@ -212,7 +215,7 @@ impl<'a> Wound<'a> {
             radius
         };
         let mut sys = ring(ctx, section, outer, pull);
-        let edge = sys.rod.rest[0];
+        let edge = sys.state.rod.rest[0];
         let stiffness = 4.0 * section.ea * (SOFTNESS / edge).powi(2);
         let law = law(stiffness, 1.0, 0.0);
         // the ring must not shrink onto its core
@@ -221,17 +224,18 @@ impl<'a> Wound<'a> {
                 radius: radius - r,
                 half_y: 10.0 * r,
             };
-            let mut line = LineContact::new(core, law, r, sys.rod.nodes());
+            let mut line = LineContact::new(core, law, r, sys.state.rod.nodes());
             line.damping = line_damping(&law, section);
             // the load falls to nothing here: let the depth fall with it
             line.onset = ONSET * pull / (radius * stiffness);
-            sys.line = Some(line);
+            sys.contact = ContactModel::line(line);
         } else {
             // the middles of the facets on the circle
             let flat = libm::cos(0.5 * TAU / (EDGES * FACETS) as f64);
             let core = mesh(cylinder((radius - r) / flat, 20.0 * r, EDGES * FACETS))?;
             let core = Arc::new(core);
-            sys.contacts = Some(Contacts::new(core, law, r, section.diameter, EDGES + 1));
+            let contacts = Contacts::new(core, law, r, section.diameter, EDGES + 1);
+            sys.contact = ContactModel::nodal(contacts);
         }
         let spec = FeedSpec {
             mass: 0.0,
@@ -239,16 +243,16 @@ impl<'a> Wound<'a> {
             line_damping: 0.0,
             exit_friction: 0.0,
         };
-        sys.feed = Some((spec, Feed::at_rest(&spec, pull)));
-        sys.set_tension = pull;
+        sys.set_feed(spec, Feed::at_rest(&spec, pull));
+        sys.state.set_tension = pull;
         let breath = breath(section, radius);
         let (mut step, dt) = stepper(ctx, radius, breath, || {
             stable_step(section, edge, stiffness, false)
         });
-        sys.loads.drag = 4.0 / breath;
+        sys.model.loads.drag = 4.0 / breath;
         sys.refresh();
         step.through(&mut sys, 20.0 * breath, dt)?;
-        sys.loads.drag = 0.0;
+        sys.model.loads.drag = 0.0;
         Ok(Self {
             ctx,
             sys,
@@ -264,12 +268,12 @@ impl<'a> Wound<'a> {
     /// the clamp does not grow with the ring, and bending beside it takes up some tension.
     fn load_at(&self, omega: f64, breaths: f64) -> Result<f64, VerifyError> {
         let steps = (breaths * self.breath / self.dt) as usize;
-        let wanted = self.sys.set_tension;
+        let wanted = self.sys.state.set_tension;
         let mut set = wanted;
         let mut answer = 0.0;
         for _ in 0..2 {
             let mut sys = self.sys.clone();
-            sys.set_tension = set;
+            sys.state.set_tension = set;
             spin(&mut sys, omega);
             let (mut step, dt) = stepper(self.ctx, self.radius, self.breath, || self.dt);
             let mut load = SmoothMean::over(steps);
@@ -277,8 +281,8 @@ impl<'a> Wound<'a> {
             for _ in 0..steps {
                 step.through(&mut sys, dt, dt)?;
                 load.add(line_load(&sys));
-                let edges = sys.rod.edges();
-                let measured = &sys.load.tension[edges / 4..edges * 3 / 4];
+                let edges = sys.state.rod.edges();
+                let measured = &sys.state.load.tension[edges / 4..edges * 3 / 4];
                 tension.add(measured.iter().sum::<f64>() / measured.len() as f64);
             }
             answer = load.value();
@@ -291,20 +295,23 @@ impl<'a> Wound<'a> {
 /// Contact force per length over the half of the ring opposite the clamp, N/m.
 fn line_load(sys: &System) -> f64 {
     let (mut force, mut length) = (0.0, 0.0);
-    let half = sys.rod.edges() / 4..=sys.rod.edges() * 3 / 4;
-    if sys.line.is_some() {
+    let half = sys.state.rod.edges() / 4..=sys.state.rod.edges() * 3 / 4;
+    if sys.contact.is_line() {
         for i in half {
             force += touch_forces(sys, i).iter().map(V3::norm).sum::<f64>();
-            length += sys.rod.rest[i];
+            length += sys.state.rod.rest[i];
         }
         return force / length;
     }
-    let Some(contacts) = &sys.contacts else {
+    let Some(NodalContact { contacts, .. }) = sys.contact.as_nodal() else {
         return 0.0;
     };
     let at_rest = V3::zeros();
     for i in half {
-        let (l, m) = (sys.rod.voronoi(i), sys.rod.mass(&sys.section, i));
+        let (l, m) = (
+            sys.state.rod.voronoi(i),
+            sys.state.rod.mass(&sys.model.section, i),
+        );
         let depth = contacts.nodes[i].depth();
         if depth > 0.0 {
             force += contacts

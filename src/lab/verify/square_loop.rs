@@ -40,8 +40,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             "no length of wire spans the side: {reach} m instead of {half} m"
         )));
     }
-    let n = sys.rod.edges();
-    let edge = sys.load.force[0];
+    let n = sys.state.rod.edges();
+    let edge = sys.state.load.force[0];
     let through = V3::new(libm::cos(FRAC_PI_4), libm::sin(FRAC_PI_4), 0.0);
     // the other half mirrors this one, so the parts along the wire cancel
     let edge_force = 2.0 * (edge - through * edge.dot(&through)).norm();
@@ -51,7 +51,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             "edge_curvature_1_per_m",
             Answer::Number(-curvature(&sys, 0)),
         ),
-        ("bulge_m", Answer::Number(sys.rod.x[n].y)),
+        ("bulge_m", Answer::Number(sys.state.rod.x[n].y)),
         ("edge_force_N", Answer::Number(edge_force)),
     ])
 }
@@ -71,7 +71,7 @@ fn drawn(ctx: &Context, pull: f64, length: f64) -> Result<(System, f64), VerifyE
     let rest = graded(length, finest, GROWTH, coarsest.max(finest));
     let n = rest.len();
     let mut sys = straight(section, &rest);
-    sys.support = [
+    sys.state.support = [
         clamp_along_x(V3::zeros()),
         Support {
             hold: [false, false, true],
@@ -79,11 +79,11 @@ fn drawn(ctx: &Context, pull: f64, length: f64) -> Result<(System, f64), VerifyE
         },
     ];
     follow(ctx, &mut sys, |sys, share| {
-        sys.loads.nodal = vec![(n, V3::x() * (pull * share))];
+        sys.model.loads.nodal = vec![(n, V3::x() * (pull * share))];
     })?;
     follow(ctx, &mut sys, |sys, share| {
-        sys.support[0].frame = Some(heading(FRAC_PI_4 * share));
+        sys.state.support[0].frame = Some(heading(FRAC_PI_4 * share));
     })?;
-    let reach = sys.rod.x[n].x;
+    let reach = sys.state.rod.x[n].x;
     Ok((sys, reach))
 }

@@ -15,19 +15,21 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let (length, torque) = (ctx.positive("L_m")?, ctx.number("torque_Nm")?);
     let n = ctx.edges(length, length / EDGES)?;
     let mut sys = straight(ctx.elastic(), &vec![length / n as f64; n]);
-    sys.support[0] = clamp_along_x(V3::zeros());
+    sys.state.support[0] = clamp_along_x(V3::zeros());
     sys.evaluate(None);
     let one = lowest(ctx, &mut sys, Motion::Roll, 2)?;
-    sys.support[1] = clamp_along_x(V3::x() * length);
+    sys.state.support[1] = clamp_along_x(V3::x() * length);
     let both = lowest(ctx, &mut sys, Motion::Roll, 1)?;
 
-    sys.support[1] = Support::free();
+    sys.state.support[1] = Support::free();
     follow_with_twist(ctx, &mut sys, |sys, share| {
-        sys.loads.moments = vec![(n - 1, V3::x() * (torque * share))];
+        sys.model.loads.moments = vec![(n - 1, V3::x() * (torque * share))];
     })?;
-    let edges: f64 = (0..n).map(|i| twist(&sys, i) * sys.rod.voronoi(i)).sum();
+    let edges: f64 = (0..n)
+        .map(|i| twist(&sys, i) * sys.state.rod.voronoi(i))
+        .sum();
     // the end node lies half an edge beyond the middle of the last edge
-    let total = edges + 0.5 * twist(&sys, n - 1) * sys.rod.rest[n - 1];
+    let total = edges + 0.5 * twist(&sys, n - 1) * sys.state.rod.rest[n - 1];
     Ok(vec![
         ("fixed_free_f1_Hz", Answer::Number(one[0])),
         ("fixed_free_f2_Hz", Answer::Number(one[1])),

@@ -73,19 +73,19 @@ impl Straight {
             rod.frame[j] = turned((j as f64 + 0.5) / edges as f64);
         }
         let mut sys = System::new(section.clone(), rod);
-        sys.support[0] = Support::clamped(points[0], turned(0.0));
-        sys.support[1] = Support {
+        sys.state.support[0] = Support::clamped(points[0], turned(0.0));
+        sys.state.support[1] = Support {
             hold: [true, true, false],
             ..Support::clamped(points[edges], turned(1.0))
         };
-        sys.loads.nodal = vec![(edges, V3::z() * pull)];
+        sys.model.loads.nodal = vec![(edges, V3::z() * pull)];
         sys.evaluate(None);
         Self { sys, length }
     }
 
     /// Torque that the near clamp puts into the wire, N m.
     fn torque(&self) -> f64 {
-        self.sys.load.clamp_moment[0].z.abs()
+        self.sys.state.load.clamp_moment[0].z.abs()
     }
 
     /// Whether small displacements are driven back.
@@ -96,9 +96,9 @@ impl Straight {
                 return method.forces(sys);
             }
             sys.evaluate(None);
-            sys.load.force.clone()
+            sys.state.load.force.clone()
         };
-        let nodes = self.sys.rod.nodes();
+        let nodes = self.sys.state.rod.nodes();
         // all coordinates of the inner nodes, and the sliding of the end
         let place: Vec<(usize, usize)> = (1..nodes - 1)
             .flat_map(|i| (0..3).map(move |a| (i, a)))
@@ -109,10 +109,10 @@ impl Straight {
         let mut stiffness = DMatrix::<f64>::zeros(n, n);
         for (column, &(i, a)) in place.iter().enumerate() {
             for side in [1.0, -1.0] {
-                let home = self.sys.rod.x[i][a];
-                self.sys.rod.x[i][a] = home + side * step;
+                let home = self.sys.state.rod.x[i][a];
+                self.sys.state.rod.x[i][a] = home + side * step;
                 let force = forces(&mut self.sys);
-                self.sys.rod.x[i][a] = home;
+                self.sys.state.rod.x[i][a] = home;
                 // a node's force reaches two nodes to either side
                 for (row, &(k, b)) in place.iter().enumerate() {
                     if k.abs_diff(i) <= 2 {

@@ -143,7 +143,7 @@ fn wind(scene: &Scene) -> Result<Vec<Sample>, VerifyError> {
     let fail = |e: crate::simulation::SimError| VerifyError::NoAnswer(e.to_string());
     let mut sim = Simulation::new(scene).map_err(fail)?;
     let wave = (scene.tensioner.tension / scene.wire.mass_per_length()).sqrt();
-    sim.system_mut().loads.drag = 0.5 * wave / scene.nozzle.distance;
+    sim.system_mut().model.loads.drag = 0.5 * wave / scene.nozzle.distance;
     let speed = scene.spindle.speed;
     let mut angle = 0.0;
     let mut samples = Vec::new();
@@ -167,12 +167,12 @@ fn wind(scene: &Scene) -> Result<Vec<Sample>, VerifyError> {
 /// from the nozzle to the point nearest to the core (nodes alone would tell it to an edge length).
 fn look(sim: &Simulation) -> Sample {
     let sys = sim.system();
-    let rod = &sys.rod;
+    let rod = &sys.state.rod;
     let last = rod.nodes() - 1;
     let nozzle = rod.x[last];
     let lift = (1..last).rev().find(|i| sys.touches(*i)).unwrap_or(0);
     let towards = (rod.x[(lift + 1).min(last - 1)] - nozzle).normalize();
-    let spin = Spin::new(sys.spindle.angle);
+    let spin = Spin::new(sys.state.spindle.angle);
     let distance = |s: f64| sys.distance_to_core(spin.to_core(nozzle + towards * s));
     let straight = (rod.x[lift] - nozzle).norm();
     let reach = 4.0 * rod.rest[lift];

@@ -47,12 +47,12 @@ fn joint(sys: &System, i: usize) -> Option<Joint> {
     let before = if i == 0 {
         sys.clamp_frame(0)
     } else {
-        Some(sys.rod.frame[i - 1])
+        Some(sys.state.rod.frame[i - 1])
     };
-    let after = if i == sys.rod.edges() {
+    let after = if i == sys.state.rod.edges() {
         sys.clamp_frame(1)
     } else {
-        Some(sys.rod.frame[i])
+        Some(sys.state.rod.frame[i])
     };
     Some(Joint::between(&before?, &after?))
 }
@@ -62,12 +62,12 @@ fn directions(sys: &System, i: usize) -> Option<(V3, V3)> {
     let before = if i == 0 {
         sys.clamp_direction(0)
     } else {
-        Some(sys.rod.tangent(i - 1))
+        Some(sys.state.rod.tangent(i - 1))
     };
-    let after = if i == sys.rod.edges() {
+    let after = if i == sys.state.rod.edges() {
         sys.clamp_direction(1)
     } else {
-        Some(sys.rod.tangent(i))
+        Some(sys.state.rod.tangent(i))
     };
     before.zip(after)
 }
@@ -79,15 +79,17 @@ fn sense(sys: &System, i: usize) -> f64 {
 
 /// Curvature of a plane wire at node `i`, 1/m, positive about +z; 0 at an end that is not clamped.
 pub(super) fn curvature(sys: &System, i: usize) -> f64 {
-    joint(sys, i).map_or(0.0, |j| sense(sys, i) * norm(j.bend) / sys.rod.voronoi(i))
+    joint(sys, i).map_or(0.0, |j| {
+        sense(sys, i) * norm(j.bend) / sys.state.rod.voronoi(i)
+    })
 }
 
 /// Moment of a plane wire at node `i` from the bending law in force there, N m.
 pub(super) fn moment(sys: &System, i: usize) -> f64 {
     joint(sys, i).map_or(0.0, |j| {
-        let lv = sys.rod.voronoi(i);
+        let lv = sys.state.rod.voronoi(i);
         let k = [j.bend[0] / lv, j.bend[1] / lv];
-        let (m, _, _) = respond_bend(&sys.laws.bend, &sys.rod.bend[i], k);
+        let (m, _, _) = respond_bend(&sys.model.laws.bend, &sys.state.rod.bend[i], k);
         // unloaded past its permanent bend, the moment points against the curvature
         let along = if m[0] * k[0] + m[1] * k[1] < 0.0 {
             -1.0
@@ -104,13 +106,13 @@ fn norm(a: [f64; 2]) -> f64 {
 
 /// Twist per length at node `i`, 1/m; 0 at an end that is not clamped.
 pub(super) fn twist(sys: &System, i: usize) -> f64 {
-    joint(sys, i).map_or(0.0, |j| j.twist / sys.rod.voronoi(i))
+    joint(sys, i).map_or(0.0, |j| j.twist / sys.state.rod.voronoi(i))
 }
 
 /// Angle of edge `j` against +x in the x-y plane, rad, counted on over full turns from edge 0.
 pub(super) fn angle(sys: &System, j: usize) -> f64 {
     let heading = |e: usize| {
-        let t = sys.rod.tangent(e);
+        let t = sys.state.rod.tangent(e);
         libm::atan2(t.y, t.x)
     };
     let mut angle = heading(0);

@@ -1,0 +1,212 @@
+//! The way in: inputs for a communication step, or the scene's own motion profile.
+
+use super::{SimError, Simulation, WORTH_A_STEP};
+use crate::integrate::SolverStatistics;
+use crate::signals::{EventKind, Inputs, Outputs};
+use crate::system::{Drive, NozzleDrive};
+
+/// Where the motion of the machine over a communication step comes from.
+#[derive(Clone, Copy, Debug)]
+enum Source {
+    /// inputs at the start of the step and their rates, per s
+    Inputs { inputs: Inputs, rates: Inputs },
+    /// the scene's own motion profile at this time of the run
+    Profile,
+}
+
+impl Simulation {
+    /// Advances by `dt`, s, with the inputs held: spindle speed and tension from now on, the nozzle
+    /// moving evenly so that it reaches its position at the end (a jump would be a hammer blow).
+    ///
+    /// After an error the run stands where the last step ended that went through ([`Self::time`]).
+    pub fn advance(&mut self, inputs: Inputs, dt: f64) -> Result<(), SimError> {
+        self.advance_ramped(inputs, Inputs::HELD, dt)
+    }
+
+    /// Advances by `dt`, s, with inputs that start at `inputs` and change evenly, at `rates` per s.
+    ///
+    /// The nozzle moves evenly from where it is to where its input is at the end. Steps below a nanosecond only
+    /// add up until they are worth solving for. After an error see [`Self::advance`].
+    pub fn advance_ramped(
+        &mut self,
+        inputs: Inputs,
+        rates: Inputs,
+        dt: f64,
+    ) -> Result<(), SimError> {
+        self.advance_by(Source::Inputs { inputs, rates }, dt)
+    }
+
+    /// Advances by `dt`, s, along the scene's own spindle ramp and traverse, which are continuous.
+    ///
+    /// The set tension stays what it is. After an error see [`Self::advance`].
+    pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
+        self.advance_by(Source::Profile, dt)
+    }
+
+    /// Advances by `dt`, s, with the motion that `source` gives the machine: the one way through a step.
+    fn advance_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
+        self.check_step(dt)?;
+        if let Source::Inputs { inputs, rates } = &source {
+            check_finite(inputs, self.run.time)?;
+            check_finite(&inputs.after(rates, dt), self.run.time)?;
+        }
+        let span = self.run.owed + dt;
+        if span < WORTH_A_STEP {
+            self.run.owed = span;
+            self.pass_time(dt);
+            return Ok(());
+        }
+        let drives = self.drives(&source, dt, span);
+        self.run.owed = 0.0;
+        self.run.last_span = span;
+        let before = self.run.outputs;
+        if self.is_moved_by(&source, dt) {
+            self.run.quiet = 0.0;
+        }
+        self.reset_extremes();
+        let statistics_before = self.statistics();
+        let gone = drives.iter().flatten().try_for_each(|drive| {
+            self.sys.begin_drive(drive);
+            self.through(drive)
+        });
+        self.tell_of_trouble(statistics_before);
+        self.sys.end_drive();
+        if gone.is_err() {
+            self.stop_short();
+            return gone;
+        }
+        if let Source::Inputs { inputs, rates } = &source {
+            let end = inputs.after(rates, dt);
+            self.sys.state.spindle.speed = end.spindle_speed;
+            self.sys.state.set_tension = end.tension_setpoint;
+            self.sys.state.support[1].point.y = end.nozzle_position;
+        }
+        self.pass_time(dt);
+        self.finish();
+        self.update_rates(&before, span);
+        Ok(())
+    }
+
+    /// The motion over the last `span` seconds up to the end of a communication step of `dt`, s.
+    fn drives(&self, source: &Source, dt: f64, span: f64) -> [Option<Drive>; 2] {
+        match source {
+            Source::Inputs { inputs, rates } => {
+                let end = inputs.after(rates, dt);
+                let start = if self.run.owed > 0.0 {
+                    end.after(rates, -span)
+                } else {
+                    *inputs
+                };
+                let travel = end.nozzle_position - self.sys.state.support[1].point.y;
+                let drive = Drive {
+                    duration: span,
+                    speed: start.spindle_speed,
+                    acceleration: rates.spindle_speed,
+                    nozzle: NozzleDrive::Even(travel / span),
+                    tension: start.tension_setpoint,
+                    tension_rate: rates.tension_setpoint,
+                };
+                [Some(drive), None]
+            }
+            Source::Profile => {
+                let (start, end) = (
+                    self.run.time - self.run.owed,
+                    self.run.time + (dt - self.run.time_lost),
+                );
+                self.motion_profile
+                    .drives(start, end, self.sys.state.set_tension)
+            }
+        }
+    }
+
+    /// Whether a step of `dt`, s, from this source moves anything or changes an input.
+    fn is_moved_by(&self, source: &Source, dt: f64) -> bool {
+        match source {
+            Source::Inputs { inputs, rates } => {
+                let end = inputs.after(rates, dt);
+                *rates != Inputs::HELD
+                    || inputs.spindle_speed != 0.0
+                    || end.nozzle_position - self.sys.state.support[1].point.y != 0.0
+                    || inputs.tension_setpoint != self.sys.state.set_tension
+            }
+            Source::Profile => true,
+        }
+    }
+
+    /// A communication step is a finite time of 0 or more.
+    fn check_step(&self, dt: f64) -> Result<(), SimError> {
+        if dt.is_finite() && dt >= 0.0 {
+            return Ok(());
+        }
+        Err(SimError {
+            time: self.run.time,
+            node: None,
+            reason: format!("a communication step of {dt} s is not a finite time of 0 or more"),
+        })
+    }
+
+    /// Adds up communication steps such that millions of them lose no more than the last digit (Kahan 1965).
+    fn pass_time(&mut self, dt: f64) {
+        let step = dt - self.run.time_lost;
+        let next = self.run.time + step;
+        self.run.time_lost = (next - self.run.time) - step;
+        self.run.time = next;
+    }
+
+    /// Ends a step in which the method gave up: what can be read is what was reached, or what was there before
+    /// if that is no state of a wire.
+    fn stop_short(&mut self) {
+        let rod = &self.sys.state.rod;
+        if rod.x.iter().chain(&rod.v).flatten().all(|x| x.is_finite()) {
+            (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
+            self.finish();
+        }
+        self.run.rates = Outputs::default();
+    }
+
+    /// Reports steps since `before` that the solver could not solve and took shorter. Steps that were too long for
+    /// their error are no trouble.
+    fn tell_of_trouble(&mut self, before: SolverStatistics) {
+        let newton_failures = self.statistics().newton_failures - before.newton_failures;
+        if newton_failures > 0 {
+            let text = format!(
+                "the solver found no solution {newton_failures} times and went on in shorter steps, the last of {:.2e} s",
+                self.run.last_step
+            );
+            self.report(EventKind::Solver, text);
+        }
+    }
+
+    pub(super) fn finish(&mut self) {
+        self.follow_traverse();
+        self.sys.state.time = self.run.time;
+        self.update_outputs();
+    }
+}
+
+pub(super) fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {
+    for (name, value) in [
+        ("spindle_speed", inputs.spindle_speed),
+        ("nozzle_position", inputs.nozzle_position),
+        ("tension_setpoint", inputs.tension_setpoint),
+    ] {
+        if !value.is_finite() {
+            return Err(SimError {
+                time,
+                node: None,
+                reason: format!("input {name} = {value} is not a finite number"),
+            });
+        }
+    }
+    if inputs.tension_setpoint < 0.0 {
+        return Err(SimError {
+            time,
+            node: None,
+            reason: format!(
+                "input tension_setpoint = {} N must not be negative",
+                inputs.tension_setpoint
+            ),
+        });
+    }
+    Ok(())
+}

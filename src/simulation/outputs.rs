@@ -1,0 +1,190 @@
+//! What can be read of a run: outputs at a communication point, the coil, the wire's centreline.
+
+use super::{Centreline, SLACK, Simulation};
+use crate::math::{Spin, V3, turn_about_y};
+use crate::math::{polar_angle, wrap_to_pi};
+use crate::measure::{Coil, SettledNode};
+use crate::signals::EventKind;
+
+impl Simulation {
+    pub(super) fn watch_tension(&mut self) {
+        let t = self.wire_tension();
+        self.run.outputs.wire_tension_min = self.run.outputs.wire_tension_min.min(t);
+        self.run.outputs.wire_tension_max = self.run.outputs.wire_tension_max.max(t);
+        let slack = t < SLACK;
+        if slack && !self.run.was_slack {
+            self.report(EventKind::Slack, "the wire went slack at the nozzle".into());
+        }
+        self.run.was_slack = slack;
+    }
+
+    pub(super) fn wire_tension(&self) -> f64 {
+        // below zero the wire hangs loose in the nozzle, which holds nothing
+        self.sys
+            .state
+            .load
+            .tension
+            .last()
+            .copied()
+            .unwrap_or(0.0)
+            .max(0.0)
+    }
+
+    pub(super) fn reset_extremes(&mut self) {
+        let t = self.wire_tension();
+        self.run.outputs.wire_tension_min = t;
+        self.run.outputs.wire_tension_max = t;
+    }
+
+    /// A new pass begins once the nozzle has come back by half a diameter; less is jitter.
+    pub(super) fn follow_traverse(&mut self) {
+        let y = self.sys.state.support[1].point.y;
+        let (extreme, sign) = self.run.pass;
+        let advance = (y - extreme) * sign;
+        if advance > 0.0 {
+            self.run.pass.0 = y;
+        } else if advance < -0.5 * self.scene.wire.diameter {
+            self.run.pass = (y, -sign);
+            self.coil.set_traverse(-sign);
+        }
+    }
+
+    /// The settled wire and, taken as if it were settled, the live wire up to lift-off.
+    pub fn coil_with_live_wire(&self) -> Coil {
+        let spin = Spin::new(self.sys.state.spindle.angle);
+        let lift = self.lift_off();
+        let mut arc = self.sys.state.arc0;
+        let mut extra = Vec::new();
+        for i in 0..=lift {
+            let p = spin.to_core(self.sys.centre(i));
+            extra.push(self.settled(
+                p,
+                arc,
+                self.sys.state.rod.stretch[i.min(self.sys.state.rod.edges() - 1)].strain,
+            ));
+            arc += self.sys.state.rod.rest.get(i).copied().unwrap_or(0.0);
+        }
+        self.coil.what_if(&extra)
+    }
+
+    pub(super) fn settled(&self, position: V3, arc: f64, plastic_strain: f64) -> SettledNode {
+        let height = match self.sys.distance_to_core(position) {
+            d if d.is_finite() => d - self.scene.wire.radius(),
+            _ => 0.0,
+        };
+        SettledNode {
+            position,
+            arc,
+            height,
+            plastic_strain,
+            time: self.run.time,
+        }
+    }
+
+    /// Last node from the clamp that touches something: where the wire leaves the coil.
+    pub(super) fn lift_off(&self) -> usize {
+        (1..self.sys.state.rod.nodes() - 1)
+            .rev()
+            .find(|i| self.sys.touches(*i))
+            .unwrap_or(0)
+    }
+
+    pub(super) fn update_outputs(&mut self) {
+        if self.run.broken && self.run.outputs.defect_break {
+            return self.update_broken();
+        }
+        let spin = Spin::new(self.sys.state.spindle.angle);
+        let lift = self.lift_off();
+        let rod = &self.sys.state.rod;
+        // polar angle along the wire from the last settled node, or from the clamp, where the coil starts
+        let mut last = self
+            .coil
+            .end_angle()
+            .unwrap_or_else(|| (0.0, polar_angle(spin.to_core(rod.x[0]))));
+        let direction = self.coil.spec().direction;
+        for i in 0..=lift {
+            let polar = polar_angle(spin.to_core(rod.x[i]));
+            last = (last.0 + direction * wrap_to_pi(polar - last.1), polar);
+        }
+        let free: f64 = (lift..rod.edges())
+            .map(|j| (rod.x[j + 1] - rod.x[j]).norm())
+            .sum();
+        let residual = self
+            .sys
+            .energy_residual(self.stepper.is_staggered().then_some(self.run.last_step));
+        let feed = self.sys.state.feed.unwrap_or_default();
+        let flags = self.coil.flags();
+        let worst = self.coil.worst();
+        let tension = self.wire_tension();
+        let rod = &self.sys.state.rod;
+        let o = &mut self.run.outputs;
+        o.wire_tension = tension;
+        o.defect_bulge = flags.bulge;
+        o.defect_gap = flags.gap;
+        o.defect_overlap = flags.overlap;
+        o.defect_break = self.run.broken;
+        o.defect_slack = self.run.was_slack;
+        o.defect_code = i32::from(flags.bulge)
+            + 2 * i32::from(flags.gap)
+            + 4 * i32::from(flags.overlap)
+            + 8 * i32::from(self.run.broken)
+            + 16 * i32::from(self.run.was_slack);
+        o.defect_count = self.coil.defect_count() as i32;
+        if let Some(d) = self.coil.last_defect() {
+            o.defect_turn = f64::from(d.turn);
+            o.defect_angle = d.angle;
+        }
+        o.bulge_height = worst.bulge_height;
+        o.gap_width = worst.gap_width;
+        o.overlap_depth = worst.overlap_depth;
+        o.turns_wound = last.0.max(0.0) / std::f64::consts::TAU;
+        o.turns_settled = self.coil.turns_settled();
+        o.layer = self.coil.layer().max(1) as i32;
+        o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
+        o.spindle_torque = self.sys.state.torque_on_core;
+        o.feed_speed = feed.rate;
+        o.fed_length = feed.fed;
+        o.free_length = free;
+        o.layon_position = rod.x[lift].y;
+        o.layon_angle = last.0;
+        o.coil_width = self.coil.coil_width();
+        o.mean_pitch = self.coil.mean_pitch();
+        o.fill_factor = self.coil.fill_factor();
+        o.wire_strain = self.coil.wire_strain();
+        o.solver_steps = self.run.steps as f64;
+        let statistics = self.stepper.statistics();
+        o.solver_rejects = (statistics.rejects + statistics.newton_failures) as f64;
+        o.live_nodes = rod.nodes() as i32;
+        o.penetration_max = self.sys.state.deepest;
+        o.energy_residual = residual;
+    }
+
+    /// The whole wire in the core frame.
+    pub fn centreline(&self) -> Centreline {
+        let spin = Spin::new(self.sys.state.spindle.angle);
+        let back = turn_about_y(-self.sys.state.spindle.angle);
+        let rod = &self.sys.state.rod;
+        let mut line = match self.sys.frozen_tube() {
+            Some(tube) => Centreline {
+                points: tube.points.clone(),
+                frames: tube.frames.clone(),
+                arc: tube.arc.clone(),
+                plastic_strain: tube.plastic_strain.clone(),
+                tension: tube.tension.clone(),
+                frozen: tube.len(),
+            },
+            None => Centreline::default(),
+        };
+        let mut arc = self.sys.state.arc0;
+        for i in 0..rod.nodes() {
+            let j = i.min(rod.edges() - 1);
+            line.points.push(spin.to_core(rod.x[i]));
+            line.frames.push(back * rod.frame[j]);
+            line.arc.push(arc);
+            line.plastic_strain.push(rod.stretch[j].strain);
+            line.tension.push(self.sys.state.load.tension[j]);
+            arc += rod.rest.get(i).copied().unwrap_or(0.0);
+        }
+        line
+    }
+}

@@ -1,0 +1,46 @@
+//! What a run remembers besides wire, coil and method.
+
+use super::freezing::{FreezePolicy, Watch};
+use super::rates::Instant;
+use crate::signals::{Event, Outputs};
+use serde::{Deserialize, Serialize};
+
+/// State of a run but for that of wire, coil and method; a saved state holds it as it is.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct RunState {
+    pub(super) watch: Watch,
+    pub(super) policy: FreezePolicy,
+    /// core angle at the start, rad
+    pub(super) angle0: f64,
+    /// length of the last step of the method, s
+    pub(super) last_step: f64,
+    /// length of the last communication step, s; 0: none yet
+    pub(super) last_span: f64,
+    /// elapsed time, s
+    pub(super) time: f64,
+    /// what adding up steps has lost of `time`, s
+    pub(super) time_lost: f64,
+    /// time passed that the wire has not, see [`super::WORTH_A_STEP`], s
+    pub(super) owed: f64,
+    /// steps of the method
+    pub(super) steps: u64,
+    /// steps tried so far, each counted as often as it had nodes
+    pub(super) work: u64,
+    pub(super) outputs: Outputs,
+    /// per s, see [`super::Simulation::output_rates`]
+    pub(super) rates: Outputs,
+    /// before the last step of the method
+    pub(super) instant: Instant,
+    /// what happened since events were last taken
+    pub(super) events: Vec<Event>,
+    /// deepest penetration of wire when it came to rest, m
+    pub(super) rest_depth: f64,
+    pub(super) broken: bool,
+    pub(super) was_slack: bool,
+    /// how long core, nozzle, tensioner and wire have been still, s
+    pub(super) quiet: f64,
+    /// farthest that the spindle has been from where it started, rad
+    pub(super) farthest: f64,
+    /// farthest nozzle position of this pass, m, and its direction along y
+    pub(super) pass: (f64, f64),
+}

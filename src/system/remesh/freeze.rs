@@ -1,0 +1,118 @@
+//! Letting settled wire go.
+
+use super::super::{Support, System};
+use crate::contact::ContactRecord;
+use crate::math::{PersistentVec, Quat, Spin, V3, spin_velocity, turn_about_y};
+use crate::rod::{Bend, Joint, Scalar};
+use serde::{Deserialize, Serialize};
+
+/// A frozen node with the edge after it: all it takes to let them move again where they lie.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrozenNodeRecord {
+    /// place, core frame, m
+    pub(super) place: V3,
+    /// frame of the edge, core frame
+    pub(super) frame: Quat,
+    /// frame that a clamp at this node has, core frame
+    pub(super) clamp: Quat,
+    /// unstretched length from the clamp to the node, m
+    pub(super) arc: f64,
+    /// unstretched length of the edge, m
+    pub(super) rest: f64,
+    pub(super) spin: f64,
+    pub(super) stretch: Scalar,
+    pub(super) bend: Bend,
+    pub(super) twist: Scalar,
+    pub(super) memory: ContactRecord,
+}
+
+impl FrozenNodeRecord {
+    /// Whether it can come back to life; bytes from elsewhere may say anything.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.memory.is_sound()
+    }
+}
+
+/// Frozen wire; a chunk is about half a turn of fine wire.
+pub type FrozenHistory = PersistentVec<FrozenNodeRecord, 64>;
+
+impl System {
+    /// Takes the first `count` nodes out of the computation; the node after them becomes the clamp.
+    ///
+    /// The wire just behind the new clamp keeps its direction such that the curvature and moment
+    /// there stay what they are.
+    pub fn freeze_front(&mut self, count: usize) {
+        let spin = Spin::new(self.state.spindle.angle);
+        let back = turn_about_y(-self.state.spindle.angle);
+        let stored = self.stored();
+        let mut handed = 0.0;
+        for i in 1..=count {
+            let v = spin_velocity(self.state.spindle.speed, self.state.rod.x[i]);
+            handed += 0.5 * self.state.rod.mass(&self.model.section, i) * v.norm_squared();
+        }
+        let frame = self.frame_to_clamp(count);
+        self.record_frozen(count);
+        self.state.support[0] = Support {
+            hold: [true; 3],
+            point: spin.to_core(self.state.rod.x[count]),
+            velocity: V3::zeros(),
+            frame: Some(back * frame),
+            turning: true,
+        };
+        self.state.arc0 += self.state.rod.rest[..count].iter().sum::<f64>();
+        for part in self.parts() {
+            part.remove_front(count);
+        }
+        self.place_supports();
+        self.state.balance.frozen_kinetic += handed;
+        self.state.balance.frozen_stored += stored - self.stored();
+    }
+
+    /// Frame of a clamp at an inner node that leaves curvature and moment there what they are.
+    fn frame_to_clamp(&self, node: usize) -> Quat {
+        let rod = &self.state.rod;
+        let joint = Joint::between(&rod.frame[node - 1], &rod.frame[node]);
+        let share = rod.rest[node] / (rod.rest[node - 1] + rod.rest[node]);
+        let rel = crate::math::relative(
+            [joint.bend[0] * share, joint.bend[1] * share],
+            joint.twist * share,
+        );
+        rod.frame[node] * rel.conjugate()
+    }
+
+    /// Puts the first `count` nodes on record for [`Self::thaw_front`].
+    fn record_frozen(&mut self, count: usize) {
+        let Some(line) = self.contact.as_line() else {
+            return;
+        };
+        let spin = Spin::new(self.state.spindle.angle);
+        let back = turn_about_y(-self.state.spindle.angle);
+        let mut arc = self.state.arc0;
+        for i in 0..count {
+            let clamp = match self.state.support[0].frame {
+                Some(frame) if i == 0 => frame,
+                _ if i == 0 => back * self.state.rod.frame[0],
+                _ => back * self.frame_to_clamp(i),
+            };
+            let rod = &self.state.rod;
+            self.state.frozen_history.push(FrozenNodeRecord {
+                place: spin.to_core(rod.x[i]),
+                frame: back * rod.frame[i],
+                clamp,
+                arc,
+                rest: rod.rest[i],
+                spin: rod.spin[i],
+                stretch: rod.stretch[i],
+                bend: rod.bend[i],
+                twist: rod.twist[i],
+                memory: line.memory(i),
+            });
+            arc += rod.rest[i];
+        }
+    }
+
+    /// Unstretched lengths of the frozen edges, the last to freeze first, m.
+    pub fn frozen_lengths(&self) -> impl Iterator<Item = f64> {
+        self.state.frozen_history.iter().rev().map(|d| d.rest)
+    }
+}

@@ -1,0 +1,103 @@
+//! Joining two edges.
+
+use super::super::System;
+use crate::contact::ContactPoint;
+use crate::math::{Quat, align};
+use crate::rod::Joint;
+
+/// An inner node that is taken out, and the edge that its two become.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::system) struct Merge {
+    /// the node
+    pub node: usize,
+    /// unstretched lengths of the edges before and after it, m
+    pub rest: [f64; 2],
+    /// unstretched length of the joined edge, m
+    pub joined: f64,
+    /// frame of the joined edge
+    pub frame: Quat,
+    /// the joined edge ends at the nozzle: set that has gone in is forgotten
+    pub at_nozzle: bool,
+}
+
+impl Merge {
+    /// Mean of a value before and after the node, weighed by the lengths of the edges.
+    pub fn share(&self, before: f64, after: f64) -> f64 {
+        let [a, b] = self.rest;
+        (before * a + after * b) / (a + b)
+    }
+}
+
+impl System {
+    /// Takes inner node `i` out and joins its edges; plastic state is shared out by length.
+    ///
+    /// The joined edge is as stretched as the two were on average: the chord is shorter than they
+    /// were. At the nozzle the difference counts as wire that went back through it.
+    pub fn merge(&mut self, i: usize) {
+        let nodes = self.state.rod.nodes();
+        debug_assert!(i > 0 && i + 1 < nodes, "an inner node");
+        let at_nozzle = i + 2 == nodes && self.state.feed.is_some();
+        let kinetic = if at_nozzle { self.kinetic() } else { 0.0 };
+        let merge = self.plan_merge(i, at_nozzle);
+        for part in self.parts() {
+            part.merge(&merge);
+        }
+        self.move_points(i);
+        let [a, b] = merge.rest;
+        if at_nozzle {
+            let lost = merge.joined - a - b;
+            if let Some(f) = &mut self.state.feed {
+                // wire and tensioner shift alike, so that the line between them pulls as before
+                f.fed += lost;
+                f.paid += lost;
+            }
+            self.state.past.fed.iter_mut().for_each(|fed| *fed += lost);
+            self.state.past.paid += lost;
+            self.state.balance.inflow += self.kinetic() - kinetic;
+        } else {
+            self.state.joined_away += a + b - merge.joined;
+        }
+    }
+
+    fn plan_merge(&self, i: usize, at_nozzle: bool) -> Merge {
+        let rod = &self.state.rod;
+        let [a, b] = [rod.rest[i - 1], rod.rest[i]];
+        let length = (rod.x[i] - rod.x[i - 1]).norm() + (rod.x[i + 1] - rod.x[i]).norm();
+        let chord = rod.x[i + 1] - rod.x[i - 1];
+        let mut merge = Merge {
+            node: i,
+            rest: [a, b],
+            joined: (a + b) * chord.norm() / length,
+            frame: rod.frame[i - 1],
+            at_nozzle,
+        };
+        // the joined edge's middle is this far from that of its first part
+        let roll = if self.model.twist.is_carried() {
+            merge.share(0.0, Joint::between(&rod.frame[i - 1], &rod.frame[i]).twist)
+        } else {
+            0.0
+        };
+        merge.frame = align(&rod.frame[i - 1], &chord.normalize(), roll);
+        merge
+    }
+
+    /// The wire's spline runs elsewhere round a node taken out at `i`: its contact points move along with
+    /// their anchors.
+    fn move_points(&mut self, i: usize) {
+        let Some(line) = self.contact.as_line_mut() else {
+            return;
+        };
+        let q = &self.state.past.q[0];
+        if q.len() != self.state.rod.nodes() {
+            return;
+        }
+        let mut carry = |point: ContactPoint| line.carry(point.number(), point.place(q));
+        if i > 1 {
+            carry(ContactPoint::Node(i - 1));
+        }
+        carry(ContactPoint::Edge(i - 1));
+        if i + 1 < q.len() {
+            carry(ContactPoint::Node(i));
+        }
+    }
+}

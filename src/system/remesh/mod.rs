@@ -1,0 +1,45 @@
+//! Changes of the wire between steps: halving and joining edges, letting settled wire go and taking
+//! it back.
+//!
+//! A change is a value that says all there is to know about it. Every part of the system that has an entry a node or
+//! an edge follows it by [`Remesh`], so that the arrays stay of one length.
+
+mod freeze;
+mod merge;
+mod parts;
+mod split;
+mod thaw;
+
+pub use freeze::{FrozenHistory, FrozenNodeRecord};
+pub(super) use merge::Merge;
+pub(super) use split::Split;
+pub(super) use thaw::Thaw;
+
+use super::System;
+
+/// A part of the system with entries a node or an edge.
+pub(super) trait Remesh {
+    /// An edge was split in two.
+    fn split(&mut self, split: &Split);
+
+    /// An inner node was taken out and its edges joined.
+    fn merge(&mut self, merge: &Merge);
+
+    /// The first `count` nodes left, each with the edge after it.
+    fn remove_front(&mut self, count: usize);
+
+    /// Frozen nodes came back at the front, each with the edge after it.
+    fn insert_front(&mut self, thaw: &Thaw);
+}
+
+impl System {
+    /// The parts that follow a change of the wire.
+    fn parts(&mut self) -> [&mut dyn Remesh; 4] {
+        [
+            &mut self.state.rod,
+            &mut self.state.roll,
+            &mut self.contact,
+            &mut self.state.past,
+        ]
+    }
+}

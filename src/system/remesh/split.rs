@@ -1,0 +1,151 @@
+//! Halving an edge.
+
+use super::super::System;
+use crate::math::{Quat, Spin, V3, align};
+use crate::rod::{Bend, Joint, Scalar};
+
+/// An edge that is split in two halves of the same stretch.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::system) struct Split {
+    /// the edge; its second half and the new node get the next number
+    pub edge: usize,
+    /// place of the new node, lab frame, m
+    pub place: V3,
+    /// the same in the core frame
+    pub place_in_core: V3,
+    /// its velocity, m/s
+    pub velocity: V3,
+    /// velocities of the edge's ends, m/s
+    pub ends: [V3; 2],
+    /// unstretched length of either half, m
+    pub half: f64,
+    /// frames of the halves
+    pub frames: [Quat; 2],
+    /// plastic bending of the new node
+    pub bend: Bend,
+    /// plastic twist of the new node
+    pub twist: Scalar,
+    /// the edge ends at the nozzle: its second half is new wire, which has no set
+    pub at_nozzle: bool,
+    /// length of the edge one and two instants back, over the present one
+    pub grown: [f64; 2],
+    /// the core's pose one instant back
+    pub core_before: Spin,
+}
+
+impl System {
+    /// Splits edge `j` in two halves at the same stretch.
+    ///
+    /// The new node lies on the cubic through both ends, so that the curvature stays smooth, and
+    /// moves with their mean velocity, which keeps the momentum. Last edge: on the chord, since
+    /// the wire leaves the nozzle straight.
+    pub fn split(&mut self, j: usize) {
+        let at_nozzle = j + 1 == self.state.rod.edges() && self.state.feed.is_some();
+        let kinetic = if at_nozzle { self.kinetic() } else { 0.0 };
+        let split = self.plan_split(j, at_nozzle);
+        for part in self.parts() {
+            part.split(&split);
+        }
+        if at_nozzle {
+            // the half edge at the nozzle was not in the energy balance before
+            self.state.balance.inflow += self.kinetic() - kinetic;
+        }
+    }
+
+    fn plan_split(&self, j: usize, at_nozzle: bool) -> Split {
+        let rod = &self.state.rod;
+        let last = rod.edges() - 1;
+        let (a, b) = (rod.x[j], rod.x[j + 1]);
+        let chord = b - a;
+        let mid = if j == last || j == 0 {
+            (a + b) * 0.5
+        } else {
+            // on an arc an edge has the direction at its middle: at a node between edges of different
+            // length the shorter one counts more
+            let before = a - rod.x[j - 1];
+            let after = rod.x[j + 2] - b;
+            let l = [before.norm(), chord.norm(), after.norm()];
+            let ta = (before * (l[1] / l[0]) + chord * (l[0] / l[1])).normalize();
+            let tb = (chord * (l[2] / l[1]) + after * (l[1] / l[2])).normalize();
+            (a + b) * 0.5 + (ta - tb) * (l[1] / 8.0)
+        };
+        let velocity = if at_nozzle {
+            // at the nozzle the material moves in along the wire at the feed rate
+            let stretch = chord.norm() / rod.rest[j];
+            let rate = self.state.feed.as_ref().map_or(0.0, |f| f.rate);
+            let inlet = rod.v[j + 1] - chord.normalize() * (rate * stretch);
+            (rod.v[j] + inlet) * 0.5
+        } else {
+            (rod.v[j] + rod.v[j + 1]) * 0.5
+        };
+        let quarter_turn = if j == last {
+            // wire leaves the nozzle untwisted
+            0.0
+        } else {
+            0.25 * rod.rest[j] * self.twist_along(j)
+        };
+        let half = 0.5 * rod.rest[j];
+        let frame = rod.frame[j];
+        let mut bend = rod.bend[j + 1];
+        let mut twist = rod.twist[j + 1];
+        for k in 0..2 {
+            bend.curvature[k] = 0.5 * (rod.bend[j].curvature[k] + rod.bend[j + 1].curvature[k]);
+        }
+        bend.rise = 0.5 * (rod.bend[j].rise + rod.bend[j + 1].rise);
+        twist.strain = 0.5 * (rod.twist[j].strain + rod.twist[j + 1].strain);
+        twist.rise = 0.5 * (rod.twist[j].rise + rod.twist[j + 1].rise);
+        if at_nozzle {
+            (bend, twist) = (Bend::default(), Scalar::default());
+        }
+        Split {
+            edge: j,
+            place: mid,
+            place_in_core: Spin::new(self.state.spindle.angle).to_core(mid),
+            velocity,
+            ends: [rod.v[j], rod.v[j + 1]],
+            half,
+            frames: [
+                align(&frame, &((mid - a) / (mid - a).norm()), -quarter_turn),
+                align(&frame, &((b - mid) / (b - mid).norm()), quarter_turn),
+            ],
+            bend,
+            twist,
+            at_nozzle,
+            grown: self.growth_of_edge(j),
+            core_before: Spin::new(self.state.spindle.before(self.state.past.h[0]).angle),
+        }
+    }
+
+    /// Twist per length along edge `j`, the mean of its two joints, 1/m.
+    ///
+    /// Only the implicit method, whose edges roll by what is asked of them, spreads twist over the halves of an edge.
+    fn twist_along(&self, j: usize) -> f64 {
+        if !self.contact.is_line() || !self.model.twist.is_carried() {
+            return 0.0;
+        }
+        let rod = &self.state.rod;
+        let at = |i: usize| {
+            let before = if i == 0 {
+                self.clamp_frame(0)
+            } else {
+                Some(rod.frame[i - 1])
+            };
+            before.map(|p| Joint::between(&p, &rod.frame[i]).twist / rod.voronoi(i))
+        };
+        let next = at(j + 1).unwrap_or(0.0);
+        0.5 * (at(j).unwrap_or(next) + next)
+    }
+
+    /// Length of edge `j` one and two instants back, over the present one; only the edge at the nozzle grows.
+    fn growth_of_edge(&self, j: usize) -> [f64; 2] {
+        let rest = self.state.rod.rest[j];
+        match &self.state.feed {
+            Some(f) if j + 1 == self.state.rod.edges() => self
+                .state
+                .past
+                .fed
+                .map(|fed| ((rest - (f.fed - fed)) / rest).max(0.05)),
+            _ => [1.0; 2],
+        }
+    }
+}

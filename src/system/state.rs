@@ -1,0 +1,130 @@
+//! The least that restarts a run to the bit, together with what contact remembers: what a saved state holds.
+//!
+//! What influences the rounding of a later step belongs to it, be it a cache: forces of the last
+//! evaluation, history of the step formula. Work arrays do not.
+
+use super::{EnergyBalance, FrozenHistory, Past, Spindle, Support};
+use crate::feed::Feed;
+use crate::rod::{Load, Rod};
+use serde::{Deserialize, Serialize};
+
+/// State of a [`super::System`] but for that of contact.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct State {
+    /// the live wire
+    pub rod: Rod,
+    /// supports at the first and last node
+    pub support: [Support; 2],
+    /// core motion
+    pub spindle: Spindle,
+    /// accepted instants before this one, for the implicit method
+    pub past: Past,
+    /// frozen wire of the implicit method, oldest node first
+    pub(crate) frozen_history: FrozenHistory,
+    /// feed at the last node, if there is one
+    pub feed: Option<Feed>,
+    /// set pull of the tensioner, N
+    pub set_tension: f64,
+    /// its rate, N/s
+    pub set_rate: f64,
+    /// unstretched length from the clamp to the first live node, m
+    pub arc0: f64,
+    /// wire lost to chords where nodes went, m: arcs became that much shorter
+    pub joined_away: f64,
+    /// energy balance
+    pub balance: EnergyBalance,
+    /// deepest penetration met, m
+    pub deepest: f64,
+    /// moment of the wire on the core about +y at the last evaluation, N m
+    pub torque_on_core: f64,
+    /// moment that turns the wire's mass, as the last implicit step has it, N m
+    pub(crate) turning: Option<f64>,
+    /// the part of the torque that is there because forces and motion are a little out of balance, N m
+    pub(crate) unbalanced: f64,
+    /// elapsed time, s
+    pub time: f64,
+    /// forces of the last evaluation
+    pub load: Load,
+    /// roll of each edge since the step began, rad
+    pub(crate) roll: Vec<f64>,
+}
+
+impl State {
+    /// The state of a wire at rest on which nothing acts.
+    pub(super) fn of(rod: Rod) -> Self {
+        let roll = vec![0.0; rod.edges()];
+        Self {
+            rod,
+            support: [Support::free(), Support::free()],
+            spindle: Spindle::default(),
+            past: Past::default(),
+            frozen_history: FrozenHistory::default(),
+            feed: None,
+            set_tension: 0.0,
+            set_rate: 0.0,
+            arc0: 0.0,
+            joined_away: 0.0,
+            balance: EnergyBalance::default(),
+            deepest: 0.0,
+            torque_on_core: 0.0,
+            turning: None,
+            unbalanced: 0.0,
+            time: 0.0,
+            load: Load::default(),
+            roll,
+        }
+    }
+
+    /// Fails with what is impossible about a state, whose bytes may say anything.
+    pub(super) fn check(&self) -> Result<(), &'static str> {
+        let rod = &self.rod;
+        let nodes = rod.x.len();
+        let Some(edges) = nodes.checked_sub(1).filter(|edges| *edges > 0) else {
+            return Err("a wire without an edge");
+        };
+        let load = &self.load;
+        let per_node = [
+            rod.v.len(),
+            rod.bend.len(),
+            rod.twist.len(),
+            load.force.len(),
+        ];
+        let per_edge = [
+            rod.rest.len(),
+            rod.frame.len(),
+            rod.spin.len(),
+            rod.stretch.len(),
+            load.torque.len(),
+            load.tangent.len(),
+            load.tension.len(),
+            self.roll.len(),
+        ];
+        if per_node != [nodes; 4] || per_edge != [edges; 8] {
+            return Err("arrays of the wire differ in length");
+        }
+        let places = rod.x.iter().chain(&rod.v).flatten();
+        let core = [self.spindle.angle, self.spindle.speed, self.time];
+        if !places.chain(&core).all(|x| x.is_finite()) || !rod.rest.iter().all(|l| *l > 0.0) {
+            return Err("the wire is nowhere");
+        }
+        let past = &self.past;
+        let known = match past.known {
+            0 => true,
+            k @ (1 | 2) => {
+                past.x.len() == nodes
+                    && past.v.len() == nodes
+                    && past.q[..=k].iter().all(|q| q.len() == nodes)
+            }
+            _ => false,
+        };
+        let mut rolls = past.roll.iter().chain([&past.spin]);
+        let rolls = rolls.all(|r| r.is_empty() || r.len() == edges);
+        if !known || !rolls {
+            return Err("the history does not go with the wire");
+        }
+        if !self.frozen_history.iter().all(|node| node.is_sound()) {
+            return Err("frozen wire remembers what cannot be");
+        }
+        Ok(())
+    }
+}
