@@ -1,4 +1,4 @@
-//! W: a whole scene along its own programme, against a converged run kept with it.
+//! W: a whole scene along its own motion profile, against a converged run kept with it.
 
 use super::args::{BenchArgs, Method};
 use super::converged::{Converged, Speed, rms};
@@ -25,7 +25,7 @@ const SPREAD: f64 = 0.35e-3;
 const TIGHT: f64 = 2e-7;
 const FINE: f64 = 0.25e-3;
 /// Tolerance unless something else is asked for, m, and for wire thinner than this in proportion: the verdict of ensembles of `fig8` is
-/// the converged one up to 300 rad/s there. Scenes have a fifth of it, for the sake of their energy books.
+/// the converged one up to 300 rad/s there. Scenes have a fifth of it, to keep their energy balance closed.
 const USUAL: f64 = 1e-5;
 const USUAL_DIAMETER: f64 = 0.7e-3;
 /// Free spacing over that near the core: a power of two, since edges are halved.
