@@ -161,10 +161,10 @@ fn after_a_long_flight_in_steps_of_any_length() {
     }
 }
 
-/// What a landing takes from the motion is booked as lost in it, however the step that it falls into is cut: by the forces at the ends
-/// of that step alone, up to half of the motion would be unexplained.
+/// The energy balance books what a landing takes from the motion as lost, whatever the length of its step. By the forces at the ends
+/// of the step alone, up to half of the motion would be unexplained.
 #[test]
-fn the_books_know_the_blow() {
+fn the_energy_balance_holds_through_a_landing() {
     let scene = scene();
     for fixed in [2e-6, 10e-6, 27e-6, 60e-6] {
         let mut sys = falling(&scene, Onto::Flat, FALL);

@@ -3,7 +3,7 @@
 //! All vectors are in the core frame, in which core and frozen wire are at rest. Units are SI.
 //!
 //! * [`ContactLaw`]: parameters of stiffness and friction, shared by both methods
-//! * [`line`]: contact of the implicit (production) method, with a smooth core and smooth frozen wire; the
+//! * [`mod@line`]: contact of the implicit (production) method, with a smooth core and smooth frozen wire; the
 //!   places of its [`ContactPoint`]s on the wire are those of `stencil`, its force law that of `friction`
 //! * [`nodal`]: contact of the explicit methods, the paper's, node by node with triangles and prisms
 

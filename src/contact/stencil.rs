@@ -164,3 +164,57 @@ impl From<([usize; 3], [f64; 3])> for NodeWeights {
         Self { nodes, weights }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::block_times;
+
+    /// A point's number leads back to it, and its place is the weighted mean of its nodes.
+    #[test]
+    fn numbers_weights_and_places_agree() {
+        let node = |i: i32| V3::new(1e-3 * f64::from(i), 2e-4 * f64::from(i * i), 1e-3);
+        let q: Vec<V3> = (0..6).map(node).collect();
+        let rod = Rod::through(&q, None);
+        let all: Vec<ContactPoint> = ContactPoint::all(5).collect();
+        assert_eq!(all.first(), Some(&ContactPoint::Edge(0)));
+        assert_eq!(all.last(), Some(&ContactPoint::Edge(4)));
+        for (k, point) in all.iter().enumerate() {
+            assert_eq!(point.number(), k + 1);
+            let weights = point.weights();
+            assert!((weights.iter().map(|(_, w)| w).sum::<f64>() - 1.0).abs() < 1e-15);
+            assert!((weights.sum(&q) - point.place(&q)).norm() < 1e-18);
+            let mut force = vec![V3::zeros(); 6];
+            weights.spread(&V3::x(), &mut force);
+            weights.negative().spread(&V3::x(), &mut force);
+            assert!(force.iter().all(|f| f.norm() == 0.0));
+        }
+        // the points stand for all of the wire but half of what the end nodes stand for
+        let whole: f64 = all.iter().map(|point| point.length(&rod)).sum();
+        let ends = 0.5 * (rod.voronoi(0) + rod.voronoi(5));
+        assert!((whole + ends - rod.rest.iter().sum::<f64>()).abs() < 1e-15);
+    }
+
+    /// The force that a way of the nodes calls forth through the matrix is that of the way of the place.
+    #[test]
+    fn a_spread_block_acts_on_the_place() {
+        let block: Block = [[2.0, 0.3, 0.1], [0.3, 1.5, -0.2], [0.1, -0.2, 1.0]];
+        let ways: Vec<V3> = (0..6)
+            .map(|i| V3::new(0.1 * f64::from(i), 1.0 - 0.3 * f64::from(i * i), 0.7))
+            .collect();
+        for point in ContactPoint::all(5) {
+            let weights = point.weights();
+            let mut matrix = Banded::<3>::new();
+            matrix.reset(6);
+            weights.spread_block(&block, &mut matrix);
+            let flat: Vec<f64> = ways.iter().flatten().copied().collect();
+            let mut got = vec![0.0; 18];
+            matrix.multiply(&flat, &mut got);
+            let mut want = vec![V3::zeros(); 6];
+            weights.spread(&block_times(&block, &weights.sum(&ways)), &mut want);
+            for (got, want) in got.iter().zip(want.iter().flatten()) {
+                assert!((got - want).abs() < 1e-13, "{point:?}: {got} {want}");
+            }
+        }
+    }
+}
