@@ -136,7 +136,7 @@ impl System {
     }
 
     /// All forces at the present state into `self.load`. With `commit = Some(dt)` plastic state,
-    /// frames and friction anchors move on and the books grow by what happens in `dt`.
+    /// frames and friction anchors move on and the energy balance grows by what happens in `dt`.
     pub fn evaluate(&mut self, commit: Option<f64>) {
         self.internal(commit.is_some());
         let spin = Spin::new(self.state.spindle.angle);

@@ -1,6 +1,6 @@
-//! Taking a converged step over as the new state, and the books of it.
+//! Taking a converged step over as the new state, with its energy balance.
 
-use super::scheme::{Scheme, Step};
+use super::scheme::{Scheme, StepFormula};
 use super::tensioner::{NozzleEdge, advance};
 use super::{Implicit, Work};
 use crate::contact::{LineContact, own_wire};
@@ -15,7 +15,7 @@ impl Implicit {
         &mut self,
         w: &mut Work<D>,
         sys: &mut System,
-        step: &Step,
+        step: &StepFormula,
         spindle: Spindle,
         support: &[Support; 2],
         nozzle: Option<NozzleEdge>,
@@ -81,8 +81,8 @@ impl Implicit {
                 sys.moment_of(|i| (sys.state.rod.v[i] - w.star[1][i]) * (w.mass[i] / step.gamma)),
             );
         }
-        sys.settle_forces(h, true);
-        // books: work of forces at both ends of the step
+        sys.evaluate_smooth(h, true);
+        // energy balance: work of forces at both ends of the step
         let turned = sys.state.spindle.angle - before.0.angle;
         sys.state.balance.spindle -= 0.5 * (sys.state.torque_on_core + before.1) * turned;
         if feeds {
@@ -132,7 +132,7 @@ impl Implicit {
 /// The feed after the step and how much wire came in.
 fn feed(
     sys: &mut System,
-    step: &Step,
+    step: &StepFormula,
     nozzle: Option<NozzleEdge>,
     q: &[V3],
 ) -> (Option<crate::feed::Feed>, f64) {
@@ -170,7 +170,7 @@ impl System {
             self.place_points();
         }
         if self.state.load.force.len() != nodes {
-            self.settle_forces(0.0, false);
+            self.evaluate_smooth(0.0, false);
         }
     }
 
@@ -212,7 +212,7 @@ impl System {
 
     /// Forces at the present state into `load`, with contact of the line kind. `commit` moves plastic
     /// state, frames and anchors on after a step of `h`.
-    pub(super) fn settle_forces(&mut self, h: f64, commit: bool) {
+    pub(super) fn evaluate_smooth(&mut self, h: f64, commit: bool) {
         self.internal_at_once(commit);
         self.touch_forces(h, commit);
     }

@@ -1,7 +1,8 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
+use super::predictor::voronoi;
 use super::tensioner::NozzleEdge;
-use super::{Axial, Work, assembly, voronoi};
+use super::{Axial, Work, assembly};
 use crate::contact::{LineContact, own_wire, point_length, spline_point};
 use crate::linalg::Banded;
 use crate::math::V3;
@@ -50,7 +51,7 @@ impl Model<'_> {
         self.evaluate_with::<D, true>(work)
     }
 
-    /// Evaluates at `work.q` into `work.gradient`; `work.matrix` stays what it was, knees are forgotten.
+    /// Evaluates at `work.q` into `work.gradient`; `work.matrix` stays what it was, yield branches are forgotten.
     pub(super) fn evaluate_forces<const D: usize>(&mut self, work: &mut Work<D>) -> Value {
         self.evaluate_with::<D, false>(work)
     }

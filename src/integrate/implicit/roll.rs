@@ -7,7 +7,7 @@
 //! where its torques balance. Contact acts on the centreline: friction puts no moment on the wire
 //! about its own axis, neither here nor in the explicit methods.
 
-use super::scheme::{Scheme, Step, extrapolation};
+use super::scheme::{Scheme, StepFormula, extrapolation};
 use crate::linalg::Banded;
 use crate::math::rotate;
 use crate::math::turn_about_y;
@@ -50,7 +50,7 @@ impl Rolls {
     pub(super) fn prepare(
         &mut self,
         sys: &System,
-        step: &Step,
+        step: &StepFormula,
         spindle: &Spindle,
         support: &[Support; 2],
         inert: bool,
@@ -173,13 +173,13 @@ impl Rolls {
             .sum()
     }
 
-    /// Keeps the torques of the present instant for the books of the step to come.
+    /// Keeps the torques of the present instant for the energy balance of the step to come.
     pub(super) fn keep_torques(&mut self, sys: &System) {
         self.before.clone_from(&sys.state.load.torque);
     }
 
     /// Hands rolls and spins over to the rod, whose frames turn with the next evaluation, and moves history on.
-    pub(super) fn hand_over(&mut self, sys: &mut System, scheme: Scheme, step: &Step) {
+    pub(super) fn hand_over(&mut self, sys: &mut System, scheme: Scheme, step: &StepFormula) {
         let past = &mut sys.state.past;
         past.spin.clone_from(&sys.state.rod.spin);
         for j in 0..self.angle.len() {
