@@ -14,7 +14,6 @@ use crate::math::turn_about_y;
 use crate::math::{Quat, V3};
 use crate::rod::Twist;
 use crate::rod::TwistingJoints;
-use crate::system::Past;
 use crate::system::{Spindle, Support, System};
 
 /// Unknowns of a node with twist: place and roll.
@@ -207,16 +206,6 @@ impl Rolls {
             .zip(&sys.state.past.roll[0])
             .map(|((a, b), roll)| 0.5 * (a + b) * roll)
             .sum()
-    }
-}
-
-impl Past {
-    /// Rolls before the present instant are not known.
-    pub(crate) fn forget_rolls(&mut self, edges: usize) {
-        for v in self.roll.iter_mut().chain([&mut self.spin]) {
-            v.clear();
-            v.resize(edges, 0.0);
-        }
     }
 }
 
