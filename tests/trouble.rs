@@ -74,7 +74,7 @@ impl Machine {
     }
 }
 
-/// Laid wire that froze and comes back is what it was before, to rounding; so are the books.
+/// Laid wire that froze and comes back is what it was before, to rounding; so is the energy balance.
 #[test]
 fn thawing_undoes_freezing() {
     for twist in ["off", "quasi-static", "dynamic"] {

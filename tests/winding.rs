@@ -10,7 +10,7 @@ use coilwind::simulation::{Centreline, Simulation, core_surface};
 use common::fig8;
 use std::f64::consts::TAU;
 
-/// Runs the scene's programme for this many turns of the spindle.
+/// Runs the scene's motion profile for this many turns of the spindle.
 fn wind(scene: &Scene, turns: f64) -> Simulation {
     let mut sim = Simulation::new(scene).expect("the scene starts");
     let mut time = 0.0;

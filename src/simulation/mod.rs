@@ -1,7 +1,7 @@
 //! The one door to a run: scene in, inputs in, outputs and events out.
 //!
-//! A step reads as a list of stages: move, feed, forces ([`crate::integrate`]), then keeping
-//! house (insert wire at the nozzle, refine near the core, let settled wire go), then measure.
+//! A step reads as a list of stages: move, feed, forces ([`crate::integrate`]), then remeshing
+//! (insert wire at the nozzle, refine near the core, let settled wire go), then measure.
 
 mod broken;
 mod coarsen;
@@ -104,7 +104,7 @@ impl Simulation {
         &self.coil
     }
 
-    /// The programme of the scene.
+    /// The motion profile of the scene.
     pub fn motion_profile(&self) -> &MotionProfile {
         &self.motion_profile
     }

@@ -45,7 +45,7 @@ pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>) -> Option<Profile> 
         // a round core has no faces to stand off from; a mesh may have any number of them
         return None;
     };
-    let sys = settle(scene, surface, width_x, height_z)?;
+    let sys = quarter_loop(scene, surface, width_x, height_z)?;
     let radius = scene.wire.radius();
     let quarter: Vec<(f64, f64)> = sys
         .state
@@ -89,7 +89,7 @@ fn outline(a: f64, b: f64, s: f64) -> V3 {
 }
 
 /// The quarter loop at rest, by the production method whatever the scene winds with.
-fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Option<System> {
+fn quarter_loop(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Option<System> {
     // how far the wire stretches does not matter for its shape: a softer one settles sooner
     let section = Section {
         ea: scene.wire.ea / SOFTER,
@@ -137,7 +137,7 @@ fn settle(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Opt
         // loading is monotonic: the law is a nonlinear elastic one from the virgin wire, not one that
         // remembers how wide the loop once was
         sys.state.rod.bend.fill(Bend::default());
-        method.settle(&mut sys).ok()?;
+        method.equilibrate(&mut sys).ok()?;
         let pull = sys.state.load.tension.iter().sum::<f64>() / count as f64;
         let missing = tension - pull;
         if missing.abs() < TENSION * tension {

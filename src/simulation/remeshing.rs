@@ -1,9 +1,9 @@
-//! Keeping house between steps: insert, refine, freeze, watch for trouble.
+//! Remeshing between steps: insert, refine, freeze, and health checks of the wire.
 
 use super::{REMESH_STEPS, SimError, Simulation};
 use crate::geometry::FrozenNode;
+use crate::math::Spin;
 use crate::math::turn_about_y;
-use crate::math::{Spin, V3};
 use crate::math::{polar_angle, wrap_to_pi};
 use crate::scene::LiveContact;
 use crate::signals::EventKind;
@@ -32,7 +32,7 @@ impl Simulation {
             self.check_health()?;
         }
         if self.stepper.is_implicit() {
-            self.take_back();
+            self.follow_returning_wire();
         }
         let insert = self.nozzle_edge_is_long();
         let refine = if look {
@@ -115,13 +115,9 @@ impl Simulation {
         (first..rod.edges() - 1)
             .filter(|&j| {
                 rod.rest[j] > 1.5 * solver.spacing_near
-                    && self.distance_to_coil(spin.to_core(rod.x[j])) < reach
+                    && self.sys.distance_to_core(spin.to_core(rod.x[j])) < reach
             })
             .collect()
-    }
-
-    fn distance_to_coil(&self, p: V3) -> f64 {
-        self.sys.distance_to_core(p)
     }
 
     /// How many nodes from the clamp are at rest, settled long enough and in place (eq. 8, 9).
@@ -153,7 +149,11 @@ impl Simulation {
         let count = still.saturating_sub(1).min(self.behind_lift_off());
         let reach = 2.0 * self.scene.wire.radius() + self.run.policy.margin;
         (0..count)
-            .find(|&i| self.distance_to_coil(spin.to_core(self.sys.state.rod.x[i + 1])) > reach)
+            .find(|&i| {
+                self.sys
+                    .distance_to_core(spin.to_core(self.sys.state.rod.x[i + 1]))
+                    > reach
+            })
             .unwrap_or(count)
     }
 
@@ -224,7 +224,7 @@ impl Simulation {
 
     /// Wire that comes off the core again: frozen wire thaws near lift-off, and what goes back into the
     /// nozzle takes its nodes along.
-    fn take_back(&mut self) {
+    fn follow_returning_wire(&mut self) {
         let thaw = self.nodes_to_thaw();
         let returning = self.sys.state.feed.is_some_and(|f| f.rate < 0.0);
         let join = if returning {
@@ -276,7 +276,7 @@ impl Simulation {
             // a kink stays: the joined edge would hide it
             if both < 1.2 * solver.spacing_free
                 && rod.tangent(i - 1).dot(&rod.tangent(i)) > STRAIGHT
-                && self.distance_to_coil(spin.to_core(rod.x[i])) > reach
+                && self.sys.distance_to_core(spin.to_core(rod.x[i])) > reach
             {
                 nodes.push(i);
                 i += 1;

@@ -1,6 +1,6 @@
 //! A run as bytes, and back.
 //!
-//! Description and state stay apart: the scene is not in the bytes, whoever restores hands it over.
+//! Description and state stay apart: the scene is not in the bytes, the caller hands it over to restore.
 //! From it the run is started anew and the state laid over. What can be rebuilt from the state to
 //! the bit is not in the bytes either (search trees, measures of settled wire).
 

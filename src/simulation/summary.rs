@@ -36,7 +36,7 @@ pub struct Summary {
     pub fed_length_m: f64,
     /// verdict over all settled turns
     pub verdict: String,
-    /// energy books
+    /// energy balance
     pub energy: EnergySummary,
     /// penetration
     pub penetration: PenetrationSummary,

@@ -119,7 +119,7 @@ impl System {
         self.model.section.mass_per_length() * self.state.rod.rest[j] / 6.0
     }
 
-    /// Energy that the books cannot explain, J: what should be there minus what is.
+    /// Energy that the balance cannot explain, J: what should be there minus what is.
     ///
     /// With a staggered step of `dt` the motion energy is the product of the velocities before and
     /// after this instant, which is the quantity the scheme conserves; `None` where velocities

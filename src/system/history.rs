@@ -33,4 +33,12 @@ impl Past {
     pub fn forget(&mut self) {
         self.known = 0;
     }
+
+    /// Rolls before the present instant are not known.
+    pub(crate) fn forget_rolls(&mut self, edges: usize) {
+        for v in self.roll.iter_mut().chain([&mut self.spin]) {
+            v.clear();
+            v.resize(edges, 0.0);
+        }
+    }
 }

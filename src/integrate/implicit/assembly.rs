@@ -68,7 +68,7 @@ impl Assembly {
     }
 }
 
-/// Puts the gradient of rod and inertia, and with `HESSIAN` the matrix, and completes the knees; returns the energy of
+/// Puts the gradient of rod and inertia, and with `HESSIAN` the matrix, and completes the yield branches; returns the energy of
 /// inertia and `gravity`.
 pub(super) fn gather<const D: usize, const HESSIAN: bool>(
     work: &mut Work<D>,

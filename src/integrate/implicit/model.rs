@@ -1,7 +1,8 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
+use super::predictor::voronoi;
 use super::tensioner::NozzleEdge;
-use super::{Axial, Work, assembly, voronoi};
+use super::{Axial, Work, assembly};
 use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
 use crate::math::V3;
 use crate::rod::{Block, Laws, Rod, stretched, turning};

@@ -24,7 +24,7 @@ const NOISE: f64 = 1e-13;
 
 /// How far a solve may go.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Reach {
+pub(super) struct NewtonLimits {
     /// Newton steps before the solve counts as failed
     pub(super) steps: usize,
     /// largest move of a node in one Newton step, m
@@ -41,7 +41,7 @@ pub(super) struct Reach {
     pub(super) chord: bool,
 }
 
-impl Reach {
+impl NewtonLimits {
     /// That of a time step, whose guess is close.
     pub(super) const STEP: Self = Self {
         steps: 12,
@@ -110,7 +110,7 @@ pub(super) fn solve<const D: usize>(
     model: &mut Model,
     work: &mut Work<D>,
     close: f64,
-    reach: Reach,
+    limits: NewtonLimits,
 ) -> Result<usize, NewtonFailure> {
     expect_nothing(model, work);
     hold_limits(model, true);
@@ -129,12 +129,12 @@ pub(super) fn solve<const D: usize>(
         bound = bound.max(work.rolls.bound(model.gamma, radius));
     }
     // (the midpoint rule keeps what is wrong with a guess for ever)
-    if bound < close && reach.damped {
+    if bound < close && limits.damped {
         return Ok(0);
     }
     let mut last_update = f64::INFINITY;
     let mut worst = (0, f64::INFINITY);
-    for step in 1..=reach.steps {
+    for step in 1..=limits.steps {
         work.solves += 1;
         let fits = solve_linear(model, work).map_err(|node| NewtonFailure {
             node,
@@ -157,11 +157,11 @@ pub(super) fn solve<const D: usize>(
         }
         if step == 1 {
             let way = work.mean_update();
-            if way > reach.far {
+            if way > limits.far {
                 return Err(stuck(Some(way)));
             }
         }
-        let mut share = reach.share(work, update);
+        let mut share = limits.share(work, update);
         work.start.clone_from(&work.q);
         work.base.clone_from(&work.axial);
         work.rolls.start.clone_from(&work.rolls.angle);
@@ -178,8 +178,8 @@ pub(super) fn solve<const D: usize>(
         let mut line_search_halvings = 0;
         if share == 1.0
             && fits
-            && reach.chord
-            && end_by_chord(model, work, value, (update, close), reach.damped)
+            && limits.chord
+            && end_by_chord(model, work, value, (update, close), limits.damped)
         {
             return Ok(step + 1);
         }
@@ -199,9 +199,9 @@ pub(super) fn solve<const D: usize>(
             work.line_search_halvings += 1;
             // a shorter step does not help rolls
             let most = if rolls {
-                Reach::STEP.line_search_halvings
+                NewtonLimits::STEP.line_search_halvings
             } else {
-                reach.line_search_halvings
+                limits.line_search_halvings
             };
             if line_search_halvings > most {
                 return Err(stuck(None));
@@ -214,7 +214,7 @@ pub(super) fn solve<const D: usize>(
     Err(NewtonFailure {
         node: worst.0,
         update: worst.1,
-        steps: reach.steps,
+        steps: limits.steps,
         far: None,
     })
 }
@@ -317,7 +317,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
         if look == LOOKS_AHEAD {
             return Ok(false);
         }
-        let mut any = predict_yielding(model.laws, work);
+        let mut any = predict_branches(model.laws, work);
         let Work {
             q,
             update,
@@ -390,7 +390,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
-fn predict_yielding<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
+fn predict_branches<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
     let Work {
         yield_branches,
         update,

@@ -7,14 +7,13 @@
 //! where its torques balance. Contact acts on the centreline: friction puts no moment on the wire
 //! about its own axis, neither here nor in the explicit methods.
 
-use super::scheme::{Scheme, Step, extrapolation};
+use super::scheme::{Scheme, StepFormula, extrapolation};
 use crate::linalg::Banded;
 use crate::math::rotate;
 use crate::math::turn_about_y;
 use crate::math::{Quat, V3};
 use crate::rod::Twist;
 use crate::rod::TwistingJoints;
-use crate::system::Past;
 use crate::system::{Spindle, Support, System};
 
 /// Unknowns of a node with twist: place and roll.
@@ -50,7 +49,7 @@ impl Rolls {
     pub(super) fn prepare(
         &mut self,
         sys: &System,
-        step: &Step,
+        step: &StepFormula,
         spindle: &Spindle,
         support: &[Support; 2],
         inert: bool,
@@ -173,13 +172,13 @@ impl Rolls {
             .sum()
     }
 
-    /// Keeps the torques of the present instant for the books of the step to come.
+    /// Keeps the torques of the present instant for the energy balance of the step to come.
     pub(super) fn keep_torques(&mut self, sys: &System) {
         self.before.clone_from(&sys.state.load.torque);
     }
 
     /// Hands rolls and spins over to the rod, whose frames turn with the next evaluation, and moves history on.
-    pub(super) fn hand_over(&mut self, sys: &mut System, scheme: Scheme, step: &Step) {
+    pub(super) fn hand_over(&mut self, sys: &mut System, scheme: Scheme, step: &StepFormula) {
         let past = &mut sys.state.past;
         past.spin.clone_from(&sys.state.rod.spin);
         for j in 0..self.angle.len() {
@@ -207,16 +206,6 @@ impl Rolls {
             .zip(&sys.state.past.roll[0])
             .map(|((a, b), roll)| 0.5 * (a + b) * roll)
             .sum()
-    }
-}
-
-impl Past {
-    /// Rolls before the present instant are not known.
-    pub(crate) fn forget_rolls(&mut self, edges: usize) {
-        for v in self.roll.iter_mut().chain([&mut self.spin]) {
-            v.clear();
-            v.resize(edges, 0.0);
-        }
     }
 }
 

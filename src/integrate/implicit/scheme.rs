@@ -19,7 +19,7 @@ pub enum Scheme {
 
 /// The numbers of one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Step {
+pub(super) struct StepFormula {
     /// its length, s
     pub(super) h: f64,
     /// time over which the solve sees the forces act, s
@@ -34,7 +34,7 @@ pub(super) struct Step {
     pub(super) grown: f64,
 }
 
-impl Step {
+impl StepFormula {
     pub(super) fn new(scheme: Scheme, past: &Past, h: f64) -> Self {
         match scheme {
             Scheme::Midpoint => Self {
@@ -140,7 +140,7 @@ mod tests {
         let w = extrapolation(h, &past);
         let guess = w[0] * x(0.0) + w[1] * x(-h1) + w[2] * x(-h1 - h2);
         assert!((guess - x(h)).abs() < 1e-13);
-        let s = Step::new(Scheme::Bdf2, &past, h);
+        let s = StepFormula::new(Scheme::Bdf2, &past, h);
         let star = s.blend(x(0.0), x(-h1));
         assert!((star + s.gamma * v(h) - x(h)).abs() < 1e-13);
     }
@@ -156,7 +156,7 @@ mod tests {
         let x = |t: f64| t * t * t;
         let w = extrapolation(h, &past);
         let guess = w[0] * x(0.0) + w[1] * x(-h1) + w[2] * x(-h1 - h2);
-        let s = Step::new(Scheme::Bdf2, &past, h);
+        let s = StepFormula::new(Scheme::Bdf2, &past, h);
         // x' = 3t^2 as the equation: the formula's own result
         let got = s.blend(x(0.0), x(-h1)) + s.gamma * 3.0 * h * h;
         let error = (got - x(h)).abs();

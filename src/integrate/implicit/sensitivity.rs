@@ -6,11 +6,11 @@
 //! approximation in an iteration on the true one, whose product with `dq` is the difference of two gradients:
 //! `dq -= K^-1 (g(q + s dq, u + s du) - g(q - s dq, u - s du)) / 2 s`. Nothing is committed, and no step is repeated.
 
-use super::scheme::Step;
+use super::predictor::{model_of, moved, step_of};
+use super::scheme::StepFormula;
 use super::tensioner::{NozzleEdge, advance};
-use super::{CLOSE, Implicit, StepError, Work, conjugate, model_of, moved, newton, step_of};
+use super::{CLOSE, Implicit, StepError, Work, conjugate, newton, with_work};
 use crate::math::V3;
-use crate::rod::Twist;
 use crate::system::{Spindle, Support, System};
 
 /// Inputs by their place in a tangent: spindle speed, nozzle position, set tension.
@@ -83,17 +83,7 @@ impl Implicit {
         let kept = sys.contact.as_line().map(|l| l.saved());
         let inputs = (sys.state.spindle, sys.state.support, sys.state.set_tension);
         let statistics = self.statistics;
-        let tangent = if sys.model.twist == Twist::Off {
-            let mut work = std::mem::take(&mut self.work);
-            let tangent = self.tangent_with(&mut work, sys, h, lift);
-            self.work = work;
-            tangent
-        } else {
-            let mut work = std::mem::take(&mut self.twisted);
-            let tangent = self.tangent_with(&mut work, sys, h, lift);
-            self.twisted = work;
-            tangent
-        };
+        let tangent = with_work!(self, sys, work => self.tangent_with(work, sys, h, lift));
         self.statistics = statistics;
         (sys.state.spindle, sys.state.support, sys.state.set_tension) = inputs;
         if let (Some(line), Some(kept)) = (sys.contact.as_line_mut(), kept) {
@@ -122,13 +112,13 @@ impl Implicit {
         let mut model = model_of(sys, &step, &now.spindle, &now.support, now.nozzle);
         // to rounding: the tangent belongs to the solution, not to what is near enough to it
         let close = (1e-4 * CLOSE * self.tolerance).max(ROUNDING);
-        let reach = newton::Reach {
+        let limits = newton::NewtonLimits {
             damped: false,
             chord: false,
-            ..newton::Reach::STEP
+            ..newton::NewtonLimits::STEP
         };
-        newton::solve(&mut model, work, close, reach)
-            .or_else(|_| newton::solve(&mut model, work, CLOSE * self.tolerance, reach))
+        newton::solve(&mut model, work, close, limits)
+            .or_else(|_| newton::solve(&mut model, work, CLOSE * self.tolerance, limits))
             .map_err(|stuck| StepError::at(h, &stuck))?;
         model.evaluate(work);
         work.expected.clone_from(&work.axial);
@@ -228,7 +218,7 @@ impl Implicit {
 fn set<const D: usize>(
     work: &mut Work<D>,
     sys: &mut System,
-    step: &Step,
+    step: &StepFormula,
     base: &(Spindle, [Support; 2], f64),
     input: usize,
     by: f64,
@@ -267,7 +257,7 @@ fn residual_of<const D: usize>(work: &Work<D>) -> Vec<f64> {
 fn look<const D: usize>(
     work: &Work<D>,
     sys: &System,
-    step: &Step,
+    step: &StepFormula,
     setting: &Setting,
     lift: usize,
 ) -> OutputSensitivity {

@@ -5,11 +5,10 @@
 //! converged.
 
 use super::model::Model;
-use super::newton::{self, Reach};
-use super::scheme::Step;
-use super::{CLOSE, Implicit, StepError, Work};
+use super::newton::{self, NewtonLimits};
+use super::scheme::StepFormula;
+use super::{CLOSE, Implicit, StepError, Work, with_work};
 use crate::math::{Spin, V3};
-use crate::rod::Twist;
 use crate::system::System;
 
 /// Time over which forces act in a static solve, s: inertia is then 1e-10 of the softest wire's stiffness.
@@ -27,7 +26,7 @@ impl Implicit {
     /// Moves `sys` to equilibrium under its present loads and supports, and commits it.
     ///
     /// The nozzle holds the wire: nothing is fed. Velocities become zero.
-    pub fn settle(&mut self, sys: &mut System) -> Result<(), StepError> {
+    pub fn equilibrate(&mut self, sys: &mut System) -> Result<(), StepError> {
         self.equilibrium(sys, &[], 0.0).map(|_| ())
     }
 
@@ -87,11 +86,7 @@ impl Implicit {
 
     /// The same, and the torques on the edges about themselves, N m; none where twist is off.
     pub fn out_of_balance(&mut self, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
-        if sys.model.twist == Twist::Off {
-            forces_with(&mut self.work, sys)
-        } else {
-            forces_with(&mut self.twisted, sys)
-        }
+        with_work!(self, sys, work => forces_with(work, sys))
     }
 
     /// Returns the solver's steps.
@@ -101,16 +96,7 @@ impl Implicit {
         moved: &[V3],
         share: f64,
     ) -> Result<usize, StepError> {
-        if sys.model.twist == Twist::Off {
-            let mut work = std::mem::take(&mut self.work);
-            let taken = self.equilibrium_with(&mut work, sys, moved, share);
-            self.work = work;
-            return taken;
-        }
-        let mut work = std::mem::take(&mut self.twisted);
-        let taken = self.equilibrium_with(&mut work, sys, moved, share);
-        self.twisted = work;
-        taken
+        with_work!(self, sys, work => self.equilibrium_with(work, sys, moved, share))
     }
 
     fn equilibrium_with<const D: usize>(
@@ -134,7 +120,7 @@ impl Implicit {
                 }
             }
         }
-        let reach = Reach {
+        let limits = NewtonLimits {
             // wire bent and twisted far from its free shape converges by a factor, not by squares: what the
             // Hessian leaves out is not small there
             steps: if Work::<D>::ROLLS { 200 } else { 40 },
@@ -153,7 +139,7 @@ impl Implicit {
             }
             let mut model = model_at_rest(sys);
             model.flat = self.flat;
-            let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, reach);
+            let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, limits);
             let steps = solved.map_err(|stuck| {
                 self.statistics.newton_failures += 1;
                 StepError::at(LONG, &stuck)
@@ -172,19 +158,19 @@ impl Implicit {
             sys.state.roll.clone_from(&work.rolls.angle);
         }
         sys.place_supports();
-        sys.settle_forces(f64::INFINITY, true);
+        sys.evaluate_smooth(f64::INFINITY, true);
         sys.state.past.forget();
         Ok(taken)
     }
 }
 
 /// Brings everything to rest; the step that a static solve is.
-fn still(sys: &mut System) -> Step {
+fn still(sys: &mut System) -> StepFormula {
     sys.state.rod.v.fill(V3::zeros());
     sys.state.rod.spin.fill(0.0);
     sys.state.past.forget();
     sys.begin_past();
-    Step {
+    StepFormula {
         h: LONG,
         gamma: LONG,
         share: 1.0,
@@ -231,56 +217,5 @@ fn model_at_rest(sys: &mut System) -> Model<'_> {
         back: Spin::new(sys.state.spindle.angle),
         held,
         flat: false,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::integrate::Scheme;
-    use crate::math::frame_along;
-    use crate::rod::{Rod, Section};
-    use crate::system::Support;
-
-    /// A clamped wire that runs askew to all axes; it carries no twist.
-    fn cantilever() -> System {
-        let section = Section {
-            n_y: 38.5,
-            m_y: 5.72e-3,
-            ..Section::table1_elastic()
-        };
-        let along = V3::new(0.8, 0.36, 0.48);
-        let points: Vec<V3> = (0..=30).map(|i| along * (1e-3 * f64::from(i))).collect();
-        let mut sys = System::new(section, Rod::through(&points, None));
-        sys.state.support[0] = Support::clamped(points[0], frame_along(&along, None));
-        sys.model.twist = Twist::Off;
-        sys
-    }
-
-    fn load(sys: &mut System, share: f64) {
-        sys.model.loads.nodal = vec![(30, V3::new(-0.3, 0.5, 0.2) * share)];
-        sys.model.loads.gravity = V3::new(0.0, 0.0, -50.0 * share);
-    }
-
-    #[test]
-    fn forces_are_those_of_the_joints() {
-        let mut sys = cantilever();
-        for (i, x) in sys.state.rod.x.iter_mut().enumerate().skip(1) {
-            let s = i as f64;
-            *x += V3::new(0.0, 1e-4 * libm::sin(s), 4e-6 * s * s);
-        }
-        load(&mut sys, 1.0);
-        sys.evaluate(Some(0.0));
-        let forces = Implicit::new(Scheme::Bdf2, 1e-11, 1e-9, 1.0).forces(&mut sys);
-        let largest = sys
-            .state
-            .load
-            .force
-            .iter()
-            .map(V3::norm)
-            .fold(0.0, f64::max);
-        for (a, b) in forces.iter().zip(&sys.state.load.force) {
-            assert!((a - b).norm() < 1e-6 * largest, "{a:?} {b:?}");
-        }
     }
 }

@@ -5,7 +5,7 @@
 //! the edge is the root of a quadratic and its tension has a closed potential: the feed costs no
 //! unknown.
 
-use super::scheme::Step;
+use super::scheme::StepFormula;
 use crate::feed::{Feed, FeedSpec};
 use crate::rod::Stretched;
 use crate::system::Past;
@@ -36,7 +36,7 @@ enum Way {
     /// either way, and the tension is the line's times this
     Free(f64),
     /// held by friction
-    NewtonFailure,
+    Held,
 }
 
 impl NozzleEdge {
@@ -47,7 +47,7 @@ impl NozzleEdge {
         spec: &FeedSpec,
         feed: &Feed,
         past: &Past,
-        step: &Step,
+        step: &StepFormula,
         (rest, pull, grip, ea, plastic): (f64, f64, f64, f64, f64),
     ) -> Self {
         let (t0, slope) = line_over_fed(spec, feed, past, step, pull);
@@ -88,7 +88,7 @@ impl NozzleEdge {
         } else if held < line / self.grip {
             Way::Free(1.0 / self.grip)
         } else {
-            Way::NewtonFailure
+            Way::Held
         }
     }
 
@@ -96,7 +96,7 @@ impl NozzleEdge {
     pub(super) fn rest(&self, length: f64) -> f64 {
         match self.way(length) {
             Way::Free(grip) => self.balanced(length, grip),
-            Way::NewtonFailure => self.start,
+            Way::Held => self.start,
         }
     }
 
@@ -104,7 +104,7 @@ impl NozzleEdge {
     pub(super) fn line(&self, length: f64) -> f64 {
         match self.way(length) {
             Way::Free(grip) => self.free(length, grip).tension / grip,
-            Way::NewtonFailure => self.line_at_start(),
+            Way::Held => self.line_at_start(),
         }
     }
 
@@ -112,7 +112,7 @@ impl NozzleEdge {
     pub(super) fn stretched(&self, length: f64) -> Stretched {
         let grip = match self.way(length) {
             Way::Free(grip) => grip,
-            Way::NewtonFailure => return self.stuck(length),
+            Way::Held => return self.stuck(length),
         };
         let free = self.free(length, grip);
         if self.grip == 1.0 {
@@ -190,7 +190,13 @@ impl NozzleEdge {
 }
 
 /// Line tension at zero wire passed and its slope: `T = t0 + slope * fed` at the end of the step.
-fn line_over_fed(spec: &FeedSpec, feed: &Feed, past: &Past, step: &Step, pull: f64) -> (f64, f64) {
+fn line_over_fed(
+    spec: &FeedSpec,
+    feed: &Feed,
+    past: &Past,
+    step: &StepFormula,
+    pull: f64,
+) -> (f64, f64) {
     if spec.mass == 0.0 {
         return (pull, 0.0);
     }
@@ -217,7 +223,7 @@ pub(super) fn advance(
     spec: &FeedSpec,
     feed: &Feed,
     past: &Past,
-    step: &Step,
+    step: &StepFormula,
     (grown, line, pull): (f64, f64, f64),
 ) -> Feed {
     let g = step.gamma;
@@ -244,7 +250,7 @@ mod tests {
     use super::super::scheme::Scheme;
     use super::*;
 
-    fn setting() -> (FeedSpec, Feed, Past, Step) {
+    fn setting() -> (FeedSpec, Feed, Past, StepFormula) {
         let spec = FeedSpec {
             mass: 1e-3,
             line_stiffness: 97_800.0,
@@ -266,7 +272,7 @@ mod tests {
             h: [1e-4, 0.0],
             ..Past::default()
         };
-        let step = Step::new(Scheme::Bdf2, &past, 1.2e-4);
+        let step = StepFormula::new(Scheme::Bdf2, &past, 1.2e-4);
         (spec, feed, past, step)
     }
 

@@ -33,7 +33,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             sys.model.twist = Twist::Off;
             // before the path goes on the moment is the work of the step; the shear couple carries it
             moments.push(-method.forces(&mut sys)[1].y * edge);
-            method.settle(&mut sys).map_err(no_answer)?;
+            method.equilibrate(&mut sys).map_err(no_answer)?;
         } else {
             sys.evaluate(Some(0.0));
             moments.push(-sys.state.load.clamp_moment[0].z);

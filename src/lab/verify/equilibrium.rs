@@ -60,7 +60,7 @@ pub(super) fn follow_with_twist(
 pub(super) fn settle(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
     if ctx.integrator == Integrator::Implicit {
         sys.model.twist = Twist::Off;
-        return method(sys).settle(sys).map_err(no_answer);
+        return method(sys).equilibrate(sys).map_err(no_answer);
     }
     relax(sys, &Limits::default())?;
     Ok(())
@@ -70,7 +70,7 @@ pub(super) fn settle(ctx: &Context, sys: &mut System) -> Result<(), VerifyError>
 pub(super) fn settle_with_twist(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
     if ctx.integrator == Integrator::Implicit {
         sys.model.twist = Twist::QuasiStatic;
-        return method(sys).settle(sys).map_err(no_answer);
+        return method(sys).equilibrate(sys).map_err(no_answer);
     }
     settle(ctx, sys)
 }

@@ -1,0 +1,134 @@
+//! One step: guess, solve, estimate the error, commit or try again.
+
+use super::predictor::{model_of, moved, step_of};
+use super::step_control::SHORT;
+use super::{CLOSE, Implicit, Scheme, StepError, Work, newton, with_work};
+use crate::system::System;
+
+impl Implicit {
+    /// Takes one step of at most `most` seconds; returns its length.
+    pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, StepError> {
+        with_work!(self, sys, work => self.step_with(work, sys, most))
+    }
+
+    fn step_with<const D: usize>(
+        &mut self,
+        work: &mut Work<D>,
+        sys: &mut System,
+        most: f64,
+    ) -> Result<f64, StepError> {
+        sys.begin_past();
+        let mut h = self.first_length(sys, most);
+        let mut failures = 0;
+        loop {
+            let step = step_of(sys, self.scheme, h);
+            let spindle = sys.state.spindle.after(step.share * h);
+            let support = moved(&sys.state.support, step.share * h);
+            let nozzle = work.prepare(sys, &step, &spindle, &support, true);
+            let share = work.share_of_way(sys);
+            if share < 1.0 && h > self.shortest && self.fixed.is_none() {
+                h = (share * h).max(self.shortest);
+                continue;
+            }
+            if let Some(line) = sys.contact.as_line_mut() {
+                line.begin_attempt();
+                if let Some(b) = &mut line.self_contact {
+                    let (from, guess) = (&sys.state.past.q[0], &work.guess);
+                    b.list(from, guess, &sys.state.rod.rest, sys.model.section.diameter);
+                }
+            }
+            let mut model = model_of(sys, &step, &spindle, &support, nozzle);
+            let solved = newton::solve(
+                &mut model,
+                work,
+                CLOSE * self.tolerance,
+                newton::NewtonLimits::of_step(
+                    failures > 2 || h < SHORT * self.shortest || self.fixed.is_some(),
+                    if h > self.shortest && self.fixed.is_none() {
+                        self.tolerance / step.error
+                    } else {
+                        f64::INFINITY
+                    },
+                    self.scheme == Scheme::Bdf2,
+                ),
+            );
+            self.statistics.evaluations += std::mem::take(&mut work.evaluations);
+            self.statistics.solves += std::mem::take(&mut work.solves);
+            self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
+            self.statistics.cg_iterations += std::mem::take(&mut work.gradients.cg_iterations);
+            let missed = sys.contact.as_line().and_then(|l| {
+                let pairs = l.self_contact.as_ref()?;
+                pairs.missed(&sys.state.past.q[0], &work.q)
+            });
+            let retry = match solved {
+                // farther than the pairs of wire were looked for
+                Ok(_) if missed.is_some() && h > self.shortest && self.fixed.is_none() => {
+                    self.statistics.rejects += 1;
+                    0.5 * h
+                }
+                Ok(_) => {
+                    let error = step.error * work.difference();
+                    let factor = self.length_factor(error.max(1e-30));
+                    if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
+                        self.commit(work, sys, &step, spindle, &support, nozzle);
+                        self.statistics.steps += 1;
+                        self.next = self.length_after(h, factor);
+                        return Ok(h);
+                    }
+                    self.statistics.rejects += 1;
+                    h * factor.clamp(0.2, 0.8)
+                }
+                Err(newton::NewtonFailure { far: Some(way), .. }) => {
+                    self.statistics.rejects += 1;
+                    let factor = self.length_factor(step.error * way);
+                    h * factor.clamp(0.3, 0.8)
+                }
+                Err(stuck) => {
+                    self.statistics.newton_failures += 1;
+                    failures += 1;
+                    if h <= self.shortest || self.fixed.is_some() {
+                        return Err(StepError::at(h, &stuck));
+                    }
+                    0.4 * h
+                }
+            };
+            h = retry.max(self.shortest);
+            self.next = h;
+            if let Some(line) = sys.contact.as_line_mut() {
+                line.undo_attempt();
+            }
+        }
+    }
+
+    /// Hands `with` the evaluation of potential, gradient and Hessian at the guess of a step of `h`, to
+    /// be measured as often as it likes; nothing is committed.
+    #[doc(hidden)]
+    pub fn evaluating(
+        &mut self,
+        sys: &mut System,
+        h: f64,
+        with: impl FnOnce(&mut dyn FnMut() -> f64),
+    ) {
+        let scheme = self.scheme;
+        with_work!(self, sys, work => evaluating_with(scheme, work, sys, h, with));
+    }
+}
+
+fn evaluating_with<const D: usize>(
+    scheme: Scheme,
+    work: &mut Work<D>,
+    sys: &mut System,
+    h: f64,
+    with: impl FnOnce(&mut dyn FnMut() -> f64),
+) {
+    sys.begin_past();
+    let step = step_of(sys, scheme, h);
+    let (spindle, support) = (
+        sys.state.spindle.after(step.share * h),
+        moved(&sys.state.support, step.share * h),
+    );
+    let nozzle = work.prepare(sys, &step, &spindle, &support, true);
+    let mut model = model_of(sys, &step, &spindle, &support, nozzle);
+    newton::expect_nothing(&model, work);
+    with(&mut || model.evaluate(work).now);
+}

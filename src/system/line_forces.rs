@@ -1,0 +1,200 @@
+//! Forces of the production method: joints of the whole wire at once, contact along its smooth centreline.
+
+use super::{Past, System};
+use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
+use crate::math::{Spin, V3};
+use crate::rod::Rod;
+
+impl System {
+    /// Makes the history of the present instant complete: at the start and after changes of the wire.
+    pub(crate) fn begin_past(&mut self) {
+        let nodes = self.state.rod.nodes();
+        if self.state.past.q[0].len() != nodes || self.state.past.known == 0 {
+            let spin = Spin::new(self.state.spindle.angle);
+            self.state.past.known = 0;
+            self.state.past.q[0].clear();
+            self.state.past.q[0].extend(self.state.rod.x.iter().map(|x| spin.to_core(*x)));
+            if let Some(f) = &self.state.feed {
+                self.state.past.fed = [f.fed; 2];
+                (self.state.past.paid, self.state.past.paid_rate) = (f.paid, f.paid_rate);
+            }
+            if self.model.twist.is_carried() {
+                self.state.past.forget_rolls(self.state.rod.edges());
+            }
+            self.place_points();
+        }
+        if self.state.load.force.len() != nodes {
+            self.evaluate_smooth(0.0, false);
+        }
+    }
+
+    /// Time in which the nozzle goes past the wire before it by `angle` as seen along the edge there, s.
+    pub(crate) fn time_to_turn_nozzle_edge(&self, angle: f64) -> f64 {
+        if self.state.feed.is_none() {
+            return f64::INFINITY;
+        }
+        let last = self.state.rod.edges() - 1;
+        let edge = self.state.rod.x[last + 1] - self.state.rod.x[last];
+        let way = self.state.support[1].velocity - self.state.rod.v[last];
+        angle * edge.norm_squared() / edge.cross(&way).norm()
+    }
+
+    /// Forces of the present state after it was set up or changed; nothing moves on but the frames.
+    pub fn refresh(&mut self) {
+        if !self.contact.is_line() {
+            return self.evaluate(Some(0.0));
+        }
+        self.internal_at_once(true);
+        self.begin_past();
+        self.place_points();
+        self.touch_forces(0.0, false);
+    }
+
+    /// Puts the present places of the contact points on record.
+    fn place_points(&mut self) {
+        let Some(line) = self.contact.as_line_mut() else {
+            return;
+        };
+        let q = &self.state.past.q[0];
+        for point in ContactPoint::all(q.len() - 1) {
+            line.place(point.number(), point.place(q));
+        }
+    }
+
+    /// Forces at the present state into `load`, with contact of the line kind. `commit` moves plastic
+    /// state, frames and anchors on after a step of `h`.
+    pub(crate) fn evaluate_smooth(&mut self, h: f64, commit: bool) {
+        self.internal_at_once(commit);
+        self.touch_forces(h, commit);
+    }
+
+    /// Moment of forces on the free nodes about the core's axis, N m; what the joint at the nozzle acts on is no
+    /// business of the core's.
+    pub(crate) fn moment_of(&self, force: impl Fn(usize) -> V3) -> f64 {
+        let free = self.free_nodes();
+        let end = free.end.min(self.state.rod.nodes().saturating_sub(3));
+        (free.start..end)
+            .map(|i| {
+                let (x, f) = (self.state.rod.x[i], force(i));
+                x.z * f.x - x.x * f.z
+            })
+            .sum()
+    }
+
+    /// Lets the core hold what Newton's method left of the forces: it is nothing that moves wire in the core's frame.
+    ///
+    /// Taken so, the torque is that of the nozzle's force less what turns the wire's mass. Were it summed up from stiff touches alone,
+    /// what they are off by would go with the core's whole way, and that is far longer than any way on the core.
+    fn hold_unbalanced(&mut self) {
+        let Some(turning) = self.state.turning else {
+            return;
+        };
+        self.state.unbalanced = self.moment_of(|i| self.state.load.force[i]) - turning;
+        self.state.torque_on_core += self.state.unbalanced;
+    }
+
+    /// Adds the forces of contact to those in `load`.
+    fn touch_forces(&mut self, h: f64, commit: bool) {
+        let spin = Spin::new(self.state.spindle.angle);
+        let mut moment = 0.0;
+        if let Some(line) = self.contact.as_line_mut() {
+            let (rod, force) = (&self.state.rod, &mut self.state.load.force);
+            let diameter = self.model.section.diameter;
+            let mut arc = self.state.arc0;
+            let step = if h > 0.0 { h } else { f64::INFINITY };
+            for j in 0..rod.edges() {
+                let rest = rod.rest[j];
+                for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {
+                    if point == ContactPoint::Node(0) {
+                        continue;
+                    }
+                    let (k, length) = (point.number(), point.length(rod));
+                    let own = own_wire(point.arc(arc, &rod.rest), diameter);
+                    let p = point.place(&rod.x);
+                    let q = spin.to_core(p);
+                    let f = if commit {
+                        line.commit(k, q, length, own, step)
+                    } else {
+                        line.push(k, q, length, own, step)
+                            .map_or(V3::zeros(), |s| -s.gradient)
+                    };
+                    if f == V3::zeros() {
+                        continue;
+                    }
+                    let f = spin.to_lab(f);
+                    moment -= p.z * f.x - p.x * f.z;
+                    point.weights().spread(&f, force);
+                }
+                arc += rest;
+            }
+            self.state.deepest = self.state.deepest.max(line.deepest);
+            moment += between_forces(
+                line,
+                rod,
+                force,
+                &self.state.past,
+                spin,
+                (diameter, step),
+                commit,
+            );
+            let pairs = line.self_contact.as_ref();
+            let pairs = pairs.map(|pairs| pairs.loss).unwrap_or_default();
+            self.state.balance.friction = line.loss.friction + pairs.friction;
+            self.state.balance.damping = line.loss.damping + pairs.damping;
+            self.state.balance.numerical -= std::mem::take(&mut line.lifted);
+        }
+        self.state.torque_on_core = moment + self.clamp_torque();
+        self.hold_unbalanced();
+    }
+}
+
+/// Forces of live wire on live wire; returns what they leave as a moment on the core.
+///
+/// Both sides of a friction force act on centrelines a diameter apart, for the couples that it puts on either wire are left
+/// out, as they are where the core rubs. It is seen and held in the core's frame, so the core takes the couple.
+fn between_forces(
+    line: &mut LineContact,
+    rod: &Rod,
+    force: &mut [V3],
+    past: &Past,
+    spin: Spin,
+    (diameter, step): (f64, f64),
+    commit: bool,
+) -> f64 {
+    let conditions = PairConditions {
+        law: &line.law,
+        onset: line.onset,
+        diameter,
+        step,
+        hold_limits: false,
+    };
+    let Some(pairs) = &mut line.self_contact else {
+        return 0.0;
+    };
+    let mut moment = 0.0;
+    let mut q = std::mem::take(&mut pairs.scratch);
+    q.clear();
+    q.extend(rod.x.iter().map(|x| spin.to_core(*x)));
+    let last = if past.q[0].len() == q.len() {
+        &past.q[0]
+    } else {
+        &q
+    };
+    let length = |number| ContactPoint::of_number(number).length(rod);
+    pairs.evaluate(&conditions, (&q, last), length, |coupling, response| {
+        let f = spin.to_lab(response.gradient);
+        for place in [&coupling.young, &coupling.old] {
+            for (node, weight) in place.iter() {
+                let (f, p) = (f * weight, rod.x[node]);
+                force[node] -= f;
+                moment += p.z * f.x - p.x * f.z;
+            }
+        }
+    });
+    if commit {
+        pairs.commit((conditions.law, conditions.onset), (&q, last), length);
+        line.deepest = line.deepest.max(pairs.deepest());
+    }
+    pairs.scratch = q;
+    moment
+}
