@@ -26,11 +26,19 @@ pub(super) fn si(x: f64) -> String {
 
 impl SceneSettings {
     /// The immutable scene, or the first thing that makes it impossible.
+    ///
+    /// # Errors
+    ///
+    /// A value that is out of range or does not go with another; the message names both and what would do.
     pub fn build(&self) -> Result<Scene, SceneError> {
         self.build_with_warnings().map(|(scene, _)| scene)
     }
 
     /// The scene, and what in it is possible but perhaps not meant.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`build`](Self::build).
     pub fn build_with_warnings(&self) -> Result<(Scene, Vec<Warning>), SceneError> {
         self.check_ranges()?;
         let mut wire = section(self)?;
