@@ -1,6 +1,6 @@
 //! Winding of wire on a turning core: an elastic-plastic rod in frictional contact.
 //!
-//! A [scene](scene) describes wire, core, nozzle and tensioner. A [`Simulation`](simulation::Simulation) of it
+//! A [scene] describes wire, core, nozzle and tensioner. A [`Simulation`](simulation::Simulation) of it
 //! goes forward in time under [inputs](signals::Inputs) for the spindle, the nozzle and the tensioner. It tells
 //! [outputs](signals::Outputs) such as the tension at the nozzle. Wire that has come to rest is [measured](measure)
 //! turn by turn: gaps, bulges, overlaps, and a verdict.

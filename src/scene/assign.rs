@@ -8,11 +8,19 @@ use crate::variables::{Access, Kind, Value, Variable, by_name, parse_scaled, sca
 impl SceneSettings {
     /// Sets a leaf by name, with or without unit: `wire.diameter`, `wire.diameter_mm`.
     /// Leaves everything as it was on an error.
+    ///
+    /// # Errors
+    ///
+    /// An unknown name or unit (with a suggestion), a value of the wrong kind or outside its range.
     pub fn set(&mut self, name: &str, value: Value) -> Result<(), SceneError> {
         self.set_from(name, Given::Value(value), Origin::Set)
     }
 
     /// Sets a leaf by name from a text, as in `--set NAME=VALUE`.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`set`](Self::set), and a text that is no value of this kind.
     pub fn set_text(&mut self, name: &str, text: &str) -> Result<(), SceneError> {
         self.set_from(name, Given::Text(text), Origin::Set)
     }

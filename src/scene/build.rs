@@ -29,6 +29,10 @@ impl SceneSettings {
     }
 
     /// [`Self::build`], with warnings of values that are possible but perhaps not meant.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`build`](Self::build).
     pub fn build_with_warnings(&self) -> Result<(Scene, Vec<Warning>), SceneError> {
         self.check_ranges()?;
         let mut wire = section(self)?;

@@ -30,6 +30,11 @@ impl SceneSettings {
     }
 
     /// A packed scene or, if none has that name, a file. The empty name is the default scene.
+    ///
+    /// # Errors
+    ///
+    /// No such scene or unreadable file (names that come near are suggested), and what
+    /// [`from_toml_str`](Self::from_toml_str) finds.
     pub fn load(name_or_path: &str) -> Result<Self, SceneError> {
         if name_or_path.is_empty() {
             return Ok(Self::default());
@@ -55,6 +60,11 @@ impl SceneSettings {
     /// Reads a scene from a TOML text; leaves that it does not give keep their defaults.
     ///
     /// Messages name `file_name`; paths in the text are relative to `base_dir`.
+    ///
+    /// # Errors
+    ///
+    /// Text that is no TOML, an unknown section or key, a value of the wrong kind or outside its range, each with
+    /// file and line.
     pub fn from_toml_str(text: &str, file_name: &str, base_dir: &Path) -> Result<Self, SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let at = |offset: Option<usize>| Origin::File {
