@@ -5,6 +5,7 @@
 //! * [`ContactLaw`]: parameters of stiffness and friction, shared by both methods
 //! * [`mod@line`]: contact of the implicit (production) method, with a smooth core and smooth frozen wire; the
 //!   places of its [`ContactPoint`]s on the wire are those of `stencil`, its force law that of `friction`
+//! * [`SelfContact`]: live wire on live wire in the implicit method
 //! * [`nodal`]: contact of the explicit methods, the paper's, node by node with triangles and prisms
 
 mod friction;
@@ -12,13 +13,16 @@ mod law;
 pub mod line;
 pub mod nodal;
 mod own_wire;
+mod self_contact;
 mod stencil;
+mod tolerance;
 
 pub use friction::ContactResponse;
 pub use law::{ContactLaw, ContactLoss, damping_for_restitution};
 pub(crate) use line::SavedLine;
-pub use line::{ContactRecord, Coupling, LineContact, PairConditions, SelfContact, add_couplings};
+pub use line::{ContactRecord, LineContact};
 pub use nodal::{Body, Contacts, LiveContact, NodeContact, TouchForce, Wire};
 pub(crate) use nodal::{SavedContacts, far, restore_tube};
 pub use own_wire::own_wire;
+pub use self_contact::{Coupling, PairConditions, SelfContact, add_couplings};
 pub use stencil::{ContactPoint, NodeWeights};

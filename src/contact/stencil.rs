@@ -11,7 +11,7 @@ use crate::rod::Rod;
 ///
 /// Points are numbered along the wire: node `i` has number `2 i`, edge `j` has `2 j + 1`. When edge `j` is
 /// split, [`LineContact`](super::LineContact) hands the state of point `2 j + 1` to the new node's point
-/// `2 j + 2` and begins both halves anew. [`SelfContact`](super::SelfContact) leaves the pairs of that point
+/// `2 j + 2` and gives both halves a new state. [`SelfContact`](super::SelfContact) leaves the pairs of that point
 /// at `2 j + 1`, the middle of the first half. When a node is taken out, both hand the state of its point
 /// to the middle of the joined edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

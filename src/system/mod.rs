@@ -4,8 +4,10 @@
 
 mod contact_model;
 mod drive;
+mod energy;
 mod energy_balance;
 mod forces;
+mod frozen_history;
 mod history;
 mod line_forces;
 mod model;
@@ -15,13 +17,14 @@ mod saved;
 mod scratch;
 mod state;
 mod support;
+mod touchable;
 
 pub use contact_model::{ContactModel, FrozenWire, NodalContact};
 pub use drive::{Drive, NozzleDrive};
 pub use energy_balance::EnergyBalance;
+pub use frozen_history::{FrozenHistory, FrozenNodeRecord};
 pub use history::Past;
 pub use model::{Loads, Mass, Model};
-pub use remesh::FrozenHistory;
 pub(crate) use saved::SavedSystem;
 use scratch::Scratch;
 pub use state::State;

@@ -3,8 +3,8 @@
 use super::near::NearPoint;
 use super::point::PointState;
 use super::record::ContactRecord;
-use super::self_contact::{Coupling, SelfContact};
 use crate::contact::law::{ContactLaw, ContactLoss};
+use crate::contact::self_contact::{Coupling, SelfContact};
 use crate::contact::stencil::ContactPoint;
 use crate::geometry::{Shape, SplineTube};
 use crate::math::V3;

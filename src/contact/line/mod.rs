@@ -12,7 +12,6 @@
 //! * `prediction`: the same where an update leads
 //! * `commit`: an iterate becomes the accepted instant; what was lost and is stored
 //! * `saved`: the state in bytes
-//! * [`SelfContact`]: live wire on live wire
 
 mod commit;
 mod line_contact;
@@ -24,11 +23,8 @@ mod response;
 mod saved;
 mod saved_touches;
 mod search;
-mod self_contact;
-mod tolerance;
 mod touch;
 
 pub use line_contact::LineContact;
 pub use record::ContactRecord;
 pub(crate) use saved::SavedLine;
-pub use self_contact::{Coupling, PairConditions, SelfContact, add_couplings};

@@ -18,7 +18,7 @@ pub(super) struct PointState {
     pub(super) placed: bool,
     /// where the surroundings were looked up, m
     pub(super) centre: V3,
-    /// how far from `centre` they hold, m; negative: they have to be looked up anew
+    /// how far from `centre` they hold, m; negative: they have to be looked up again
     pub(super) reach: f64,
     /// a place at which the point touched nothing, m
     pub(super) clear_at: V3,

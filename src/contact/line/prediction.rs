@@ -1,7 +1,7 @@
 //! Tangents of contact where an update of Newton's method leads.
 
 use super::line_contact::LineContact;
-use super::tolerance::prediction_tolerance;
+use crate::contact::tolerance::prediction_tolerance;
 use crate::math::{Block, V3, block_difference, block_times};
 
 /// Change of an update that calls for no new look, as a share of the prediction tolerance. Chosen.

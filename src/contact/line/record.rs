@@ -46,7 +46,7 @@ impl ContactRecord {
         self.first as usize <= self.touches.len() && slots.all(|slot| slot <= PASSAGES)
     }
 
-    /// The two points as they froze; their surroundings are looked up anew.
+    /// The two points as they froze; their surroundings are looked up again.
     pub(super) fn points(&self) -> [PointState; 2] {
         let (one, two) = self.touches.split_at(self.first as usize);
         let point = |k: usize, touches: &[(u8, TouchState)]| {

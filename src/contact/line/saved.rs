@@ -2,8 +2,8 @@
 
 use super::line_contact::LineContact;
 use super::point::PointState;
-use super::self_contact::SelfContact;
 use crate::contact::law::ContactLoss;
+use crate::contact::self_contact::SelfContact;
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
 

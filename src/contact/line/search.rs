@@ -13,14 +13,14 @@ const SKIN: f64 = 0.15;
 const SAME_PASSAGE: u32 = 6;
 
 impl LineContact {
-    /// Makes every point look its surroundings up anew.
+    /// Makes every point look its surroundings up again.
     pub fn forget_surroundings(&mut self) {
         for p in &mut self.points {
             p.reach = -1.0;
         }
     }
 
-    /// Makes points near frozen wire from node `from` on look their surroundings up anew: that wire has just
+    /// Makes points near frozen wire from node `from` on look their surroundings up again: that wire has just
     /// been laid.
     pub fn forget_near(&mut self, from: usize) {
         let skin = SKIN * 2.0 * self.tube.radius();

@@ -2,7 +2,7 @@
 //!
 //! Wire that has not come to rest before the next turn lands on it is touched while it moves. The younger
 //! wire's nodes touch the older wire's segments, as they touch the segments of frozen wire; the force
-//! goes to the node, its reaction to both ends of the segment. Pairs are listed with a skin and listed anew once
+//! goes to the node, its reaction to both ends of the segment. Pairs are listed with a skin and listed again once
 //! some node has moved by half of it. The bristle of friction grows with the relative slide, so it
 //! travels with both partners.
 
@@ -42,7 +42,7 @@ pub struct Wire {
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveContact {
     pairs: Vec<Pair>,
-    /// places of the nodes when the pairs were listed, m; empty: list them anew
+    /// places of the nodes when the pairs were listed, m; empty: they have to be listed
     seen: Vec<V3>,
     /// forces per node, core frame, N
     #[serde(skip)]
@@ -54,7 +54,7 @@ pub struct LiveContact {
 }
 
 impl LiveContact {
-    /// Makes the next evaluation list the pairs anew.
+    /// Makes the next evaluation list the pairs again.
     pub fn forget(&mut self) {
         self.seen.clear();
     }

@@ -1,40 +1,8 @@
 //! Letting settled wire go.
 
-use super::super::{Support, System};
-use crate::contact::ContactRecord;
-use crate::math::{PersistentVec, Quat, Spin, V3, spin_velocity, turn_about_y};
-use crate::rod::{Bend, Joint, Scalar};
-use serde::{Deserialize, Serialize};
-
-/// A frozen node with the edge after it: all it takes to let them move again where they lie.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct FrozenNodeRecord {
-    /// place, core frame, m
-    pub(super) place: V3,
-    /// frame of the edge, core frame
-    pub(super) frame: Quat,
-    /// frame that a clamp at this node has, core frame
-    pub(super) clamp: Quat,
-    /// unstretched length from the clamp to the node, m
-    pub(super) arc: f64,
-    /// unstretched length of the edge, m
-    pub(super) rest: f64,
-    pub(super) spin: f64,
-    pub(super) stretch: Scalar,
-    pub(super) bend: Bend,
-    pub(super) twist: Scalar,
-    pub(super) memory: ContactRecord,
-}
-
-impl FrozenNodeRecord {
-    /// Whether it can come back to life; bytes from elsewhere may say anything.
-    pub(crate) fn is_sound(&self) -> bool {
-        self.memory.is_sound()
-    }
-}
-
-/// Frozen wire; a chunk is about half a turn of fine wire.
-pub type FrozenHistory = PersistentVec<FrozenNodeRecord, 64>;
+use super::super::{FrozenNodeRecord, Support, System};
+use crate::math::{Quat, Spin, V3, spin_velocity, turn_about_y};
+use crate::rod::Joint;
 
 impl System {
     /// Takes the first `count` nodes out of the computation; the node after them becomes the clamp.

@@ -10,7 +10,6 @@ mod parts;
 mod split;
 mod thaw;
 
-pub use freeze::{FrozenHistory, FrozenNodeRecord};
 pub(super) use merge::Merge;
 pub(super) use split::Split;
 pub(super) use thaw::Thaw;

@@ -1,7 +1,6 @@
 //! Taking frozen wire back.
 
-use super::super::{Spindle, Support, System};
-use super::FrozenNodeRecord;
+use super::super::{FrozenNodeRecord, Spindle, Support, System};
 use crate::math::{Quat, V3, align, rotate, turn_about_y};
 use crate::rod::Twist;
 

@@ -4,8 +4,8 @@ use super::coupling::Coupling;
 use super::pairs::{NearPair, Pair, SelfContact};
 use crate::contact::friction::{ContactResponse, LimitFrom, Touching, across};
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE};
-use crate::contact::line::tolerance::prediction_tolerance;
 use crate::contact::stencil::{ContactPoint, NodeWeights};
+use crate::contact::tolerance::prediction_tolerance;
 use crate::math::{Block, V3, block_difference, block_times};
 
 /// What the response of the pairs depends on besides the wire.

@@ -70,7 +70,7 @@ pub(super) struct Unpaired {
 pub struct SelfContact {
     pub(super) pairs: Vec<Pair>,
     /// the live wire begins at a seam with frozen wire
-    pub(in crate::contact::line) has_seam: bool,
+    pub(in crate::contact) has_seam: bool,
     /// the pairs of the step before, while those of the next are listed
     #[serde(skip)]
     pub(super) previous: Vec<Pair>,
@@ -146,7 +146,7 @@ impl SelfContact {
     }
 
     /// Whether every pair lies on a wire of so many live nodes: a point, and wire nearer to the clamp.
-    pub(in crate::contact::line) fn fits(&self, nodes: usize) -> bool {
+    pub(in crate::contact) fn fits(&self, nodes: usize) -> bool {
         let points = 1..2 * (nodes as u32 - 1);
         let mut pairs = self.pairs.iter();
         pairs.all(|p| points.contains(&p.point) && p.segment < p.point / 2)

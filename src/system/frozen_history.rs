@@ -1,0 +1,36 @@
+//! Frozen wire, as it is kept to let it move again.
+
+use crate::contact::ContactRecord;
+use crate::math::{PersistentVec, Quat, V3};
+use crate::rod::{Bend, Scalar};
+use serde::{Deserialize, Serialize};
+
+/// A frozen node with the edge after it: all it takes to let them move again where they lie.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrozenNodeRecord {
+    /// place, core frame, m
+    pub(super) place: V3,
+    /// frame of the edge, core frame
+    pub(super) frame: Quat,
+    /// frame that a clamp at this node has, core frame
+    pub(super) clamp: Quat,
+    /// unstretched length from the clamp to the node, m
+    pub(super) arc: f64,
+    /// unstretched length of the edge, m
+    pub(super) rest: f64,
+    pub(super) spin: f64,
+    pub(super) stretch: Scalar,
+    pub(super) bend: Bend,
+    pub(super) twist: Scalar,
+    pub(super) memory: ContactRecord,
+}
+
+impl FrozenNodeRecord {
+    /// Whether it can come back to life; bytes from elsewhere may say anything.
+    pub(crate) fn is_sound(&self) -> bool {
+        self.memory.is_sound()
+    }
+}
+
+/// Frozen wire; a chunk is about half a turn of fine wire.
+pub type FrozenHistory = PersistentVec<FrozenNodeRecord, 64>;
