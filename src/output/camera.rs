@@ -40,9 +40,10 @@ pub(crate) struct Camera {
 }
 
 impl Camera {
-    /// Looks from `back` at the middle of `points` and comes as near as shows them all in `width`
-    /// by `height` pixels with a share `margin` left free on each side. `view_angle` is that of the
-    /// picture's width, rad.
+    /// Places a camera that looks from `back` at the middle of `points`.
+    ///
+    /// It stands as near as shows all points in `width` by `height` pixels, with a share `margin`
+    /// free on each side. `view_angle` is that of the picture's width, rad.
     pub(crate) fn framing(
         points: &[V3],
         frame: Frame,

@@ -1,7 +1,7 @@
 //! The picture of core and wire, `coil.png`.
 //!
 //! Triangles are drawn into a buffer that keeps the nearest one per pixel, at twice the size in
-//! each direction; each such pixel is then lit once and four make one of the picture.
+//! each direction. Each such pixel is lit once, and four of them make one pixel of the picture.
 
 use super::OutputError;
 use super::camera::{Camera, Frame, Light};

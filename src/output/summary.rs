@@ -8,8 +8,8 @@ use std::path::Path;
 
 /// Writes `value` as indented JSON.
 ///
-/// The text goes to a file beside it that is renamed at the end: a reader finds the old summary or
-/// the new one, never half of it, even when the run is stopped while writing.
+/// The text goes to a file beside `path` that is renamed at the end. A reader finds the old summary
+/// or the new one, never half of it, even when the run is stopped while writing.
 pub fn write_summary(path: &Path, value: &impl Serialize) -> Result<(), OutputError> {
     let mut partial = path.as_os_str().to_owned();
     partial.push(".partial");

@@ -20,9 +20,9 @@ const PIECE: usize = 1 << 16;
 
 /// Writes the wire as a tube of `radius` (m) in the core frame.
 ///
-/// Data at the points: `Normals`, `turn` (from 1, by polar angle from the clamp), `arc` (m),
-/// `tension` (N), `plastic_strain`, `frozen` (0 or 1), and `height` (m) if `heights` has one per
-/// node.
+/// Data at the points: `Normals`, `turn`, `arc` (m), `tension` (N), `plastic_strain` and `frozen`
+/// (0 or 1). `turn` counts from 1 by polar angle from the clamp. `height` (m) is added if `heights`
+/// has one per node.
 pub fn write_vtp(
     path: &Path,
     wire: &Centreline,

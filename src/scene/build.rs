@@ -1,10 +1,10 @@
 //! From settings to a scene: every leaf in range, and no two that contradict each other.
 
 use super::error::Warning;
-use super::features::{Decisions, Features, LiveContact};
+use super::features::Decisions;
 use super::impossible::si;
 use super::material::section;
-use super::{Core, Integrator, Preset, Scene, SceneError, Solver};
+use super::{Core, Features, Integrator, LiveContact, Preset, Scene, SceneError, Solver};
 use crate::rod::Section;
 use crate::rod::Twist;
 use crate::settings::SceneSettings;

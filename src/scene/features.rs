@@ -4,32 +4,10 @@
 //! levels instead). `on` and `off` are obeyed; `auto` takes the part in where it can change what a
 //! run shows, and leaves a [`Decision`] in the summary either way.
 
-use super::{Decision, Integrator, Scene, SceneError};
+use super::{Decision, Integrator, LiveContact, Scene, SceneError};
 use crate::rod::Section;
 use crate::rod::Twist;
 use crate::settings::SceneSettings;
-
-/// Features of a step that can be left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Features {
-    /// contact of live wire with live wire
-    pub live_contact: LiveContact,
-    /// the mass of the wire; without it the wire follows the core through states of rest
-    pub inertia: bool,
-    /// settled wire behind lift-off gets a coarser spacing
-    pub coarse_settled: bool,
-}
-
-/// Since when live wire is looked for near live wire.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LiveContact {
-    /// from the first step
-    Always,
-    /// from half a laid live turn on, before which it cannot meet itself
-    WhenHalfATurnIsLive,
-    /// never: live wire passes through live wire
-    Never,
-}
 
 /// What a switch says.
 #[derive(Clone, Copy, PartialEq, Eq)]

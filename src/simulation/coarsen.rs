@@ -1,9 +1,9 @@
 //! Coarser spacing of settled wire behind lift-off.
 //!
-//! Wire that bends round a corner needs fine nodes while it does; the bows it leaves between corners
-//! are smooth and then only move a little as a whole. A node goes where its neighbours know all that
-//! it knows: the error indicator is the displacement that its share of the curvature, were it spread
-//! over theirs, makes over one bending length.
+//! Wire needs fine nodes while it bends round a corner. The bows it leaves between corners are
+//! smooth and move only a little as a whole. A node is removed where its neighbours carry the same
+//! curvature. The error indicator is a displacement over one bending length: the one that results
+//! when the node's share of the curvature is spread over its neighbours.
 
 use super::Simulation;
 use crate::math::{Spin, V3};

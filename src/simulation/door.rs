@@ -15,8 +15,10 @@ enum Source {
 }
 
 impl Simulation {
-    /// Advances by `dt`, s, with the inputs held: spindle speed and tension from now on, the nozzle
-    /// moving evenly so that it reaches its position at the end (a jump would be a hammer blow).
+    /// Advances by `dt`, s, with the inputs held.
+    ///
+    /// Spindle speed and tension hold from the start of the interval. The nozzle moves evenly and
+    /// reaches its position at the end, because a jump would hit the wire.
     ///
     /// After an error the run stands where the last step ended that went through ([`Self::time`]).
     pub fn advance(&mut self, inputs: Inputs, dt: f64) -> Result<(), SimError> {
@@ -141,7 +143,9 @@ impl Simulation {
         Err(SimError {
             time: self.run.time,
             node: None,
-            reason: format!("a communication step of {dt} s is not a finite time of 0 or more"),
+            reason: format!(
+                "the communication step is {dt} s; allowed: a finite time of 0 s or more"
+            ),
         })
     }
 
@@ -164,13 +168,14 @@ impl Simulation {
         self.run.rates = Outputs::default();
     }
 
-    /// Reports steps since `before` that the solver could not solve and took shorter. Steps that were too long for
-    /// their error are no trouble.
+    /// Reports how often since `before` the solver shortened a step because Newton's method failed.
+    ///
+    /// Steps shortened for their error are ordinary and are not reported.
     fn tell_of_trouble(&mut self, before: SolverStatistics) {
         let newton_failures = self.statistics().newton_failures - before.newton_failures;
         if newton_failures > 0 {
             let text = format!(
-                "the solver found no solution {newton_failures} times and went on in shorter steps, the last of {:.2e} s",
+                "the solver shortened its step {newton_failures} times, the last one to {:.2e} s; each step taken still meets solver.tolerance, so nothing needs to be done",
                 self.run.last_step
             );
             self.report(EventKind::Solver, text);
@@ -194,7 +199,7 @@ pub(super) fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {
             return Err(SimError {
                 time,
                 node: None,
-                reason: format!("input {name} = {value} is not a finite number"),
+                reason: format!("input {name} = {value}; allowed: a finite number"),
             });
         }
     }
@@ -203,7 +208,7 @@ pub(super) fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {
             time,
             node: None,
             reason: format!(
-                "input tension_setpoint = {} N must not be negative",
+                "input tension_setpoint = {} N; allowed: 0 N or more",
                 inputs.tension_setpoint
             ),
         });

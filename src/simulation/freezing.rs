@@ -1,10 +1,11 @@
 //! When a node counts as at rest (the paper's eq. 8 and 9, mended).
 //!
 //! The paper asks for a small velocity relative to the core and a place inside a region round
-//! it. A threshold on the instantaneous speed passes at every turning point of a vibration, so
-//! rest is judged here by the displacement in the core frame over a window of core angle, or of
-//! time while the spindle stands. The region is every place whose wire surface is within `margin` of the core. Nodes leave in
-//! order from the clamp, and not before they are a bending length behind lift-off.
+//! it. A threshold on the instantaneous speed passes at every turning point of a vibration.
+//! Rest is therefore judged by the displacement in the core frame over a window of core angle, or
+//! of time while the spindle stands. The region is every place whose wire surface is within
+//! `margin` of the core. Nodes freeze in order from the clamp, and not before they are a bending
+//! length behind lift-off.
 
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
@@ -80,7 +81,7 @@ impl Watch {
         self.count.insert(at, 0);
     }
 
-    /// `n` nodes came back at the front; they have to be seen at rest anew.
+    /// Adds `n` thawed nodes at the front, none of them seen at rest yet.
     pub fn insert_front(&mut self, n: usize) {
         let fresh = std::iter::repeat_n([V3::zeros(); LOOKS], n);
         self.seen.splice(0..0, fresh);

@@ -5,6 +5,7 @@
 
 mod broken;
 mod coarsen;
+mod core_model;
 mod door;
 mod freezing;
 mod io;
@@ -20,11 +21,11 @@ mod start;
 mod stepping;
 mod summary;
 
+pub use core_model::core_surface;
 pub use freezing::{FreezePolicy, Watch};
 pub use io::{Centreline, SimError};
 pub use motion_profile::MotionProfile;
 pub use saved::RestoreError;
-pub use start::core_surface;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 
 use crate::integrate::{SolverStatistics, Stepper};
@@ -34,15 +35,18 @@ use crate::signals::{Event, EventKind, Inputs, Outputs};
 use crate::system::System;
 use run_state::RunState;
 
-/// Wire slower than this, m/s, on a standing core counts as quiet: in a second it would move by less than
-/// the error that one step may have.
+/// Speed below which wire on a standing core counts as quiet, m/s.
+///
+/// In a second such wire moves by less than the error that one step may have.
 const QUIET: f64 = 1e-6;
 
-/// Tension below which wire is slack, N: chosen as the weight of 3 cm of 0.7 mm wire, half a free span.
+/// Tension below which wire is slack, N: the weight of 3 cm of 0.7 mm wire, half a free span.
 const SLACK: f64 = 1e-3;
 
-/// Communication steps are solved for once they add up to this, s, the solver's own shortest step: in less,
-/// wire at 5000 rpm moves by 20 nm at most and what is solved for drowns in rounding.
+/// Time to which communication steps add up before the solver takes a step, s.
+///
+/// It is the solver's own shortest step. In less time, wire at 5000 rpm moves by 20 nm at most, and
+/// rounding errors dominate the solution.
 const WORTH_A_STEP: f64 = 1e-9;
 
 /// Steps between looks for edges to refine and values that are not finite.
@@ -73,8 +77,10 @@ impl Simulation {
         }
     }
 
-    /// Lets the run end with an error once so many steps have been tried since the start, taken or not, each counted
-    /// as often as it had nodes: a bound on the work that does not depend on the clock.
+    /// Bounds the work of the run: beyond `most`, [`Self::advance`] returns an error.
+    ///
+    /// The work is the number of steps tried since the start, each times its number of nodes.
+    /// Rejected steps count too. The bound does not depend on the clock.
     pub fn limit_work(&mut self, most: u64) {
         self.most_work = most;
     }

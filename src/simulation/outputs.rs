@@ -13,7 +13,12 @@ impl Simulation {
         self.run.outputs.wire_tension_max = self.run.outputs.wire_tension_max.max(t);
         let slack = t < SLACK;
         if slack && !self.run.was_slack {
-            self.report(EventKind::Slack, "the wire went slack at the nozzle".into());
+            self.report(
+                EventKind::Slack,
+                format!(
+                    "the wire went slack at the nozzle (tension below {SLACK} N); raise tension_setpoint or change the spindle's speed more gently"
+                ),
+            );
         }
         self.run.was_slack = slack;
     }

@@ -1,11 +1,11 @@
-//! How high this wire stands off this core when nothing moves: the yardstick of the bulge flag.
+//! Computes how high the wire stands off the core at rest, the reference of the bulge flag.
 //!
 //! A wire bent round a corner under tension does not lie flat on the faces beside it. The height
-//! at rest is that of a loop drawn tight round the core without friction at the set tension:
-//! a quarter of it from the middle of one face to the middle of the next, with the same rod,
-//! section and contact as the winding.
+//! at rest is that of a loop drawn tight round the core without friction at the set tension.
+//! A quarter of the loop is computed, from the middle of one face to the middle of the next. It
+//! has the rod, section and contact of the winding.
 
-use super::start::core_shape;
+use super::core_model::core_shape;
 use crate::contact::{ContactLaw, LineContact};
 use crate::geometry::Surface;
 use crate::integrate::{Implicit, Scheme};

@@ -1,34 +1,24 @@
 //! First derivatives of the outputs, for importers that look ahead.
 
 use super::Simulation;
+use super::run_state::Instant;
 use crate::signals::Outputs;
-use serde::{Deserialize, Serialize};
-
-/// What outputs change evenly from one step of the method to the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Instant {
-    time: f64,
-    tension: f64,
-    torque: f64,
-    feed_speed: f64,
-}
-
-impl Instant {
-    pub(super) fn of(sim: &Simulation) -> Self {
-        Self {
-            time: sim.sys.state.time,
-            tension: sim.wire_tension(),
-            torque: sim.sys.state.torque_on_core,
-            feed_speed: sim.sys.state.feed.map_or(0.0, |f| f.rate),
-        }
-    }
-}
 
 impl Simulation {
+    /// Returns the outputs that [`Instant`] holds, at the time of the wire.
+    pub(super) fn instant(&self) -> Instant {
+        Instant {
+            time: self.sys.state.time,
+            tension: self.wire_tension(),
+            torque: self.sys.state.torque_on_core,
+            feed_speed: self.sys.state.feed.map_or(0.0, |f| f.rate),
+        }
+    }
+
     /// Slopes of the outputs at the communication point; `before` are those of the one before.
     pub(super) fn update_rates(&mut self, before: &Outputs, dt: f64) {
         let step = self.sys.state.time - self.run.instant.time;
-        let (now, old) = (Instant::of(self), self.run.instant);
+        let (now, old) = (self.instant(), self.run.instant);
         let o = self.run.outputs;
         self.run.rates = Outputs {
             spindle_angle: self.sys.state.spindle.speed,
@@ -47,12 +37,13 @@ impl Simulation {
         self.run.rates.layon_angle = (o.layon_angle - before.layon_angle) / dt;
     }
 
-    /// First derivatives of the outputs with respect to time at the last communication point, per s.
+    /// Returns the first time derivatives of the outputs at the last communication point, per s.
     ///
-    /// Core angle and fed length by their speeds. Tension, torque and speed of the wire by their change
-    /// over the last step of the method. Where the wire lifts off moves from node to node, so what depends
-    /// on it (`free_length`, `layon_*`, `turns_wound`) by its change over the communication step. Everything else
-    /// changes only when wire comes to rest, and has 0.
+    /// - `spindle_angle` and `fed_length`: the speeds themselves.
+    /// - `wire_tension`, `spindle_torque`, `feed_speed`: the change over the last step of the method.
+    /// - `free_length`, `layon_*`, `turns_wound`: the change over the communication step, because
+    ///   lift-off moves from node to node.
+    /// - All others: 0, because they change only when wire comes to rest.
     pub fn output_rates(&self) -> &Outputs {
         &self.run.rates
     }

@@ -388,7 +388,7 @@ impl Simulation {
                     time: self.sys.state.time,
                     node: Some(i),
                     reason: format!(
-                        "a node's position or velocity is not finite after {} steps; the step {:.3e} s is likely too long for the contact stiffness",
+                        "position or velocity is not finite after {} steps, the last of {:.3e} s; lower solver.step_share, or take solver.integrator = implicit if it is not in use",
                         self.run.steps, self.run.last_step
                     ),
                 });
@@ -406,13 +406,13 @@ impl Simulation {
             .find(|(_, t)| **t > strength)
         {
             let text = format!(
-                "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N"
+                "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N; lower tension_setpoint or the spindle's acceleration"
             );
             self.run.broken = true;
             self.report(EventKind::Break, text);
         } else if let Some((i, radius)) = self.kink() {
             let text = format!(
-                "the wire broke: it is kinked at live node {i}, bent to a radius of {:.3} mm and itself {:.3} mm thick",
+                "the wire broke: it is kinked at live node {i}, bent to a radius of {:.3} mm and itself {:.3} mm thick; keep it under tension there",
                 1e3 * radius,
                 1e3 * self.scene.wire.diameter
             );
@@ -424,9 +424,13 @@ impl Simulation {
 
     /// The wire must not run away from the nozzle.
     ///
-    /// Wire on its way through the nozzle goes on by itself, for the line behind it has neither inertia nor an end: once
-    /// something has made it faster than its tension stops it, such as a coil of springy wire that opens or a loop
-    /// whirling round without tension, metres come in, on the way to nowhere and ever dearer to compute.
+    /// The line behind the nozzle has neither inertia nor an end. Wire that is fast under little
+    /// tension therefore draws more wire after it, and each metre makes a step more expensive.
+    /// A coil of springy wire that opens can start this, or a loop that whirls without tension.
+    ///
+    /// # Errors
+    ///
+    /// If more than [`RUNAWAY`] times the wire has come in that the largest possible core takes up.
     fn check_feed(&mut self) -> Result<(), SimError> {
         let Some(feed) = &self.sys.state.feed else {
             return Ok(());
@@ -444,7 +448,7 @@ impl Simulation {
             time: self.sys.state.time,
             node: Some(rod.nodes() - 1),
             reason: format!(
-                "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up",
+                "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up; raise tension_setpoint or turn the spindle more slowly",
                 feed.rate, self.sys.state.set_tension, feed.fed
             ),
         })

@@ -1,9 +1,21 @@
 //! What a run remembers besides wire, coil and method.
 
 use super::freezing::{FreezePolicy, Watch};
-use super::rates::Instant;
 use crate::signals::{Event, Outputs};
 use serde::{Deserialize, Serialize};
+
+/// Outputs that change smoothly from one step of the method to the next.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Instant {
+    /// time of the wire, s
+    pub(super) time: f64,
+    /// tension at the nozzle, N
+    pub(super) tension: f64,
+    /// moment of the wire on the core about +y, N m
+    pub(super) torque: f64,
+    /// speed of the wire leaving the nozzle, m/s
+    pub(super) feed_speed: f64,
+}
 
 /// State of a run but for that of wire, coil and method; a saved state holds it as it is.
 #[derive(Clone, Debug, Serialize, Deserialize)]

@@ -1,8 +1,8 @@
 //! A run as bytes, and back.
 //!
-//! Description and state stay apart: the scene is not in the bytes, the caller hands it over to restore.
-//! From it the run is started anew and the state laid over. What can be rebuilt from the state to
-//! the bit is not in the bytes either (search trees, measures of settled wire).
+//! The bytes hold the state and not the scene, which the caller hands over to restore.
+//! Restoring starts a second run from the scene and then replaces its state.
+//! Search trees and measures of settled wire are rebuilt from the state to the bit.
 
 use super::Simulation;
 use super::run_state::RunState;

@@ -1,14 +1,13 @@
 //! The state at the start: wire clamped at mid-face, straight to the nozzle, at the set tension.
 
+use super::core_model::{core_shape, core_surface};
 use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
-use super::rates::Instant;
-use super::run_state::RunState;
+use super::run_state::{Instant, RunState};
 use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec};
-use crate::geometry::generate::{cylinder, rounded_box, segments_for_sagitta};
-use crate::geometry::{Shape, Surface, TriMesh, Tube};
+use crate::geometry::{Surface, Tube};
 use crate::integrate::{
     Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency, longest_step,
 };
@@ -25,61 +24,6 @@ use std::sync::Arc;
 
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
 const MASSLESS: f64 = 1e-6;
-
-/// Facets of a generated core lie at most this far under the true surface, m.
-const SAGITTA: f64 = 0.5e-6;
-
-/// The triangle mesh of a scene's core.
-pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
-    let fail = |e: String| SimError::setup(format!("core: {e}"));
-    let mesh: TriMesh = match core {
-        Core::RoundedBox {
-            width_x,
-            height_z,
-            length_y,
-            corner_radius,
-        } => {
-            let segments = segments_for_sagitta(*corner_radius, SAGITTA)
-                .div_ceil(4)
-                .max(2);
-            rounded_box(*width_x, *height_z, *length_y, *corner_radius, segments)
-                .map_err(|e| fail(e.to_string()))?
-        }
-        Core::Cylinder { radius, length_y } => {
-            cylinder(*radius, *length_y, segments_for_sagitta(*radius, SAGITTA))
-                .map_err(|e| fail(e.to_string()))?
-        }
-        Core::Mesh { path, unit } => {
-            let file = std::fs::File::open(path)
-                .map_err(|e| fail(format!("cannot open {}: {e}", path.display())))?;
-            crate::geometry::stl::read(&mut std::io::BufReader::new(file), *unit)
-                .map_err(|e| fail(format!("{}: {e}", path.display())))?
-        }
-    };
-    Ok(Surface::new(mesh))
-}
-
-/// The core as smooth contact sees it.
-pub(crate) fn core_shape(core: &Core, surface: &Arc<Surface>) -> Shape {
-    match core {
-        Core::RoundedBox {
-            width_x,
-            height_z,
-            length_y,
-            corner_radius,
-        } => Shape::RoundedBox {
-            half_x: 0.5 * width_x,
-            half_z: 0.5 * height_z,
-            half_y: 0.5 * length_y,
-            corner_radius: *corner_radius,
-        },
-        Core::Cylinder { radius, length_y } => Shape::Cylinder {
-            radius: *radius,
-            half_y: 0.5 * length_y,
-        },
-        Core::Mesh { .. } => Shape::Mesh(surface.clone()),
-    }
-}
 
 /// Half width of the core on +x at mid-length: where the wire is clamped.
 fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
@@ -102,7 +46,7 @@ fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
                 }
             }
             Err(SimError::setup(format!(
-                "core: {} has no surface on +x at y = {} to clamp the wire to",
+                "core: {} has no surface on +x at y = {} m to clamp the wire to; change start.clamp_y or move the mesh",
                 path.display(),
                 scene.start.clamp_y
             )))
@@ -121,7 +65,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     let half = half_width(scene, &surface)?;
     if surface.radius_max() + radius >= scene.nozzle.distance {
         return Err(SimError::setup(format!(
-            "nozzle.distance = {} m lies inside the circle of radius {} m that the core sweeps",
+            "nozzle.distance = {} m lies inside the circle of radius {} m that the core sweeps; allowed: more than that radius",
             scene.nozzle.distance,
             surface.radius_max() + radius
         )));
@@ -361,7 +305,7 @@ fn stepper_for(scene: &Scene) -> Result<(Stepper, f64), SimError> {
     };
     if longest > stable {
         return Err(SimError::setup(format!(
-            "solver.step = {:.4e} s is too long for the explicit method: the limit of this wire at {} mm spacing is {:.4e} s",
+            "solver.step = {:.4e} s is too long for the explicit method: the limit of this wire at {} mm spacing is {:.4e} s; set 0 to take the step from the limit",
             solver.step,
             spacing * 1e3,
             stable

@@ -1,7 +1,6 @@
 //! Steps of the method through an interval of the machine's motion.
 
 use super::motion_profile::ROUNDING;
-use super::rates::Instant;
 use super::{QUIET, SimError, Simulation, WORTH_A_STEP};
 use crate::integrate::Stepper;
 use crate::system::Drive;
@@ -34,7 +33,7 @@ impl Simulation {
                 continue;
             }
             self.sys.guide_nozzle(drive, step);
-            self.run.instant = Instant::of(self);
+            self.run.instant = self.instant();
             self.sys.state.set_tension = self.sys.set_tension_after(step);
             self.step(step)?;
         }
@@ -51,7 +50,7 @@ impl Simulation {
             if let Some(course) = &course {
                 course.steer(&mut self.sys, left.min(self.stepper.next()));
             }
-            self.run.instant = Instant::of(self);
+            self.run.instant = self.instant();
             let taken = self.step(left.min(self.longest_return()))?;
             left = if taken >= left { 0.0 } else { left - taken };
             if self.run.broken {
@@ -89,7 +88,7 @@ impl Simulation {
             node: Some(e.node),
             reason: match self.stepper.fixed() {
                 Some(step) => format!(
-                    "{e}; solver.step = {step:.4e} s allows no shorter one, 0 leaves it to the error"
+                    "{e}; solver.step = {step:.4e} s is fixed, set it to 0 to let the solver take shorter steps"
                 ),
                 None => e.to_string(),
             },
@@ -105,7 +104,7 @@ impl Simulation {
                 time: self.sys.state.time,
                 node: None,
                 reason: format!(
-                    "the work allowed ({} node steps) is used up",
+                    "the work allowed ({} steps times nodes) is used up; allow more or wind fewer turns",
                     self.most_work
                 ),
             });

@@ -1,8 +1,8 @@
 //! Known problems against the clock: error, CPU time and effort, one line each.
 //!
-//! Every problem is one file that sets up the rod, the contact and the method of a winding run,
-//! lets it compute, and compares with an answer from elsewhere (closed form, quadrature, or a
-//! converged run kept with the program). The clock runs from the wire at rest to the last step;
+//! Every problem is one file that sets up the rod, the contact and the method of a winding run and
+//! compares what they compute with an independent answer. That answer is a closed form, a
+//! quadrature, or a converged run kept with the program. The clock runs from the wire at rest to the last step;
 //! reading the scene, building the core and finding the reference are not on it.
 
 mod converged;

@@ -25,9 +25,10 @@ const SPREAD: f64 = 0.35e-3;
 /// Tolerance and spacing near the core of a converged run, m.
 const TIGHT: f64 = 2e-7;
 const FINE: f64 = 0.25e-3;
-/// Tolerance unless something else is asked for, m, and for wire thinner than this in proportion: the verdict of ensembles of `fig8` is
-/// the converged one up to 300 rad/s there. Scenes have a fifth of it, for the sake of their energy balance.
+/// Tolerance where none is given, m; up to 300 rad/s it gives ensembles of `fig8` the converged
+/// verdict. Scenes have a fifth of it, for the sake of their energy balance.
 const USUAL: f64 = 1e-5;
+/// Wire diameter below which the tolerance shrinks in proportion, m.
 const USUAL_DIAMETER: f64 = 0.7e-3;
 
 /// A run, its cost and what stopped it.

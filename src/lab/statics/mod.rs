@@ -1,11 +1,11 @@
 //! Static equilibrium of a system: Newton's method on the forces that the time steps use.
 //!
 //! Unknowns are node positions and the roll of each edge since its frame was taken over. A node's
-//! force depends on two neighbours either way, so central differences of `System::evaluate` over
-//! every fifth node give the whole tangent in 40 evaluations, whatever the length; it is solved as
-//! a band. (Following the motion with artificial damping instead needs as many steps as the ratio
-//! of highest to lowest frequency, 1e6 for a hanging wire.) Plastic state moves on only where an
-//! increment has converged, so that iterates cannot leave false yielding behind.
+//! force depends on two neighbours either way. Central differences of `System::evaluate` over
+//! every fifth node therefore give the whole tangent in 40 evaluations, whatever the length. The
+//! tangent is solved as a band. Following the motion with artificial damping needs as many steps
+//! as the ratio of highest to lowest frequency, 1e6 for a hanging wire. Plastic state moves on
+//! only where an increment has converged, so that iterates cannot leave false yielding behind.
 
 mod balance;
 mod band;
@@ -102,8 +102,10 @@ pub fn relax(sys: &mut System, limits: &Limits) -> Result<Relaxed, RelaxError> {
     }
 }
 
-/// Follows equilibrium while `apply` brings loads and supports from share 0 to share 1 of what
-/// they shall be, in increments that shrink where Newton's method fails and grow where it is quick.
+/// Follows equilibrium while `apply` sets loads and supports to a share of their final values.
+///
+/// The share grows from 0 to 1. Its increments shrink where Newton's method fails and grow where it
+/// converges quickly.
 pub fn ramp(
     sys: &mut System,
     limits: &Limits,

@@ -9,9 +9,10 @@ use crate::system::System;
 
 /// Largest turn or stretch of an edge in one Newton step.
 const LARGEST_TURN: f64 = 0.4;
-/// Where the wire yields, a step is cut back until the forces out of balance do no more than this
-/// share of the work they began with, in at most so many tries.
+/// Share of the initial work of the forces out of balance to which a step is cut back where the
+/// wire yields.
 const CUT: f64 = 0.5;
+/// Most cuts of one step.
 const MOST_CUTS: usize = 8;
 
 /// One Newton step, shortened where an edge would turn or stretch too far or where the wire

@@ -41,8 +41,8 @@ pub(super) fn part(step: &[f64], i: usize) -> V3 {
 
 /// Moves from `start` by a share of `step`.
 ///
-/// Edges turn and stretch by their part of it rather than their nodes moving straight on: a turn
-/// would else stretch the edge by half its square, and the wire is far stiffer that way.
+/// Edges turn and stretch by their part of it. Nodes that move along straight lines would stretch a
+/// turning edge by half the square of its turn, and the wire is far stiffer in stretch.
 pub(super) fn advance(
     sys: &mut System,
     start: &(Vec<V3>, Vec<f64>),

@@ -9,8 +9,10 @@ use crate::simulation::{SimError, Simulation};
 use std::f64::consts::{PI, TAU};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// Energy that the balance may leave unexplained, as a share of what went through it and of the work that
-/// draws in a diameter of wire (so that the first steps of a run are not held against themselves).
+/// Energy that the balance may leave unexplained, as a share of the energy that went through it.
+///
+/// The work that draws in a diameter of wire is added to that energy, because it is near 0 in the
+/// first steps of a run.
 const ENERGY: f64 = 0.05;
 /// Centreline may be deeper in the core than its contact says by this share of the diameter: it is
 /// looked at between the points that touch.

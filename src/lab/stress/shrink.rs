@@ -9,8 +9,8 @@ const RUNS: usize = 40;
 
 /// A smaller case with the same trouble, its verdict, and how many runs that took.
 ///
-/// First the inputs are cut behind the failure, then each group of settings goes back to its default where
-/// the trouble stays, then inputs that move only for show are held.
+/// First the inputs are cut behind the failure. Then each group of settings goes back to its
+/// default, and each input is held, where the trouble stays.
 pub fn shrink(case: &Case, verdict: &Verdict) -> (Case, Verdict, usize) {
     let mut best = Best {
         case: case.clone(),

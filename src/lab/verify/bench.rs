@@ -26,12 +26,11 @@ const SPACING: f64 = 0.7;
 
 /// Facets by which the frozen wire rolls about itself along the piece.
 ///
-/// A frozen wire is a prism of [`SIDES`] facets and may lie at any roll; a piece over an unrolled
-/// one touches a facet or a ridge along its whole length, and the normal is off by up to
-/// `pi / (2 SIDES)` = 2.8 degrees, which is 22 % of the angle of friction. Rolled by a few whole
-/// facets, with the nodes of the piece spread evenly over the roll, the piece rides on the
-/// ridges where they point at it: the circle. Coprime to [`EDGES`], so that touches spread over
-/// the length and the piece neither bends nor tilts.
+/// A frozen wire is a prism of [`SIDES`] facets and may lie at any roll. A piece over an unrolled
+/// one touches a facet or a ridge along its whole length. Its normal is then off by up to
+/// `pi / (2 SIDES)` = 2.8 degrees, which is 22 % of the angle of friction. Over a prism rolled by
+/// a few whole facets, the piece rides on the ridges that point at it, as on a circle. The number
+/// is coprime to [`EDGES`], so touches spread evenly and the piece neither bends nor tilts.
 const ROLL: f64 = 7.0;
 
 /// Step as a share of the stability limit.

@@ -1,8 +1,8 @@
 //! A free span under tension, bowed out by couples at its ends.
 //!
 //! Both ends pinned, one of them free to slide along the span and pulled by T. The reference is
-//! the linear beam-column, so the answer is the wire's response to a small share of the couple,
-//! scaled up: under the whole couple the slope squared would enter.
+//! the linear beam-column. The answer is therefore the wire's response to a small share of the
+//! couple, scaled up; under the whole couple the square of the slope matters.
 
 use super::equilibrium::follow;
 use super::wire::{angle, curvature, straight};

@@ -1,8 +1,8 @@
 //! Elastic wire drawn round a cylinder: the ratio of its end forces while it slips.
 //!
 //! The wire lies in the x-z plane. A dead force holds one end; the other is drawn along +x and is
-//! free across it, so both far-field directions are exact whatever the legs do, and the wrap is
-//! the angle between them. Ends carry no moment; legs are several bending lengths long.
+//! free across it. Both far-field directions are therefore exact whatever the legs do, and the wrap
+//! is the angle between them. Ends carry no moment; legs are several bending lengths long.
 
 use super::bench::{SmoothMean, Stepper, law, line_damping, mesh, stable_step};
 use super::{Answer, Answers, Context, VerifyError};
@@ -38,9 +38,9 @@ const PARTS: usize = 200;
 /// Drawing speed as a share of the speed of transverse waves on the slack side.
 const SPEED: f64 = 1e-2;
 
-/// Way drawn before the mean is taken: shares of the bend radius and of the wire's stretch; and the
-/// edge lengths it is taken over (touches come and go once per edge).
+/// Length drawn before the mean is taken, as a share of the bend radius and of the wire's stretch.
 const RUN_IN: f64 = 0.08;
+/// Edge lengths over which the mean is taken; touches come and go once per edge.
 const MEAN_EDGES: f64 = 3.0;
 
 /// Runs a case.

@@ -1,7 +1,8 @@
 //! A long wire pulled by T at both ends over a frictionless edge, with yield.
 //!
-//! Half of it, mirrored: the edge holds the first node and the mirror its direction, along +x; the
-//! pull at the far end turns from +x to half the turn below. The wire passes through the edge and
+//! One half is computed, the other is its mirror image. The edge holds the first node, and the
+//! mirror plane holds its direction along +x. The pull at the far end turns from +x to half the turn
+//! below. The wire passes through the edge and
 //! does not stretch plastically, as in the reference.
 
 use super::equilibrium::follow;

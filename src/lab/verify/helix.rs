@@ -1,7 +1,7 @@
 //! A straight elastic wire held in a helix by an axial force and couple.
 //!
-//! One turn, its ends clamped in place, direction and roll as on the helix, the rest free to find
-//! its equilibrium; the wrench is what the clamp at the far end puts into the wire.
+//! The wire makes one turn. Its ends are clamped in place, direction and roll as on the helix; the
+//! rest finds its equilibrium. The wrench is what the clamp at the far end exerts on the wire.
 
 use super::equilibrium::settle_with_twist;
 use super::{Answer, Answers, Context, VerifyError};

@@ -1,7 +1,7 @@
 //! Exact answers against the code that winds.
 //!
-//! A case file names a `kind`; each kind is one file here that sets up the same rod, section,
-//! contact and feed as a winding run, lets it compute, and reads the answer off it.
+//! A case file names a `kind`, and each kind is one file here. It sets up the same rod, section,
+//! contact and feed as a winding run, computes, and reads the answer off the result.
 
 mod axial_wave;
 mod bench;

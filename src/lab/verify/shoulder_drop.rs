@@ -12,9 +12,9 @@ const STIFFNESS: f64 = 1e9;
 
 /// Damping ratio of the contact: no rebound.
 ///
-/// A critical dashpot, 1, would not rebound either, but it pulls the wire back by `e^-2` of the
-/// impulse, which the push then has to make up for, and friction goes with the push: 13.5 % too
-/// much of it in the landing. The excess falls with `1 / (4 ratio^2)`.
+/// A critical dashpot, 1, does not rebound either, but it pulls the wire back by `e^-2` of the
+/// impulse. The push makes up for that, and friction follows the push: 13.5 % too much of it in
+/// the landing. The excess falls with `1 / (4 ratio^2)`.
 const DAMPING: f64 = 4.0;
 
 /// Times in `sqrt(m' r / q)`: longest wait for a start, longest run, and how often to look.

@@ -1,7 +1,7 @@
 //! A turn of wire on a turning core: hoop tension when free, load on the core, lift-off.
 //!
-//! The ring is one full turn of rod whose ends meet in a clamp that turns with the core, each at
-//! half a joint, so that a free ring cannot tell. On the core the hoop tension is held by the feed
+//! The ring is one full turn of rod. Its ends meet in a clamp that turns with the core, each at
+//! half a joint, so that the clamp does not act on a free ring. On the core the hoop tension is held by the feed
 //! (a tensioner without mass lets the last edge grow), not the length.
 //!
 //! Explicit steps are Runge-Kutta's: the velocities of the staggered step are half a step old, and in a
@@ -44,8 +44,9 @@ const SEARCH: f64 = 25.0;
 /// about the clamp that the start sets off leaves and strikes the core.
 const JUST_BELOW: f64 = 0.97;
 
-/// Contact frequency over the highest axial one: a turning ring is no state of rest for the step,
-/// and a stiffer spring would make an error of 1 % out of it.
+/// Contact frequency over the highest axial one.
+///
+/// A turning ring is no state of rest for the step, and a stiffer spring makes an error of 1 %.
 const SOFTNESS: f64 = 0.3;
 
 /// Depth over which the smooth contact sets in, as a share of that under the load at rest.
@@ -264,8 +265,8 @@ impl<'a> Wound<'a> {
 
     /// Mean load per length on the core at `omega`, away from the clamp, over so many breaths, N/m.
     ///
-    /// The tensioner is set such that the tension there, not at the last edge, is the one wanted:
-    /// the clamp does not grow with the ring, and bending beside it takes up some tension.
+    /// The tensioner is set such that the wanted tension acts away from the clamp, not at the last
+    /// edge. The clamp does not grow with the ring, and bending beside it takes up some tension.
     fn load_at(&self, omega: f64, breaths: f64) -> Result<f64, VerifyError> {
         let steps = (breaths * self.breath / self.dt) as usize;
         let wanted = self.sys.state.set_tension;

@@ -1,9 +1,9 @@
 //! A wire drawn round the four frictionless edges of a square, with yield.
 //!
-//! By symmetry half a side is enough: from the edge, where the wire goes through the corner at
-//! 45 degrees, to mid-side, where it is parallel to the side and under the tension T. The wire
-//! starts straight and the direction at the edge turns; its length is then sought for which the
-//! half side comes out right (the wire slides over its edges, so the length is not given).
+//! By symmetry half a side is enough. At the edge the wire goes through the corner at 45 degrees;
+//! at mid-side it is parallel to the side and under the tension T. The wire starts straight and
+//! the direction at the edge turns. The wire slides over its edges, so its length is unknown: it is
+//! the one that gives the half side.
 
 use super::corner_edge::{GROWTH, SHARPEST_TURN, bending_only, sharpest, yielded_layer};
 use super::equilibrium::follow;

@@ -1,9 +1,13 @@
 //! Feed rate and free length while a rounded rectangle takes up wire.
 //!
-//! A whole winding run: clamp, feed, contact, freezing. What makes it the ideal string of the
-//! reference is in the scene: a bending rigidity so small that the wire stands off a corner by
-//! less than 1e-4 of its radius, a speed far below that of waves in the free span, some drag, and
-//! a constant pull at the nozzle. The wire is softer in stretch (0.8 %) to allow longer steps; feed
+//! A whole winding run: clamp, feed, contact, freezing. The scene makes the wire the ideal string
+//! of the reference:
+//!
+//! - its bending rigidity is so small that it stands off a corner by less than 1e-4 of its radius;
+//! - it moves far below the speed of waves in the free span;
+//! - it has some drag and a constant pull at the nozzle.
+//!
+//! The wire is softer in stretch (0.8 %) to allow longer steps; feed
 //! counts unstretched wire, so it is multiplied by the stretch at the nozzle. A small pitch keeps
 //! the turns apart.
 
@@ -163,8 +167,10 @@ fn wind(scene: &Scene) -> Result<Vec<Sample>, VerifyError> {
     Ok(samples)
 }
 
-/// Fed wire, and the free span as the straight line that the wire is there: its length
-/// from the nozzle to the point nearest to the core (nodes alone would tell it to an edge length).
+/// Reads the fed length, m, and the length of the free span, m.
+///
+/// The free span is a straight line from the nozzle to its point nearest to the core. The nodes
+/// alone give that length to within an edge.
 fn look(sim: &Simulation) -> Sample {
     let sys = sim.system();
     let rod = &sys.state.rod;

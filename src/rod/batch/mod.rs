@@ -8,16 +8,14 @@
 //! the first edge is the clamp there, the row after the last the clamp at the other end.
 
 mod bending_joints;
-mod forces;
 mod twisting_joints;
 
 use super::yield_branch::YieldBranch;
 use crate::math::V3;
 use crate::math::simd::{Columns, Lanes, Lanes3, ROWS, RowBlock};
 pub use bending_joints::BendingJoints;
-pub use forces::Forces;
 use pulp::Simd;
-pub use twisting_joints::TwistingJoints;
+pub use twisting_joints::{Forces, TwistingJoints};
 
 /// Number of columns of a joint's gradient and Hessian; units as in [`super::Bent`] and
 /// [`super::Rolled`].

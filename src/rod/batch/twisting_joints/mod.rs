@@ -2,6 +2,7 @@
 
 mod derivatives;
 mod explicit;
+mod forces;
 mod layout;
 mod passes;
 #[cfg(test)]
@@ -16,6 +17,7 @@ use crate::rod::joint::Joint;
 use crate::rod::plasticity::{Bend, Scalar};
 use crate::rod::twisting::{Turned, answer, twist_by};
 use crate::rod::yield_branch::{YieldBranch, YieldBranches};
+pub use forces::Forces;
 pub use layout::TwistingJoints;
 use layout::*;
 use passes::{Angles, Edges, Elastic};

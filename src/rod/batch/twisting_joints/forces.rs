@@ -1,9 +1,10 @@
 //! Internal forces of a rod, many joints at once: what
 //! [`internal_forces`](crate::rod::internal_forces()) does joint by joint.
 
-use super::{GRADIENT, JOINT, Joints, TORQUE, TwistingJoints};
+use super::TwistingJoints;
 use crate::math::simd::{Lanes, ROWS, RowBlock, WithSimd, run};
 use crate::math::{Quat, V3};
+use crate::rod::batch::{GRADIENT, JOINT, Joints, TORQUE};
 use crate::rod::forces::{ForceParts, Laws, Load};
 use crate::rod::plasticity::{beyond, respond_scalar};
 use crate::rod::state::Rod;

@@ -1,0 +1,155 @@
+//! The checked scene of a run, in SI units; nothing changes it while the run goes on.
+
+use crate::measure::DefectLimits;
+use crate::rod::{Section, Twist};
+use crate::settings::{
+    Contact, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse,
+};
+use std::path::PathBuf;
+
+/// The description of a run, which does not change while it runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// packed name or file stem
+    pub name: String,
+    /// which solver set-up
+    pub preset: Preset,
+    /// wire section and yield limits
+    pub wire: Section,
+    /// `copper`, `table1` or `custom`
+    pub wire_material: String,
+    /// core geometry
+    pub core: Core,
+    /// nozzle
+    pub nozzle: Nozzle,
+    /// tensioner and the line to the nozzle
+    pub tensioner: Tensioner,
+    /// where the wire begins
+    pub start: Start,
+    /// spindle motion profile of `coilwind run`
+    pub spindle: Spindle,
+    /// traverse motion profile of `coilwind run`
+    pub traverse: Traverse,
+    /// contact law
+    pub contact: Contact,
+    /// friction law
+    pub friction: Friction,
+    /// solver settings
+    pub solver: Solver,
+    /// the program's decisions on settings that are `auto`
+    pub skipped: Vec<Decision>,
+    /// when wire at rest leaves the computation
+    pub freeze: Freeze,
+    /// limits of the defect flags
+    pub defects: DefectLimits,
+    /// what is recorded
+    pub output: Output,
+}
+
+/// Solver set-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Preset {
+    /// the best this version has
+    Default,
+    /// the paper's method, mended (RK4, triangle meshes, uniform spacing)
+    Paper,
+}
+
+/// Core geometry; the axis is +y through the origin, the core spans `-length/2 ..= length/2`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Core {
+    /// Rounded rectangle in x-z, extruded along y.
+    RoundedBox {
+        /// full width along x, m
+        width_x: f64,
+        /// full height along z, m
+        height_z: f64,
+        /// full length along y, m
+        length_y: f64,
+        /// radius of the four long edges, m
+        corner_radius: f64,
+    },
+    /// Circular cylinder about y.
+    Cylinder {
+        /// radius, m
+        radius: f64,
+        /// full length along y, m
+        length_y: f64,
+    },
+    /// Triangle mesh from an STL file.
+    Mesh {
+        /// path of the file, already resolved
+        path: PathBuf,
+        /// metres per file unit
+        unit: f64,
+    },
+}
+
+/// Method that moves the wire in time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Integrator {
+    /// classical Runge-Kutta, four evaluations a step
+    Rk4,
+    /// velocity Verlet (staggered), one evaluation a step
+    Verlet,
+    /// implicit, second order, error-controlled
+    Implicit,
+}
+
+/// The program's decision on a setting that is `auto`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Decision {
+    /// name of the setting
+    pub name: &'static str,
+    /// what it was set to
+    pub setting: &'static str,
+    /// what was taken
+    pub decision: &'static str,
+    /// the reason
+    pub why: &'static str,
+}
+
+/// Solver settings.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Solver {
+    /// time integrator
+    pub integrator: Integrator,
+    /// how the wire's twist is carried
+    pub twist: Twist,
+    /// node spacing near the core, m
+    pub spacing_near: f64,
+    /// node spacing in the free span, m
+    pub spacing_free: f64,
+    /// distance from the core at which free-span edges are split to the near spacing, m
+    pub refine_distance: f64,
+    /// time step as a share of the stability limit, 0..1
+    pub step_share: f64,
+    /// fixed time step, s; 0: from the stability limit or the error
+    pub step: f64,
+    /// error that one step of the implicit method may have, m
+    pub tolerance: f64,
+    /// what a step contains
+    pub features: Features,
+}
+
+/// Features of a step that can be left out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Features {
+    /// contact of live wire with live wire
+    pub live_contact: LiveContact,
+    /// the mass of the wire; without it the wire follows the core through states of rest
+    pub inertia: bool,
+    /// settled wire behind lift-off gets a coarser spacing
+    pub coarse_settled: bool,
+}
+
+/// Since when live wire is looked for near live wire.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LiveContact {
+    /// from the first step
+    Always,
+    /// from half a laid live turn on, before which it cannot meet itself
+    WhenHalfATurnIsLive,
+    /// never: live wire passes through live wire
+    Never,
+}
