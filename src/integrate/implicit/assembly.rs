@@ -3,7 +3,7 @@
 //! Nothing is added up in memory: each block of the matrix is put once, as the sum of what the
 //! joints and edges around its node have ([`Joints`]), many nodes side by side.
 
-use super::Work;
+use super::roll::carries_twist;
 use crate::linalg::Banded;
 use crate::math::V3;
 use crate::math::simd::{Columns, Lanes, Lanes3, ROWS, RowBlock, WithSimd, run};
@@ -66,68 +66,54 @@ impl Assembly {
         self.stretch.set(STIFF, j, stiff);
         self.stretch.set(ACROSS, j, across);
     }
-}
 
-/// Puts the gradient of rod and inertia, and with `HESSIAN` the matrix, and completes the yield branches; returns the energy of
-/// inertia and `gravity`.
-pub(super) fn gather<const D: usize, const HESSIAN: bool>(
-    work: &mut Work<D>,
-    weight: f64,
-    gravity: V3,
-) -> f64 {
-    let nodes = work.q.len();
-    let Work {
-        assembly,
-        q,
-        gradient,
-        matrix,
-        rolls,
-        yield_branches,
-        ..
-    } = work;
-    let Assembly {
-        rolling,
-        plain,
-        nodes: columns,
-        stretch,
-        energy,
-    } = assembly;
-    columns.put(q, |block, row, p| {
-        block.set(PLACE, row, p.x);
-        block.set(PLACE + 1, row, p.y);
-        block.set(PLACE + 2, row, p.z);
-    });
-    if HESSIAN {
-        matrix.resize(nodes);
-    }
-    gradient.resize(nodes, V3::zeros());
-    if Work::<D>::ROLLS {
-        rolls.gradient.resize(nodes, 0.0);
-    }
-    let out = Out {
-        nodes: columns,
-        stretch,
-        energy,
-        gradient,
-        torque: &mut rolls.gradient,
-        matrix,
-        weight,
-        gravity,
-    };
-    if Work::<D>::ROLLS {
-        run(Gather::<D, _, HESSIAN>(
+    /// Puts the gradient of rod and inertia at `q`, and with `HESSIAN` the matrix, and completes the yield branches;
+    /// returns the energy of inertia and gravity, J.
+    ///
+    /// Inertia weighs `weight`, 1/s^2, for each mass; `gravity`, m/s^2, and everything else are in the core frame.
+    pub(super) fn gather<const D: usize, const HESSIAN: bool>(
+        &mut self,
+        q: &[V3],
+        (weight, gravity): (f64, V3),
+        yield_branches: &mut [(u32, YieldBranch)],
+        (gradient, torque, matrix): (&mut Vec<V3>, &mut Vec<f64>, &mut Banded<D>),
+    ) -> f64 {
+        let Self {
             rolling,
-            &mut yield_branches.bending,
-            out,
-        ));
-    } else {
-        run(Gather::<D, _, HESSIAN>(
             plain,
-            &mut yield_branches.bending,
-            out,
-        ));
+            nodes,
+            stretch,
+            energy,
+        } = self;
+        nodes.put(q, |block, row, p| {
+            block.set(PLACE, row, p.x);
+            block.set(PLACE + 1, row, p.y);
+            block.set(PLACE + 2, row, p.z);
+        });
+        if HESSIAN {
+            matrix.resize(q.len());
+        }
+        gradient.resize(q.len(), V3::zeros());
+        if carries_twist(D) {
+            torque.resize(q.len(), 0.0);
+        }
+        let out = Out {
+            nodes,
+            stretch,
+            energy,
+            gradient,
+            torque,
+            matrix,
+            weight,
+            gravity,
+        };
+        if carries_twist(D) {
+            run(Gather::<D, _, HESSIAN>(rolling, yield_branches, out));
+        } else {
+            run(Gather::<D, _, HESSIAN>(plain, yield_branches, out));
+        }
+        energy.iter().sum()
     }
-    energy.iter().sum()
 }
 
 /// Joints, edges and nodes, block by block: edges need the joints at both ends, nodes the edges on both sides, so
@@ -262,7 +248,7 @@ impl<const D: usize> Out<'_, D> {
         g.y.store(&mut force[1]);
         g.z.store(&mut force[2]);
         (d.dot(d) * (k * 0.5) - pull.dot(place)).store(&mut force[3]);
-        if Work::<D>::ROLLS {
+        if carries_twist(D) {
             let behind = joints.load(simd, TORQUE + 1, first, 1);
             (behind + joints.load(simd, TORQUE, first, 2)).store(&mut force[4]);
         }
@@ -271,7 +257,7 @@ impl<const D: usize> Out<'_, D> {
             let (i, l) = (start + l, l & (ROWS - 1));
             self.gradient[i] = V3::new(force[0][l], force[1][l], force[2][l]);
             self.energy[i] = force[3][l];
-            if Work::<D>::ROLLS {
+            if carries_twist(D) {
                 self.torque[i] = force[4][l];
             }
         }
@@ -298,7 +284,7 @@ impl<const D: usize> Out<'_, D> {
                 (-next[3 * r + s]).store(&mut row[FAR + 4 * r + s]);
             }
         }
-        if Work::<D>::ROLLS {
+        if carries_twist(D) {
             rolls(simd, joints, first, row);
         }
         for l in 0..Lanes::<S>::COUNT.min(self.gradient.len() - start) {

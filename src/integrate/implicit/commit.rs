@@ -1,8 +1,9 @@
 //! Taking a converged step over as the new state, with its energy balance.
 
+use super::Implicit;
 use super::scheme::{Scheme, StepFormula};
 use super::tensioner::{NozzleEdge, advance};
-use super::{Implicit, Work};
+use super::work::Work;
 use crate::math::{Spin, V3};
 use crate::system::{Spindle, Support, System};
 

@@ -7,6 +7,8 @@
 mod assembly;
 mod commit;
 mod conjugate;
+mod error;
+mod lengths;
 mod model;
 mod newton;
 mod predictor;
@@ -17,15 +19,15 @@ mod statics;
 mod step;
 mod step_control;
 mod tensioner;
+mod work;
 
+pub use error::StepError;
 pub use scheme::Scheme;
 pub use sensitivity::OutputSensitivity;
 
-use crate::linalg::Banded;
-use crate::math::V3;
-use crate::rod::YieldBranches;
-use roll::{Rolls, WITH_ROLL};
+use roll::WITH_ROLL;
 use serde::{Deserialize, Serialize};
+use work::Work;
 
 /// Newton's update at which a solve is done, over the tolerance.
 const CLOSE: f64 = 0.1;
@@ -101,109 +103,6 @@ pub struct SolverStatistics {
     pub line_search_halvings: u64,
     /// rounds of conjugate gradients
     pub cg_iterations: u64,
-}
-
-/// Scratch arrays of a step with `D` unknowns a node, core frame.
-#[derive(Debug, Default)]
-struct Work<const D: usize> {
-    q: Vec<V3>,
-    start: Vec<V3>,
-    guess: Vec<V3>,
-    target: Vec<V3>,
-    /// lab-frame `x*` and `v*`
-    star: [Vec<V3>; 2],
-    mass: Vec<f64>,
-    /// mass that couples the ends of each edge; none where it is lumped
-    shared_mass: Vec<f64>,
-    /// plastic curvature per joint as a vector, 1/m
-    set: Vec<V3>,
-    /// stretch of each edge at the last evaluation and at the accepted iterate
-    axial: Vec<Axial>,
-    base: Vec<Axial>,
-    /// stretch of each edge as the update promises it
-    expected: Vec<Axial>,
-    /// joints that may change between yielding and not
-    yield_branches: YieldBranches,
-    gradient: Vec<V3>,
-    update: Vec<f64>,
-    load: Vec<f64>,
-    /// the update without a look ahead
-    plain: Vec<f64>,
-    matrix: Banded<D>,
-    rolls: Rolls,
-    assembly: assembly::Assembly,
-    gradients: conjugate::Scratch,
-    force: Vec<V3>,
-    evaluations: u64,
-    solves: u64,
-    line_search_halvings: u64,
-}
-
-/// Nothing in here outlives a step, so a copy starts with empty arrays.
-impl<const D: usize> Clone for Work<D> {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
-
-impl<const D: usize> Work<D> {
-    /// Whether edges roll, so that twist is carried.
-    const ROLLS: bool = D == WITH_ROLL;
-
-    /// The update of node `i`'s place.
-    #[inline]
-    fn update_of(&self, i: usize) -> V3 {
-        V3::new(
-            self.update[D * i],
-            self.update[D * i + 1],
-            self.update[D * i + 2],
-        )
-    }
-}
-
-/// An edge's stretch as Newton's method sees it.
-///
-/// A lateral move of a tenth of an edge stretches it by half a percent in the second order, which is
-/// 250 N in this wire. Hessian and line search therefore take the tension that follows the
-/// update linearly (mixed integration points: Magisano, Leonetti, Garcea 2017); the residual is the true one.
-#[derive(Clone, Copy, Debug, Default)]
-struct Axial {
-    along: V3,
-    length: f64,
-    tension: f64,
-    stiffness: f64,
-    energy: f64,
-}
-
-/// The method can't get past this instant.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "no step of {step:.2e} s or more goes on from here: {cause} at node {node} (update {update:.2e} m)"
-)]
-pub struct StepError {
-    /// smallest step tried, s
-    pub step: f64,
-    /// node that would not settle
-    pub node: usize,
-    /// its last update, m
-    pub update: f64,
-    /// what is likely to blame
-    pub cause: &'static str,
-}
-
-impl StepError {
-    fn at(step: f64, stuck: &newton::NewtonFailure) -> Self {
-        Self {
-            step,
-            node: stuck.node,
-            update: stuck.update,
-            cause: if stuck.update.is_finite() {
-                "Newton's method does not settle"
-            } else {
-                "a value is not finite"
-            },
-        }
-    }
 }
 
 impl Implicit {

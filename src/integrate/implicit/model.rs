@@ -1,12 +1,13 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
-use super::predictor::voronoi;
+use super::lengths::voronoi;
+use super::scheme::StepFormula;
 use super::tensioner::NozzleEdge;
-use super::{Axial, Work, assembly};
+use super::work::{Axial, Work};
 use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
-use crate::math::V3;
+use crate::math::{Spin, V3};
 use crate::rod::{Block, Laws, Rod, stretched, turning};
-use crate::system::Loads;
+use crate::system::{Loads, Spindle, Support, System};
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {
@@ -27,7 +28,7 @@ pub(super) struct Model<'a> {
     pub(super) diameter: f64,
     pub(super) arc0: f64,
     /// gravity and dead forces turned into the core frame
-    pub(super) back: crate::math::Spin,
+    pub(super) back: Spin,
     /// nodes and coordinates that do not move
     pub(super) held: [[bool; 3]; 2],
     /// no node moves along z
@@ -42,6 +43,35 @@ pub(super) struct Value {
     pub(super) merit: f64,
     /// as it is
     pub(super) now: f64,
+}
+
+impl<'a> Model<'a> {
+    /// What a solve of `step` needs besides the iterate.
+    pub(super) fn of_step(
+        sys: &'a mut System,
+        step: &StepFormula,
+        spindle: &Spindle,
+        support: &[Support; 2],
+        nozzle: Option<NozzleEdge>,
+    ) -> Self {
+        Self {
+            rod: &sys.state.rod,
+            laws: &sys.model.laws,
+            line: sys.contact.as_line_mut(),
+            loads: &sys.model.loads,
+            last: &sys.state.past.q[0],
+            tension: &sys.state.load.tension,
+            nozzle,
+            grown: step.grown,
+            gamma: step.gamma,
+            elapsed: step.share * step.h,
+            diameter: sys.model.section.diameter,
+            arc0: sys.state.arc0,
+            back: Spin::new(spindle.angle),
+            held: [support[0].hold, support[1].hold],
+            flat: false,
+        }
+    }
 }
 
 impl Model<'_> {
@@ -251,7 +281,21 @@ impl Model<'_> {
         }
         let weight = 1.0 / (self.gamma * self.gamma);
         let gravity = self.back.to_core(self.loads.gravity);
-        energy += assembly::gather::<D, HESSIAN>(work, weight, gravity);
+        let Work {
+            assembly,
+            q,
+            gradient,
+            matrix,
+            rolls,
+            yield_branches,
+            ..
+        } = work;
+        energy += assembly.gather::<D, HESSIAN>(
+            q,
+            (weight, gravity),
+            &mut yield_branches.bending,
+            (gradient, &mut rolls.gradient, matrix),
+        );
         (energy, axial)
     }
 

@@ -1,7 +1,8 @@
 //! Newton's method on the incremental potential, with line search.
 
 use super::model::Model;
-use super::{Work, conjugate, roll};
+use super::work::{Axial, Work};
+use super::{conjugate, roll};
 use crate::contact::{ContactPoint, NodeWeights, PairConditions};
 use crate::linalg::Banded;
 use crate::math::V3;
@@ -502,7 +503,7 @@ pub(super) fn expect_nothing<const D: usize>(model: &Model, work: &mut Work<D>) 
     for j in 0..model.rod.edges() {
         let tension = model.tension.get(j).copied().unwrap_or(0.0);
         let strain = model.rod.stretch[j].strain + tension / model.laws.stretch.modulus;
-        work.expected.push(super::Axial {
+        work.expected.push(Axial {
             tension,
             length: model.rod.rest[j] * (1.0 + strain),
             ..Default::default()

@@ -1,11 +1,11 @@
 //! The guess of a step and what its solve starts from.
 
-use super::Work;
-use super::model::Model;
+use super::lengths::{set_share, voronoi};
 use super::scheme::{Scheme, StepFormula, extrapolation};
 use super::tensioner::NozzleEdge;
+use super::work::Work;
 use crate::math::{Quat, Spin, V3, align, rotate, turn_about_y};
-use crate::rod::{Joint, Rod};
+use crate::rod::Joint;
 use crate::system::{Mass, Spindle, Support, System};
 
 impl<const D: usize> Work<D> {
@@ -138,31 +138,6 @@ impl<const D: usize> Work<D> {
             w.set[i] = mid_frame_vector(&p, &n, k) * set_share(rod, grown, i);
         }
     }
-
-    /// Root mean square of the update over the wire, m.
-    pub(super) fn mean_update(&self) -> f64 {
-        let (sum, mass) = self.weighed(|i| self.update_of(i));
-        (sum / mass).sqrt()
-    }
-
-    /// Root mean square over the wire of what Newton's method moved the guess by, m.
-    pub(super) fn difference(&self) -> f64 {
-        let (mut sum, mass) = self.weighed(|i| self.q[i] - self.guess[i]);
-        if Self::ROLLS {
-            sum += self.rolls.difference();
-        }
-        (sum / mass).sqrt()
-    }
-
-    /// Sum of the squares of the nodes' ways, each times its mass, and of the masses.
-    fn weighed(&self, way: impl Fn(usize) -> V3) -> (f64, f64) {
-        let (mut sum, mut mass) = (0.0, 0.0);
-        for (i, m) in self.mass.iter().enumerate() {
-            sum += m * way(i).norm_squared();
-            mass += m;
-        }
-        (sum, mass)
-    }
 }
 
 /// The step of `h` from the present instant.
@@ -174,21 +149,6 @@ pub(super) fn step_of(sys: &System, scheme: Scheme, h: f64) -> StepFormula {
     }
 }
 
-/// Length of wire that node `i` stands for when the edge at the nozzle has `grown`, m.
-pub(super) fn voronoi(rod: &Rod, grown: f64, i: usize) -> f64 {
-    let at_nozzle = i + 2 >= rod.nodes();
-    rod.voronoi(i) + if at_nozzle { 0.5 * grown } else { 0.0 }
-}
-
-/// Share of node `i`'s set curvature and twist when the edge at the nozzle has `grown`, see `System::keep_set_at_nozzle`.
-fn set_share(rod: &Rod, grown: f64, i: usize) -> f64 {
-    if i + 2 == rod.nodes() {
-        rod.voronoi(i) / voronoi(rod, grown, i)
-    } else {
-        1.0
-    }
-}
-
 /// A vector with components `k` in the frame half-way between the frames of two edges.
 fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
     let joint = Joint::between(p, n);
@@ -196,33 +156,6 @@ fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
     let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
     let mid = p * Quat::new(c, 0.0, 0.0, s) * half;
     rotate(&mid, &V3::new(k[0], k[1], 0.0))
-}
-
-/// What a solve of `step` needs besides the iterate.
-pub(super) fn model_of<'a>(
-    sys: &'a mut System,
-    step: &StepFormula,
-    spindle: &Spindle,
-    support: &[Support; 2],
-    nozzle: Option<NozzleEdge>,
-) -> Model<'a> {
-    Model {
-        rod: &sys.state.rod,
-        laws: &sys.model.laws,
-        line: sys.contact.as_line_mut(),
-        loads: &sys.model.loads,
-        last: &sys.state.past.q[0],
-        tension: &sys.state.load.tension,
-        nozzle,
-        grown: step.grown,
-        gamma: step.gamma,
-        elapsed: step.share * step.h,
-        diameter: sys.model.section.diameter,
-        arc0: sys.state.arc0,
-        back: Spin::new(spindle.angle),
-        held: [support[0].hold, support[1].hold],
-        flat: false,
-    }
 }
 
 /// The supports `dt` later.

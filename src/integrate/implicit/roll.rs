@@ -19,6 +19,11 @@ use crate::system::{Spindle, Support, System};
 /// Unknowns of a node with twist: place and roll.
 pub(super) const WITH_ROLL: usize = 4;
 
+/// Whether edges roll, so that twist is carried, with so many `unknowns` a node.
+pub(super) const fn carries_twist(unknowns: usize) -> bool {
+    unknowns == WITH_ROLL
+}
+
 /// Rolls of a step, rad, one per edge; all empty where no twist is carried.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rolls {

@@ -6,10 +6,12 @@
 //! approximation in an iteration on the true one, whose product with `dq` is the difference of two gradients:
 //! `dq -= K^-1 (g(q + s dq, u + s du) - g(q - s dq, u - s du)) / 2 s`. Nothing is committed, and no step is repeated.
 
-use super::predictor::{model_of, moved, step_of};
+use super::model::Model;
+use super::predictor::{moved, step_of};
 use super::scheme::StepFormula;
 use super::tensioner::{NozzleEdge, advance};
-use super::{CLOSE, Implicit, StepError, Work, conjugate, newton, with_work};
+use super::work::Work;
+use super::{CLOSE, Implicit, StepError, conjugate, newton, with_work};
 use crate::math::V3;
 use crate::system::{Spindle, Support, System};
 
@@ -109,7 +111,7 @@ impl Implicit {
                 b.list(from, guess, &sys.state.rod.rest, sys.model.section.diameter);
             }
         }
-        let mut model = model_of(sys, &step, &now.spindle, &now.support, now.nozzle);
+        let mut model = Model::of_step(sys, &step, &now.spindle, &now.support, now.nozzle);
         // to rounding: the tangent belongs to the solution, not to what is near enough to it
         let close = (1e-4 * CLOSE * self.tolerance).max(ROUNDING);
         let limits = newton::NewtonLimits {
@@ -145,7 +147,7 @@ impl Implicit {
                 *angle = roll[j] + dq[D * j + 3] * by;
             }
             work.expected.clone_from(&expected);
-            let mut model = model_of(
+            let mut model = Model::of_step(
                 sys,
                 &step,
                 &setting.spindle,

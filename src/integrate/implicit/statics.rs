@@ -7,7 +7,8 @@
 use super::model::Model;
 use super::newton::{self, NewtonLimits};
 use super::scheme::StepFormula;
-use super::{CLOSE, Implicit, StepError, Work, with_work};
+use super::work::Work;
+use super::{CLOSE, Implicit, StepError, with_work};
 use crate::math::{Spin, V3};
 use crate::system::System;
 

@@ -1,8 +1,10 @@
 //! One step: guess, solve, estimate the error, commit or try again.
 
-use super::predictor::{model_of, moved, step_of};
+use super::model::Model;
+use super::predictor::{moved, step_of};
 use super::step_control::SHORT;
-use super::{CLOSE, Implicit, Scheme, StepError, Work, newton, with_work};
+use super::work::Work;
+use super::{CLOSE, Implicit, Scheme, StepError, newton, with_work};
 use crate::system::System;
 
 impl Implicit {
@@ -37,7 +39,7 @@ impl Implicit {
                     b.list(from, guess, &sys.state.rod.rest, sys.model.section.diameter);
                 }
             }
-            let mut model = model_of(sys, &step, &spindle, &support, nozzle);
+            let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
             let solved = newton::solve(
                 &mut model,
                 work,
@@ -128,7 +130,7 @@ fn evaluating_with<const D: usize>(
         moved(&sys.state.support, step.share * h),
     );
     let nozzle = work.prepare(sys, &step, &spindle, &support, true);
-    let mut model = model_of(sys, &step, &spindle, &support, nozzle);
+    let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
     newton::expect_nothing(&model, work);
     with(&mut || model.evaluate(work).now);
 }

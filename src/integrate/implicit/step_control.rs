@@ -1,6 +1,7 @@
 //! How long a step may be.
 
-use super::{Implicit, Work};
+use super::Implicit;
+use super::work::Work;
 use crate::system::System;
 
 /// Largest growth of the step from one to the next; variable-step BDF2 is stable to 2.4.
