@@ -111,7 +111,7 @@ impl Instance {
     }
 
     /// Sets parameters. At a communication point the simulation takes over the tunable ones,
-    /// earlier it is made again.
+    /// earlier it is built once more.
     fn set_parameters(&mut self, changes: &[Change]) -> Result<(), Error> {
         let parameters = self
             .parameters
