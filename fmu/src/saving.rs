@@ -129,8 +129,8 @@ fn other_bytes_are_refused_with_the_reason() {
     assert!(matches!(
         changed(8),
         BytesError::Version {
-            found: 0,
-            expected: 1
+            found: 3,
+            expected: 2
         }
     ));
     assert!(matches!(changed(20), BytesError::Guid { .. }));
