@@ -9,9 +9,9 @@
 //!
 //! Later wire touches the triangles with friction. A facet is found by its angle and its vertices
 //! follow from the axis, so nothing of the mesh is stored. The force acts on the round wire that
-//! the facet stands for: a flat's own normal is off by up to pi/64, a fifth of the angle of
-//! friction, and between the edges of flats a sliding node takes off and lands again, which costs
-//! it speed (an eighth of the gap that a wire dropped on a shoulder leaves).
+//! the facet stands for, because a flat's own normal is off by up to pi/64, a fifth of the angle of
+//! friction. On flats a sliding node would also take off at an edge and land again. That costs
+//! speed: an eighth of the gap that a wire dropped on a shoulder leaves.
 
 use crate::geometry::Touch;
 use crate::math::{Quat, V3};

@@ -11,8 +11,8 @@ const GROWTH: f64 = 1.7;
 const AIM: f64 = 0.4;
 /// Steps below this multiple of the shortest are taken in trouble only.
 pub(super) const SHORT: f64 = 1e3;
-/// Angle by which the nozzle's own motion may turn the edge there in a step, rad: the work that it does is that of the
-/// forces at both ends of the step, and those of an edge that swings round have little to do with each other.
+/// Angle by which the nozzle's own motion may turn the edge there in a step, rad. The nozzle's work is booked by the
+/// forces at both ends of the step. If the edge swings further, these two forces have little to do with each other.
 const NOZZLE_TURN: f64 = 0.2;
 
 impl Implicit {
