@@ -4,7 +4,7 @@
 //! throughput is the time per point and step.
 #![allow(missing_docs)]
 
-use coilwind::contact::{ContactLaw, Contacts, damping_for_restitution};
+use coilwind::contact::{ContactLaw, NodalModel, damping_for_restitution};
 use coilwind::geometry::Surface;
 use coilwind::geometry::generate::cylinder;
 use coilwind::integrate::{Explicit, ExplicitMethod, highest_frequency};
@@ -12,7 +12,7 @@ use coilwind::math::V3;
 use coilwind::rod::Rod;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::system::{ContactModel, System};
+use coilwind::system::System;
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::sync::Arc;
@@ -62,13 +62,12 @@ fn lying(points: usize) -> System {
         mu_kinetic: scene.friction.kinetic,
         slip_speed: scene.friction.slip_speed,
     };
-    sys.contact = ContactModel::nodal(Contacts::new(
+    sys.touch_at_nodes(NodalModel {
         surface,
         law,
-        scene.wire.radius(),
-        scene.wire.diameter,
-        points,
-    ));
+        radius: scene.wire.radius(),
+        diameter: scene.wire.diameter,
+    });
     // a body force that balances the contact keeps it there
     let load = scene.contact.stiffness * 1e-6 / scene.wire.mass_per_length();
     sys.model.loads.gravity = V3::new(-load, 0.0, 0.0);

@@ -5,7 +5,7 @@
 //! reciprocal of the throughput is the time per node. Factorisation alone is in `kernels`.
 #![allow(missing_docs)]
 
-use coilwind::contact::{ContactLaw, LineContact};
+use coilwind::contact::{ContactLaw, LineModel};
 use coilwind::geometry::Shape;
 use coilwind::integrate::{Implicit, Scheme};
 use coilwind::math::V3;
@@ -13,7 +13,7 @@ use coilwind::rod::Rod;
 use coilwind::rod::Twist;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::system::{ContactModel, Support, System};
+use coilwind::system::{Support, System};
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -84,12 +84,12 @@ fn lying(scene: &Scene, nodes: usize, frozen: usize) -> System {
     let (pitch, around) = (4.0 * r, CORE + r - DEPTH);
     let x: Vec<V3> = (0..nodes).map(|i| wind(around, pitch, 0.0, i).0).collect();
     let mut sys = tight(scene, &x);
-    let mut line = LineContact::new(shape, law, r, nodes);
+    sys.touch_along(LineModel::new(shape, law, r));
+    let mut line = sys.line_contact().expect("contact");
     for i in 0..frozen {
         let (p, arc) = wind(around, pitch, 2.0 * r - DEPTH, i);
         line.lay(p, arc);
     }
-    sys.contact = ContactModel::line(line);
     sys.state.arc0 = 1e3;
     sys.refresh();
     sys
@@ -139,10 +139,10 @@ fn search(c: &mut Criterion) {
     for (name, cold) in [("push", false), ("look_up_and_push", true)] {
         group(c, name, &KINDS[1..], |b, mut sys| {
             let x = std::mem::take(&mut sys.state.rod.x);
-            let line = sys.contact.as_line_mut().expect("contact");
+            let mut line = sys.line_contact().expect("contact");
             b.iter(|| {
                 if cold {
-                    line.forget_surroundings();
+                    line.state.forget_surroundings();
                 }
                 line.begin();
                 let mut sum = V3::zeros();
@@ -162,7 +162,7 @@ fn search(c: &mut Criterion) {
 /// Gathering the passages near each node, and their feet.
 fn tube(c: &mut Criterion) {
     group(c, "gather", &KINDS[2..], |b, sys| {
-        let tube = &sys.contact.as_line().expect("contact").tube;
+        let tube = &sys.line_scratch().expect("contact").tube;
         let mut starts = Vec::new();
         b.iter(|| {
             let mut count = 0;
@@ -174,7 +174,7 @@ fn tube(c: &mut Criterion) {
         });
     });
     group(c, "foot", &KINDS[2..], |b, sys| {
-        let tube = &sys.contact.as_line().expect("contact").tube;
+        let tube = &sys.line_scratch().expect("contact").tube;
         let mut starts = Vec::new();
         let known: Vec<(V3, u32)> = (sys.state.rod.x.iter())
             .filter_map(|x| {

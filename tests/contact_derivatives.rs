@@ -1,9 +1,12 @@
 //! Energy, gradient and Hessian of a contact point's push by finite differences, with friction limits
 //! held as the line search sees them.
 
-use coilwind::contact::{ContactLaw, ContactResponse, LineContact};
+mod parts;
+
+use coilwind::contact::{ContactLaw, ContactResponse};
 use coilwind::geometry::Shape;
 use coilwind::math::V3;
+use parts::Parts;
 use proptest::prelude::*;
 
 const STIFFNESS: f64 = 1e10;
@@ -19,7 +22,7 @@ const ALONG_SLIDE: f64 = 0.9;
 /// Step of the differences, m: depths are some um, the wire's radius is 350 um.
 const H: f64 = 1e-10;
 
-fn contact(mu: f64) -> LineContact {
+fn contact(mu: f64) -> Parts {
     let law = ContactLaw {
         stiffness: STIFFNESS,
         damping_ratio: 0.0,
@@ -33,12 +36,12 @@ fn contact(mu: f64) -> LineContact {
         half_y: 8e-3,
         corner_radius: 2e-3,
     };
-    let mut line = LineContact::new(shape, law, RADIUS, 1);
+    let mut line = Parts::new(shape, law, RADIUS, 1);
     // one turn round a cylinder far off the box, edges of 0.8 mm
     for i in 0..40 {
         let a = 0.1 * f64::from(i);
         let p = V3::new(60e-3 + 8e-3 * libm::cos(a), 1e-4 * a, 8e-3 * libm::sin(a));
-        line.lay(p, 0.8e-3 * f64::from(i));
+        line.contact().lay(p, 0.8e-3 * f64::from(i));
     }
     line
 }
@@ -70,7 +73,7 @@ fn ground(on: On, at: f64) -> [V3; 3] {
             let (a, b) = (0.3 + 3.0 * at, 6.2 * at);
             let round = V3::new(libm::cos(a), 0.0, libm::sin(a));
             let out = round * libm::cos(b) + V3::y() * libm::sin(b);
-            let foot = line.tube.foot(
+            let foot = line.scratch.tube.foot(
                 V3::x() * 60e-3 + round * 8e-3 + out * 2.0 * RADIUS,
                 (10.0 * a) as u32,
             );
@@ -87,28 +90,29 @@ fn on() -> impl Strategy<Value = On> {
     prop_oneof![Just(On::Flat), Just(On::Corner), Just(On::Wire)]
 }
 
-fn at(line: &mut LineContact, p: V3) -> ContactResponse {
-    line.push(0, p, LENGTH, f64::INFINITY, STEP)
+fn at(line: &mut Parts, p: V3) -> ContactResponse {
+    line.contact()
+        .push(0, p, LENGTH, f64::INFINITY, STEP)
         .unwrap_or_default()
 }
 
 /// A point that was committed at depth `before` (m, 0: never), is then at `p`, its limit held.
-fn held(mu: f64, [q, out, _]: [V3; 3], before: f64, p: V3) -> LineContact {
+fn held(mu: f64, [q, out, _]: [V3; 3], before: f64, p: V3) -> Parts {
     let mut line = contact(mu);
     let start = q - out * before + out * if before > 0.0 { 0.0 } else { 1e-6 };
-    line.place(0, start);
+    line.state.place(0, start);
     if before > 0.0 {
-        line.commit(0, start, LENGTH, f64::INFINITY, STEP);
+        line.contact().commit(0, start, LENGTH, f64::INFINITY, STEP);
     }
     // an iterate that is accepted leaves its limit behind
     at(&mut line, p);
-    line.renew_limits();
-    line.hold_limits = true;
+    line.state.renew_limits();
+    line.state.hold_limits = true;
     line
 }
 
 /// Differences of the energy and of the gradient.
-fn differences(line: &mut LineContact, p: V3) -> (V3, [V3; 3]) {
+fn differences(line: &mut Parts, p: V3) -> (V3, [V3; 3]) {
     let step = |a: usize| V3::ith(a, H);
     let mut pushes = [0, 1, 2].map(|a| [at(line, p + step(a)), at(line, p - step(a))]);
     let slope = V3::from_fn(|a, _| (pushes[a][0].energy - pushes[a][1].energy) / (2.0 * H));
@@ -218,14 +222,14 @@ fn a_look_ahead_comes_back() {
         let mut line = contact(MU);
         let [place, out, _] = ground(on, 0.4);
         let p = place - out * 60e-6;
-        line.begin();
-        line.hold_limits = true;
-        let push = line.push(1, p, LENGTH, f64::INFINITY, STEP);
+        line.contact().begin();
+        line.state.hold_limits = true;
+        let push = line.contact().push(1, p, LENGTH, f64::INFINITY, STEP);
         let push = push.expect("it touches");
-        line.hold_limits = false;
+        line.state.hold_limits = false;
         let (mut gradient, mut hessian) = (push.gradient, push.hessian);
         let mut look = |way: V3| {
-            line.predict(
+            line.contact().predict(
                 STEP,
                 |_| way,
                 |_, more, change| {

@@ -4,7 +4,7 @@ mod brute;
 
 use brute::Coil;
 use coilwind::contact::{
-    ContactLaw, ContactPoint, ContactResponse, Coupling, PairConditions, SelfContact,
+    ContactLaw, ContactPoint, ContactResponse, Coupling, PairConditions, PairScratch, SelfContact,
 };
 use coilwind::math::V3;
 use proptest::prelude::*;
@@ -72,7 +72,7 @@ fn moved(q: &[V3], (size, phase): (V3, f64)) -> Vec<V3> {
 
 /// Pushes of all pairs in touch: point and gradient.
 fn fast(
-    pairs: &mut SelfContact,
+    (pairs, scratch): (&mut SelfContact, &mut PairScratch),
     q: &[V3],
     last: &[V3],
     mu: f64,
@@ -86,6 +86,7 @@ fn fast(
         hold_limits: false,
     };
     pairs.evaluate(
+        scratch,
         &conditions,
         (q, last),
         |_| LENGTH,
@@ -136,22 +137,22 @@ proptest! {
         let rest = rests(&q);
         let mut arc = vec![0.0];
         rest.iter().for_each(|r| arc.push(arc[arc.len() - 1] + r));
-        let mut pairs = SelfContact::default();
+        let (mut pairs, mut scratch) = (SelfContact::default(), PairScratch::default());
         for way in ways {
             let last = q.clone();
             q = moved(&q, way);
             // a guess that falls short of the way, as far as the method lets it pass
             let guess: Vec<V3> = last.iter().zip(&q).map(|(a, b)| a + (b - a) * 0.8).collect();
-            pairs.list(&last, &guess, &rest, DIAMETER);
-            prop_assert_eq!(pairs.missed(&last, &last), None);
-            if pairs.missed(&last, &q).is_some() {
+            pairs.list(&mut scratch, (&last, &guess), &rest, DIAMETER);
+            prop_assert_eq!(scratch.missed(&last, &last), None);
+            if scratch.missed(&last, &q).is_some() {
                 return Ok(());
             }
             let (want, doubtful) = slow(&q, &arc);
             if doubtful {
                 return Ok(());
             }
-            let got = fast(&mut pairs, &q, &last, 0.0);
+            let got = fast((&mut pairs, &mut scratch), &q, &last, 0.0);
             let deep: Vec<_> = want.iter().filter(|w| w.0 > 1e-12).collect();
             prop_assert!(got.len() >= deep.len() && got.len() <= want.len() + 1);
             for (depth, normal, point) in deep {
@@ -175,10 +176,10 @@ proptest! {
     #[test]
     fn pairs_put_no_force_and_no_moment_on_the_whole(coil in coil(), way in way(), mu in 0.0..0.4f64) {
         let (q, _) = coil.wound();
-        let mut pairs = SelfContact::default();
+        let (mut pairs, mut scratch) = (SelfContact::default(), PairScratch::default());
         let now = moved(&q, way);
-        pairs.list(&q, &now, &rests(&q), DIAMETER);
-        for (coupling, push) in fast(&mut pairs, &now, &q, mu) {
+        pairs.list(&mut scratch, (&q, &now), &rests(&q), DIAMETER);
+        for (coupling, push) in fast((&mut pairs, &mut scratch), &now, &q, mu) {
             let (mut force, mut moment) = (V3::zeros(), V3::zeros());
             for side in [&coupling.young, &coupling.old] {
                 for (i, w) in side.iter() {
@@ -209,9 +210,9 @@ fn wire_two_turns_back_is_a_partner_too() {
         layer: 1.8,
     };
     let (q, arc) = coil.wound();
-    let mut pairs = SelfContact::default();
-    pairs.list(&q, &q, &rests(&q), DIAMETER);
-    let got = fast(&mut pairs, &q, &q, 0.0);
+    let (mut pairs, mut scratch) = (SelfContact::default(), PairScratch::default());
+    pairs.list(&mut scratch, (&q, &q), &rests(&q), DIAMETER);
+    let got = fast((&mut pairs, &mut scratch), &q, &q, 0.0);
     let (want, _) = slow(&q, &arc);
     assert_eq!(got.len(), want.len());
 }

@@ -2,10 +2,12 @@
 //! random coils, in steps that make everything it remembers stale.
 
 mod brute;
+mod parts;
 
 use brute::Coil;
-use coilwind::contact::{ContactLaw, LineContact};
+use coilwind::contact::ContactLaw;
 use coilwind::math::V3;
+use parts::Parts;
 use proptest::prelude::*;
 
 /// Line load per depth, N/m^2, and wire that a point stands for, m.
@@ -35,11 +37,11 @@ fn law(mu: f64) -> ContactLaw {
     }
 }
 
-fn contact(coil: &Coil, mu: f64) -> LineContact {
-    let mut line = LineContact::new(brute::a_core(coil.kind), law(mu), 0.5 * coil.diameter, 1);
+fn contact(coil: &Coil, mu: f64) -> Parts {
+    let mut line = Parts::new(brute::a_core(coil.kind), law(mu), 0.5 * coil.diameter, 1);
     let (q, arc) = coil.wound();
     for (q, arc) in q.iter().zip(arc) {
-        line.lay(*q, arc);
+        line.contact().lay(*q, arc);
     }
     line
 }
@@ -115,19 +117,19 @@ impl Surroundings {
     }
 }
 
-fn surroundings(line: &LineContact, p: V3, own: f64) -> Surroundings {
-    let (distance, normal) = brute::core(&line.shape, p);
-    let mut all = vec![(line.radius - distance, normal)];
+fn surroundings(line: &Parts, p: V3, own: f64) -> Surroundings {
+    let (distance, normal) = brute::core(&line.model.shape, p);
+    let mut all = vec![(line.model.radius - distance, normal)];
     let mut doubtful = false;
     let mut pinched = false;
     let mut last = f64::NEG_INFINITY;
-    for m in brute::minima(line.tube.points(), p, 3.5 * line.radius) {
-        let arc = line.tube.arc()[m.t as usize];
+    for m in brute::minima(line.scratch.tube.points(), p, 3.5 * line.model.radius) {
+        let arc = line.scratch.tube.arc()[m.t as usize];
         doubtful |= (arc - own).abs() < 4e-3;
         pinched |= arc - last < 5e-3;
         last = arc;
         if arc <= own {
-            all.push((2.0 * line.radius - m.distance, m.normal));
+            all.push((2.0 * line.model.radius - m.distance, m.normal));
         }
     }
     Surroundings {
@@ -149,12 +151,12 @@ fn normal_law(depth: f64, onset: f64) -> (f64, f64) {
 }
 
 /// The points of a way that a wire could be at: not deeper in anything than a guess may land.
-fn walk(line: &LineContact, start: &Start, steps: &[V3]) -> Vec<V3> {
-    let q = line.tube.points();
+fn walk(line: &Parts, start: &Start, steps: &[V3]) -> Vec<V3> {
+    let q = line.scratch.tube.points();
     let at = start.along * (q.len() - 2) as f64 + 0.5;
     let base = brute::on_wire(q, at) + V3::y() * start.aside;
-    let (distance, out) = brute::core(&line.shape, base);
-    let mut p = base + out * (line.radius + start.height - distance);
+    let (distance, out) = brute::core(&line.model.shape, base);
+    let mut p = base + out * (line.model.radius + start.height - distance);
     let home = p;
     let deep = |p: V3| {
         let all = surroundings(line, p, f64::INFINITY).all;
@@ -183,10 +185,10 @@ proptest! {
         own in prop::option::of(0.2..1.0f64),
     ) {
         let mut line = contact(&coil, 0.0);
-        let own = own.map_or(f64::INFINITY, |s| s * line.tube.arc()[line.tube.len() - 1]);
+        let own = own.map_or(f64::INFINITY, |s| s * line.scratch.tube.arc()[line.scratch.tube.len() - 1]);
         for p in walk(&line, &start, &steps) {
             let near = surroundings(&line, p, own);
-            let push = line.push(0, p, LENGTH, own, STEP);
+            let push = line.contact().push(0, p, LENGTH, own, STEP);
             if near.crowded(coil.diameter) {
                 return Ok(());
             }
@@ -195,11 +197,11 @@ proptest! {
             }
             let k = STIFFNESS * LENGTH;
             let touching: Vec<_> = near.all.iter().filter(|(d, _)| *d > SAME_DEPTH).collect();
-            let forces: Vec<V3> = line.normal_forces(0, LENGTH).filter(|f| f.norm() > k * 1e-15).collect();
+            let forces: Vec<V3> = line.state.normal_forces(&line.model, 0, LENGTH).filter(|f| f.norm() > k * 1e-15).collect();
             let mut left = forces.clone();
             let (mut energy, mut gradient) = (0.0, V3::zeros());
             for (depth, normal) in &touching {
-                let (e, f) = normal_law(*depth, line.onset);
+                let (e, f) = normal_law(*depth, line.model.onset);
                 energy += k * e;
                 gradient -= normal * (k * f);
                 let same = |g: &V3| {
@@ -235,18 +237,18 @@ proptest! {
         let k = STIFFNESS * LENGTH;
         let way = walk(&warm, &start, &steps.iter().map(|s| s * small).collect::<Vec<_>>());
         for line in [&mut warm, &mut cold] {
-            line.place(0, way.first().copied().unwrap_or_default());
+            line.state.place(0, way.first().copied().unwrap_or_default());
         }
         let own = f64::INFINITY;
         for p in way {
-            cold.forget_surroundings();
-            let forces = [&mut warm, &mut cold].map(|line| line.commit(0, p, LENGTH, own, STEP));
+            cold.state.forget_surroundings();
+            let forces = [&mut warm, &mut cold].map(|line| line.contact().commit(0, p, LENGTH, own, STEP));
             if surroundings(&warm, p, own).crowded(coil.diameter) {
                 return Ok(());
             }
             prop_assert!((forces[0] - forces[1]).norm() < 1e-9 * (k * 1e-6 + forces[0].norm()), "{forces:?}");
         }
-        let lost = [warm.loss.friction, cold.loss.friction];
+        let lost = [warm.state.loss.friction, cold.state.loss.friction];
         prop_assert!((lost[0] - lost[1]).abs() <= 1e-9 * lost[0]);
     }
 }
@@ -266,7 +268,7 @@ fn merged_feet_push_once() {
         layer: 1.0,
     };
     let mut line = contact(&coil, 0.0);
-    line.tube = coilwind::geometry::SplineTube::new(0.35e-3);
+    line.scratch.tube = coilwind::geometry::SplineTube::new(0.35e-3);
     let legs = [
         (-3.5, 9.0),
         (-1.5, 3.0),
@@ -276,18 +278,20 @@ fn merged_feet_push_once() {
         (3.5, 9.0),
     ];
     for (i, (x, y)) in legs.into_iter().enumerate() {
-        line.lay(V3::new(40.0 + x, y, 0.0) * 1e-3, 3e-3 * i as f64);
+        line.contact()
+            .lay(V3::new(40.0 + x, y, 0.0) * 1e-3, 3e-3 * i as f64);
     }
     let k = STIFFNESS * LENGTH;
     // the centre of curvature is 1/3 mm up
     for (y, most) in [(0.36, 2), (0.34, 2), (0.32, 1), (0.3, 1)] {
         let p = V3::new(40.0, y, 0.0) * 1e-3;
         let push = line
+            .contact()
             .push(0, p, LENGTH, f64::INFINITY, STEP)
             .unwrap_or_default();
         let (mut energy, mut count) = (0.0, 0);
-        for m in brute::minima(line.tube.points(), p, 0.7e-3) {
-            energy += k * normal_law(0.7e-3 - m.distance, line.onset).0;
+        for m in brute::minima(line.scratch.tube.points(), p, 0.7e-3) {
+            energy += k * normal_law(0.7e-3 - m.distance, line.model.onset).0;
             count += 1;
         }
         assert_eq!(count, most);

@@ -1,7 +1,7 @@
 //! A wire that lands at winding speed is stopped by what it lands on, in steps of any length that the
 //! method chooses or is given.
 
-use coilwind::contact::{ContactLaw, LineContact};
+use coilwind::contact::{ContactLaw, LineModel};
 use coilwind::geometry::Shape;
 use coilwind::integrate::{Implicit, Scheme, StepError};
 use coilwind::math::V3;
@@ -9,7 +9,7 @@ use coilwind::rod::Rod;
 use coilwind::rod::Twist;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::system::{ContactModel, System};
+use coilwind::system::System;
 
 /// Speed of a wire that is drawn onto a flat, m/s.
 const SPEED: f64 = 10.0;
@@ -67,13 +67,13 @@ fn falling(scene: &Scene, onto: Onto, fall: f64) -> System {
     let mut sys = System::new(scene.wire.clone(), Rod::through(&points, None));
     sys.model.twist = Twist::Off;
     sys.state.rod.v.fill(-V3::x() * SPEED);
-    let mut line = LineContact::new(shape, law, r, NODES);
+    sys.touch_along(LineModel::new(shape, law, r));
+    let mut line = sys.line_contact().expect("contact");
     if onto == Onto::Wire {
         for i in 0..NODES {
             line.lay(V3::new(6e-3 + r, along(i), 0.2e-3), SPACING * i as f64);
         }
     }
-    sys.contact = ContactModel::line(line);
     // nothing is the falling wire's own neighbourhood
     sys.state.arc0 = 1.0;
     sys.refresh();
@@ -98,7 +98,7 @@ fn land(
             Err(stopped) => return Err(stopped),
         }
     }
-    let line = sys.contact.as_line().expect("contact");
+    let line = sys.model.contact.as_line().expect("contact");
     let r = scene.wire.radius();
     let through = sys.state.rod.x.iter().any(|x| {
         let core = line.shape.nearness(*x).distance < 0.5 * r;

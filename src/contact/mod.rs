@@ -19,10 +19,12 @@ mod tolerance;
 
 pub use friction::ContactResponse;
 pub use law::{ContactLaw, ContactLoss, damping_for_restitution};
-pub(crate) use line::SavedLine;
-pub use line::{ContactRecord, LineContact};
-pub use nodal::{Body, Contacts, LiveContact, NodeContact, TouchForce, Wire};
-pub(crate) use nodal::{SavedContacts, far, restore_tube};
+pub use line::{ContactRecord, LineContact, LineModel, LineScratch, LineState};
+pub(crate) use nodal::far;
+pub use nodal::{
+    Body, LiveConditions, LiveContact, NodalContact, NodalModel, NodalScratch, NodalState,
+    NodeContact, TouchForce, Wire,
+};
 pub use own_wire::own_wire;
-pub use self_contact::{Coupling, PairConditions, SelfContact, add_couplings};
+pub use self_contact::{Coupling, PairConditions, PairScratch, SelfContact, add_couplings};
 pub use stencil::{ContactPoint, NodeWeights};

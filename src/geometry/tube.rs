@@ -50,7 +50,8 @@ impl Bounds {
 }
 
 /// The frozen wire, oldest node first.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(from = "SavedTube", into = "SavedTube")]
 pub struct Tube {
     radius: f64,
     /// node positions, core frame, m
@@ -83,6 +84,30 @@ pub struct FrozenNode {
     pub tension: f64,
     /// plastic stretch of that edge
     pub plastic_strain: f64,
+}
+
+/// A [`Tube`] in a saved state.
+#[derive(Serialize, Deserialize)]
+struct SavedTube {
+    radius: f64,
+    nodes: Vec<FrozenNode>,
+}
+
+impl From<Tube> for SavedTube {
+    fn from(tube: Tube) -> Self {
+        Self {
+            radius: tube.radius,
+            nodes: tube.nodes().collect(),
+        }
+    }
+}
+
+impl From<SavedTube> for Tube {
+    fn from(saved: SavedTube) -> Self {
+        let mut tube = Self::new(saved.radius);
+        saved.nodes.into_iter().for_each(|node| tube.push(node));
+        tube
+    }
 }
 
 impl Tube {
@@ -130,6 +155,16 @@ impl Tube {
     /// Whether nothing has frozen.
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
+    }
+
+    /// Whether the nodes follow one another along a wire, none of them `far` (m) from the origin; saved bytes may say
+    /// anything.
+    pub(crate) fn lies_within(&self, far: f64) -> bool {
+        let near = |p: &V3| p.iter().all(|x| x.abs() < far);
+        self.points.iter().all(near)
+            && self.arc.iter().all(|arc| arc.is_finite())
+            && self.arc.is_sorted()
+            && self.points.windows(2).all(|ends| ends[0] != ends[1])
     }
 
     /// Appends the next node along the wire; `arc` must not fall.

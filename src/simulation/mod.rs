@@ -140,7 +140,7 @@ impl Simulation {
         self.scene.defects = scene.defects;
         self.scene.friction = scene.friction;
         self.coil.set_limits(scene.defects);
-        if let Some(law) = self.sys.contact.law_mut() {
+        if let Some(law) = self.sys.model.contact.law_mut() {
             law.mu_static = scene.friction.static_;
             law.mu_kinetic = scene.friction.kinetic;
             law.slip_speed = scene.friction.slip_speed;

@@ -169,16 +169,14 @@ impl Simulation {
         let spin = Spin::new(self.sys.state.spindle.angle);
         let back = turn_about_y(-self.sys.state.spindle.angle);
         let rod = &self.sys.state.rod;
-        let mut line = match self.sys.frozen_tube() {
-            Some(tube) => Centreline {
-                points: tube.points.clone(),
-                frames: tube.frames.clone(),
-                arc: tube.arc.clone(),
-                plastic_strain: tube.plastic_strain.clone(),
-                tension: tube.tension.clone(),
-                frozen: tube.len(),
-            },
-            None => Centreline::default(),
+        let frozen = &self.sys.state.frozen;
+        let mut line = Centreline {
+            points: frozen.points.clone(),
+            frames: frozen.frames.clone(),
+            arc: frozen.arc.clone(),
+            plastic_strain: frozen.plastic_strain.clone(),
+            tension: frozen.tension.clone(),
+            frozen: frozen.len(),
         };
         let mut arc = self.sys.state.arc0;
         for i in 0..rod.nodes() {

@@ -6,7 +6,7 @@
 //! has the rod, section and contact of the winding.
 
 use super::core_model::core_shape;
-use crate::contact::{ContactLaw, LineContact};
+use crate::contact::{ContactLaw, LineModel};
 use crate::geometry::Surface;
 use crate::integrate::{Implicit, Scheme};
 use crate::math::V3;
@@ -16,7 +16,7 @@ use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN};
 use crate::rod::Twist;
 use crate::rod::{Bend, Rod, Section};
 use crate::scene::{Core, Scene};
-use crate::system::{ContactModel, Support, System};
+use crate::system::{Support, System};
 use std::sync::Arc;
 
 /// Node spacing of the loop, m; half of it moves the heights of the 0.7 mm wire by 4 um.
@@ -126,7 +126,7 @@ fn quarter_loop(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) 
         slip_speed: scene.friction.slip_speed,
     };
     let shape = core_shape(&scene.core, surface);
-    sys.contact = ContactModel::line(LineContact::new(shape, law, r, sys.state.rod.nodes()));
+    sys.touch_along(LineModel::new(shape, law, r));
     sys.refresh();
     let mut method = Implicit::new(Scheme::Bdf2, TOLERANCE, 1e-9, 1.0);
     // the loop is drawn tight by taking wire out evenly; a loose one gives way, a tight one stretches

@@ -172,7 +172,7 @@ impl Simulation {
             LiveContact::Never => false,
         };
         if watched {
-            self.sys.contact.watch_live_wire();
+            self.sys.state.contact.watch_live_wire();
         }
     }
 
@@ -194,7 +194,7 @@ impl Simulation {
         let spin = Spin::new(angle);
         let back = turn_about_y(-angle);
         let mut arc = self.sys.state.arc0;
-        if let Some(l) = self.sys.contact.as_line_mut() {
+        if let Some(mut l) = self.sys.line_contact() {
             l.go_on(None);
         }
         for i in 0..count {
@@ -312,14 +312,14 @@ impl Simulation {
             (spin.to_core(rod.x[0]), arc),
             (spin.to_core(rod.x[1]), arc + rod.rest[0]),
         ];
-        if let Some(l) = self.sys.contact.as_line_mut() {
+        if let Some(mut l) = self.sys.line_contact() {
             l.go_on(Some(ahead));
         }
     }
 
     /// The last `count` frozen nodes come back to life.
     fn thaw(&mut self, count: usize) {
-        if let Some(l) = self.sys.contact.as_line_mut() {
+        if let Some(mut l) = self.sys.line_contact() {
             l.go_on(None);
         }
         let count = self.sys.thaw_front(count);
@@ -327,8 +327,8 @@ impl Simulation {
         self.join_frozen_to_live();
         self.coil.unsettle(count);
         self.run.watch.insert_front(count);
-        if let Some(l) = self.sys.contact.as_line_mut() {
-            l.forget_surroundings();
+        if let Some(l) = self.sys.line_contact() {
+            l.state.forget_surroundings();
         }
     }
 

@@ -9,11 +9,12 @@ use super::run_state::RunState;
 use crate::integrate::{SolverStatistics, Stepper};
 use crate::measure::SavedCoil;
 use crate::scene::Scene;
-use crate::system::SavedSystem;
+use crate::system::State;
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -46,14 +47,14 @@ pub enum RestoreError {
 
 /// All that the scene does not give.
 #[derive(Debug, Serialize, Deserialize)]
-struct Saved {
+struct Saved<'a> {
     /// over vertices and triangles of the core
     core: u32,
-    sys: SavedSystem,
+    sys: Cow<'a, State>,
     coil: SavedCoil,
     /// of the implicit method: next step, s, and what it took so far
     implicit: Option<(f64, SolverStatistics)>,
-    run: RunState,
+    run: Cow<'a, RunState>,
 }
 
 impl Simulation {
@@ -61,13 +62,13 @@ impl Simulation {
     pub fn to_bytes(&self) -> Result<Vec<u8>, RestoreError> {
         let saved = Saved {
             core: self.core_checksum(),
-            sys: self.sys.saved(),
+            sys: Cow::Borrowed(&self.sys.state),
             coil: self.coil.saved(),
             implicit: match &self.stepper {
                 Stepper::Implicit(method) => Some((method.next, method.statistics)),
                 Stepper::Explicit { .. } => None,
             },
-            run: self.run.clone(),
+            run: Cow::Borrowed(&self.run),
         };
         Ok(postcard::to_stdvec(&(VERSION, saved))?)
     }
@@ -94,7 +95,7 @@ impl Simulation {
     }
 
     fn take_over(&mut self, saved: Saved) -> Result<(), &'static str> {
-        self.sys.restore(saved.sys)?;
+        self.sys.restore(saved.sys.into_owned())?;
         let far = self.sys.far().ok_or("there is no core")?;
         self.coil.restore(saved.coil, far)?;
         if !saved.run.watch.fits(self.sys.state.rod.nodes()) {
@@ -108,14 +109,14 @@ impl Simulation {
             (Stepper::Explicit { .. }, None) => {}
             _ => return Err("the method is another one"),
         }
-        self.run = saved.run;
+        self.run = saved.run.into_owned();
         Ok(())
     }
 
     /// Tells cores apart whose scene is the same: the file of a mesh may have changed.
     fn core_checksum(&self) -> u32 {
         let mut sum = crc32fast::Hasher::new();
-        if let Some(surface) = self.sys.core_surface() {
+        if let Some(surface) = &self.sys.model.core {
             let mesh = surface.mesh();
             for x in mesh.vertices.iter().flatten() {
                 sum.update(&x.to_bits().to_le_bytes());

@@ -5,9 +5,9 @@ use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
 use super::run_state::{Instant, RunState};
 use super::{MotionProfile, SimError, Simulation};
-use crate::contact::{ContactLaw, Contacts, LineContact, damping_for_restitution};
+use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec};
-use crate::geometry::{Surface, Tube};
+use crate::geometry::Surface;
 use crate::integrate::{
     Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency, longest_step,
 };
@@ -19,7 +19,7 @@ use crate::measure::{Coil, CoilSpec};
 use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene};
 use crate::signals::{Inputs, Outputs};
-use crate::system::{ContactModel, FrozenWire, Spindle, Support, System};
+use crate::system::{Spindle, Support, System};
 use std::sync::Arc;
 
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
@@ -125,18 +125,18 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         mu_kinetic: scene.friction.kinetic,
         slip_speed: scene.friction.slip_speed,
     };
-    let nodes = sys.state.rod.nodes();
     if scene.solver.integrator == Integrator::Implicit {
         let shape = core_shape(&scene.core, &surface);
-        sys.contact = ContactModel::line(LineContact::new(shape, law, radius, nodes));
-        sys.frozen_wire = Some(FrozenWire {
-            surface: surface.clone(),
-            tube: Tube::new(0.5 * section.diameter),
-        });
+        sys.touch_along(LineModel::new(shape, law, radius));
     } else {
-        let (core, diameter) = (surface.clone(), section.diameter);
-        sys.contact = ContactModel::nodal(Contacts::new(core, law, radius, diameter, nodes));
+        sys.touch_at_nodes(NodalModel {
+            surface: surface.clone(),
+            law,
+            radius,
+            diameter: section.diameter,
+        });
     }
+    sys.model.core = Some(surface.clone());
     sys.model.twist = scene.solver.twist;
     let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
     let coil = Coil::new(CoilSpec {

@@ -1,7 +1,7 @@
 //! Energy in a system, and what its balance cannot explain.
 
-use super::{ContactModel, Mass, NodalContact, System};
-use crate::contact::{ContactPoint, LineContact};
+use super::{ContactModel, ContactState, Mass, System};
+use crate::contact::{ContactPoint, LineModel, LineState};
 use crate::rod::stored_energy;
 
 impl System {
@@ -19,30 +19,26 @@ impl System {
 
     /// The same with the energy of the `rod` known.
     fn stored_with(&self, rod: f64) -> f64 {
-        match &self.contact {
-            ContactModel::None => rod,
-            ContactModel::Line(line) => rod + self.stored_in_points(line),
-            ContactModel::Nodal(nodal) => {
-                let NodalContact {
-                    contacts,
-                    live,
-                    wire,
-                } = &**nodal;
+        match (&self.model.contact, &self.state.contact) {
+            (ContactModel::Line(model), ContactState::Line(line)) => {
+                rod + self.stored_in_points(model, line)
+            }
+            (ContactModel::Nodal(model), ContactState::Nodal(nodal)) => {
                 let touch: f64 = self
                     .free_nodes()
-                    .map(|i| contacts.stored(i, self.state.rod.voronoi(i)))
+                    .map(|i| nodal.stored(model, i, self.state.rod.voronoi(i)))
                     .sum();
-                let between = live
-                    .as_ref()
-                    .map_or(0.0, |l| l.stored(&contacts.law, &wire.length));
+                let live = nodal.live.as_ref();
+                let between = live.map_or(0.0, |l| l.stored(&model.law, &nodal.wire.length));
                 rod + touch + between
             }
+            _ => rod,
         }
     }
 
-    fn stored_in_points(&self, line: &LineContact) -> f64 {
+    fn stored_in_points(&self, model: &LineModel, line: &LineState) -> f64 {
         let rod = &self.state.rod;
-        let at = |point: ContactPoint| line.stored(point.number(), point.length(rod));
+        let at = |point: ContactPoint| line.stored(model, point.number(), point.length(rod));
         (0..rod.edges())
             .map(|j| {
                 let node = if j > 0 {
@@ -54,7 +50,7 @@ impl System {
             })
             .sum::<f64>()
             + line.self_contact.as_ref().map_or(0.0, |pairs| {
-                pairs.stored(&line.law, line.onset, |number| {
+                pairs.stored(&model.law, model.onset, |number| {
                     ContactPoint::of_number(number).length(rod)
                 })
             })

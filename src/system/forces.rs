@@ -1,7 +1,7 @@
 //! Forces of the paper's method, joint by joint and node by node, and loads besides contact.
 
-use super::{ContactModel, Loads, NodalContact, System};
-use crate::contact::Body;
+use super::{Loads, System, nodal_contact};
+use crate::contact::{Body, LiveConditions, NodalState};
 use crate::math::{Spin, V3, spin_velocity};
 use crate::rod::{ForceParts, internal_forces};
 
@@ -15,8 +15,8 @@ impl System {
         self.live_forces(spin, commit);
         self.state.torque_on_core = torque_from_contact + self.clamp_torque();
         if let Some(dt) = commit {
-            let nodal = self.contact.as_nodal();
-            let touch = nodal.map_or(Default::default(), |n| n.contacts.loss);
+            let nodal = self.state.contact.as_nodal();
+            let touch = nodal.map_or(Default::default(), |n| n.loss);
             let live = nodal.and_then(|n| n.live.as_ref());
             let between = live.map_or(Default::default(), |l| l.loss);
             self.state.balance.friction = touch.friction + between.friction;
@@ -109,10 +109,14 @@ impl System {
     /// Contact forces on the free nodes; returns the moment on the core about +y.
     fn contact_forces(&mut self, spin: Spin, commit: Option<f64>) -> f64 {
         let free = self.free_nodes();
-        let ContactModel::Nodal(nodal) = &mut self.contact else {
+        let Some(mut contact) = nodal_contact(
+            &self.model.contact,
+            &mut self.state.contact,
+            &self.state.frozen,
+            &mut self.scratch.contact,
+        ) else {
             return 0.0;
         };
-        let contacts = &mut nodal.contacts;
         let mut moment = 0.0;
         let mut arc = self.state.arc0 + self.state.rod.rest[..free.start].iter().sum::<f64>();
         let per_length = self.model.section.mass_per_length();
@@ -131,13 +135,13 @@ impl System {
                 mass: per_length * length,
                 arc,
             };
-            let f = contacts.force(i, &body, commit);
+            let f = contact.force(i, &body, commit);
             if f != V3::zeros() {
                 let f = spin.to_lab(f);
                 self.state.load.force[i] += f;
                 moment -= x.z * f.x - x.x * f.z;
                 if commit.is_some() {
-                    self.state.deepest = self.state.deepest.max(contacts.nodes[i].depth());
+                    self.state.deepest = self.state.deepest.max(contact.state.nodes[i].depth());
                 }
             }
             if i < self.state.rod.edges() {
@@ -149,14 +153,19 @@ impl System {
 
     /// Forces of live wire on live wire. The held nodes take part as partners.
     fn live_forces(&mut self, spin: Spin, commit: Option<f64>) {
-        let ContactModel::Nodal(nodal) = &mut self.contact else {
+        let Some(contact) = nodal_contact(
+            &self.model.contact,
+            &mut self.state.contact,
+            &self.state.frozen,
+            &mut self.scratch.contact,
+        ) else {
             return;
         };
-        let NodalContact {
-            contacts,
+        let NodalState {
             live: Some(live),
             wire,
-        } = &mut **nodal
+            ..
+        } = contact.state
         else {
             return;
         };
@@ -175,15 +184,15 @@ impl System {
             wire.arc.push(arc);
             arc += rod.rest.get(i).copied().unwrap_or(0.0);
         }
-        let per_length = self.model.section.mass_per_length();
-        live.evaluate(
-            wire,
-            &contacts.law,
-            self.model.section.diameter,
-            per_length,
+        let around = LiveConditions {
+            law: &contact.model.law,
+            diameter: self.model.section.diameter,
+            per_length: self.model.section.mass_per_length(),
             commit,
-        );
-        for (force, f) in self.state.load.force.iter_mut().zip(&live.force) {
+        };
+        let added = &mut contact.scratch.force;
+        live.evaluate(wire, &around, added);
+        for (force, f) in self.state.load.force.iter_mut().zip(added) {
             if *f != V3::zeros() {
                 *force += spin.to_lab(*f);
             }

@@ -1,6 +1,6 @@
 //! Forces of the production method: joints of the whole wire at once, contact along its smooth centreline.
 
-use super::{Past, System};
+use super::{Past, System, line_contact};
 use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
 use crate::math::{Spin, V3};
 use crate::rod::Rod;
@@ -41,7 +41,7 @@ impl System {
 
     /// Forces of the present state after it was set up or changed; nothing moves on but the frames.
     pub fn refresh(&mut self) {
-        if !self.contact.is_line() {
+        if !self.model.contact.is_line() {
             return self.evaluate(Some(0.0));
         }
         self.internal_at_once(true);
@@ -50,9 +50,26 @@ impl System {
         self.touch_forces(0.0, false);
     }
 
+    /// Begins an attempt at a step that may take the nodes to `guess` (core frame, m): lists the pairs of live wire.
+    pub(crate) fn begin_attempt(&mut self, guess: &[V3]) {
+        let Some(mut line) = line_contact(
+            &self.model.contact,
+            &mut self.state.contact,
+            &mut self.scratch.contact,
+        ) else {
+            return;
+        };
+        line.begin_attempt();
+        if let Some(pairs) = &mut line.state.self_contact {
+            let (from, rest) = (&self.state.past.q[0], &self.state.rod.rest);
+            let diameter = self.model.section.diameter;
+            pairs.list(&mut line.scratch.pairs, (from, guess), rest, diameter);
+        }
+    }
+
     /// Puts the present places of the contact points on record.
     fn place_points(&mut self) {
-        let Some(line) = self.contact.as_line_mut() else {
+        let Some(line) = self.state.contact.as_line_mut() else {
             return;
         };
         let q = &self.state.past.q[0];
@@ -97,7 +114,11 @@ impl System {
     fn touch_forces(&mut self, h: f64, commit: bool) {
         let spin = Spin::new(self.state.spindle.angle);
         let mut moment = 0.0;
-        if let Some(line) = self.contact.as_line_mut() {
+        if let Some(mut line) = line_contact(
+            &self.model.contact,
+            &mut self.state.contact,
+            &mut self.scratch.contact,
+        ) {
             let (rod, force) = (&self.state.rod, &mut self.state.load.force);
             let diameter = self.model.section.diameter;
             let mut arc = self.state.arc0;
@@ -127,9 +148,9 @@ impl System {
                 }
                 arc += rest;
             }
-            self.state.deepest = self.state.deepest.max(line.deepest);
+            self.state.deepest = self.state.deepest.max(line.state.deepest);
             moment += between_forces(
-                line,
+                &mut line,
                 rod,
                 force,
                 &self.state.past,
@@ -137,11 +158,11 @@ impl System {
                 (diameter, step),
                 commit,
             );
-            let pairs = line.self_contact.as_ref();
+            let pairs = line.state.self_contact.as_ref();
             let pairs = pairs.map(|pairs| pairs.loss).unwrap_or_default();
-            self.state.balance.friction = line.loss.friction + pairs.friction;
-            self.state.balance.damping = line.loss.damping + pairs.damping;
-            self.state.balance.numerical -= std::mem::take(&mut line.lifted);
+            self.state.balance.friction = line.state.loss.friction + pairs.friction;
+            self.state.balance.damping = line.state.loss.damping + pairs.damping;
+            self.state.balance.numerical -= std::mem::take(&mut line.scratch.lifted);
         }
         self.state.torque_on_core = moment + self.clamp_torque();
         self.hold_unbalanced();
@@ -153,7 +174,7 @@ impl System {
 /// Both sides of a friction force act on centrelines a diameter apart, for the couples that it puts on either wire are left
 /// out, as they are where the core rubs. It is seen and held in the core's frame, so the core takes the couple.
 fn between_forces(
-    line: &mut LineContact,
+    line: &mut LineContact<'_>,
     rod: &Rod,
     force: &mut [V3],
     past: &Past,
@@ -162,17 +183,17 @@ fn between_forces(
     commit: bool,
 ) -> f64 {
     let conditions = PairConditions {
-        law: &line.law,
-        onset: line.onset,
+        law: &line.model.law,
+        onset: line.model.onset,
         diameter,
         step,
         hold_limits: false,
     };
-    let Some(pairs) = &mut line.self_contact else {
+    let Some(pairs) = &mut line.state.self_contact else {
         return 0.0;
     };
     let mut moment = 0.0;
-    let mut q = std::mem::take(&mut pairs.scratch);
+    let mut q = std::mem::take(&mut line.scratch.pairs.wire);
     q.clear();
     q.extend(rod.x.iter().map(|x| spin.to_core(*x)));
     let last = if past.q[0].len() == q.len() {
@@ -181,20 +202,27 @@ fn between_forces(
         &q
     };
     let length = |number| ContactPoint::of_number(number).length(rod);
-    pairs.evaluate(&conditions, (&q, last), length, |coupling, response| {
-        let f = spin.to_lab(response.gradient);
-        for place in [&coupling.young, &coupling.old] {
-            for (node, weight) in place.iter() {
-                let (f, p) = (f * weight, rod.x[node]);
-                force[node] -= f;
-                moment += p.z * f.x - p.x * f.z;
+    let scratch = &mut line.scratch.pairs;
+    pairs.evaluate(
+        scratch,
+        &conditions,
+        (&q, last),
+        length,
+        |coupling, response| {
+            let f = spin.to_lab(response.gradient);
+            for place in [&coupling.young, &coupling.old] {
+                for (node, weight) in place.iter() {
+                    let (f, p) = (f * weight, rod.x[node]);
+                    force[node] -= f;
+                    moment += p.z * f.x - p.x * f.z;
+                }
             }
-        }
-    });
+        },
+    );
     if commit {
         pairs.commit((conditions.law, conditions.onset), (&q, last), length);
-        line.deepest = line.deepest.max(pairs.deepest());
+        line.state.deepest = line.state.deepest.max(pairs.deepest());
     }
-    pairs.scratch = q;
+    line.scratch.pairs.wire = q;
     moment
 }

@@ -2,7 +2,7 @@
 //!
 //! Lab frame; the core turns about +y. Nothing here knows scenes or files.
 
-mod contact_model;
+mod contact;
 mod drive;
 mod energy;
 mod energy_balance;
@@ -19,13 +19,14 @@ mod state;
 mod support;
 mod touchable;
 
-pub use contact_model::{ContactModel, FrozenWire, NodalContact};
+pub(crate) use contact::line_contact;
+pub use contact::{ContactModel, ContactState};
+use contact::{ContactScratch, nodal_contact};
 pub use drive::{Drive, NozzleDrive};
 pub use energy_balance::EnergyBalance;
 pub use frozen_history::{FrozenHistory, FrozenNodeRecord};
 pub use history::Past;
 pub use model::{Loads, Mass, Model};
-pub(crate) use saved::SavedSystem;
 use scratch::Scratch;
 pub use state::State;
 pub use support::{Spindle, Support};
@@ -44,16 +45,13 @@ pub struct System {
     pub model: Model,
     /// what a step changes
     pub state: State,
-    /// what the wire touches
-    pub contact: ContactModel,
-    /// core mesh and frozen wire where `contact` is along the wire
-    pub frozen_wire: Option<FrozenWire>,
     pub(crate) scratch: Scratch,
 }
 
 impl System {
     /// A rod with nothing acting on it.
     pub fn new(section: Section, rod: Rod) -> Self {
+        let radius = section.radius();
         Self {
             model: Model {
                 laws: Laws::new(&section),
@@ -62,10 +60,10 @@ impl System {
                 twist: Twist::Dynamic,
                 loads: Loads::default(),
                 feed: None,
+                contact: ContactModel::None,
+                core: None,
             },
-            state: State::of(rod),
-            contact: ContactModel::None,
-            frozen_wire: None,
+            state: State::of(rod, radius),
             scratch: Scratch::default(),
         }
     }
@@ -153,43 +151,6 @@ impl System {
         let out = V3::new(self.state.rod.x[n].x, 0.0, self.state.rod.x[n].z).normalize();
         let deflection = libm::acos((d.dot(&out) / d.norm()).clamp(-1.0, 1.0));
         libm::exp(spec.exit_friction * deflection)
-    }
-
-    /// Whether node `i` touches core or frozen wire.
-    pub fn touches(&self, i: usize) -> bool {
-        match &self.contact {
-            ContactModel::Line(line) => line.touches(i),
-            ContactModel::Nodal(nodal) => nodal.contacts.nodes[i].touches(),
-            ContactModel::None => false,
-        }
-    }
-
-    /// Depth of node `i` in what it touches, m.
-    pub fn depth(&self, i: usize) -> f64 {
-        match &self.contact {
-            ContactModel::Line(line) => line.depth(i),
-            ContactModel::Nodal(nodal) => nodal.contacts.nodes[i].depth(),
-            ContactModel::None => 0.0,
-        }
-    }
-
-    /// Signed distance of a point from the core, core frame, m; far away without a core.
-    pub fn distance_to_core(&self, p: V3) -> f64 {
-        match &self.contact {
-            ContactModel::Line(line) => line.shape.nearness(p).distance,
-            ContactModel::Nodal(nodal) => nodal.contacts.surface.nearest(p).distance,
-            ContactModel::None => f64::INFINITY,
-        }
-    }
-
-    /// Where the wire at node `i` lies: on its smooth centreline where contact is of the line kind.
-    pub fn centre(&self, i: usize) -> V3 {
-        let x = &self.state.rod.x;
-        if self.contact.is_line() && i > 0 && i + 1 < x.len() {
-            crate::contact::ContactPoint::Node(i).place(x)
-        } else {
-            x[i]
-        }
     }
 
     /// Lets the wire through the nozzle for `dt`; call after the nodes have moved.

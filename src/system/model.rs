@@ -1,8 +1,11 @@
-//! What does not change in a run: wire, laws, loads, feed.
+//! What does not change in a run: wire, laws, loads, feed, core.
 
+use super::ContactModel;
 use crate::feed::FeedSpec;
+use crate::geometry::Surface;
 use crate::math::V3;
 use crate::rod::{Laws, Section, Twist};
+use std::sync::Arc;
 
 /// Loads besides contact.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -43,4 +46,8 @@ pub struct Model {
     pub loads: Loads,
     /// feed at the last node, if there is one
     pub feed: Option<FeedSpec>,
+    /// what the wire touches and how
+    pub contact: ContactModel,
+    /// the core's mesh, if there is a core that has one
+    pub core: Option<Arc<Surface>>,
 }

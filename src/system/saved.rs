@@ -1,106 +1,45 @@
-//! A system as a saved state holds it: its [`State`] and what contact remembers.
+//! A system as a saved state holds it: its [`State`] and nothing else.
 
-use super::{ContactModel, State, System};
-use crate::contact::{LiveContact, SavedContacts, SavedLine, Wire, restore_tube};
-use crate::geometry::FrozenNode;
-use serde::{Deserialize, Serialize};
-
-/// What a saved state holds of a [`System`].
-#[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct SavedSystem {
-    state: State,
-    contact: SavedContact,
-}
-
-/// What a saved state holds of contact and frozen wire.
-#[derive(Debug, Serialize, Deserialize)]
-struct SavedContact {
-    /// frozen wire where contact itself keeps none
-    frozen: Option<Vec<FrozenNode>>,
-    model: SavedModel,
-}
-
-#[derive(Debug, Serialize, Deserialize)]
-enum SavedModel {
-    None,
-    Nodal {
-        contacts: SavedContacts,
-        live: Option<LiveContact>,
-        wire: Wire,
-    },
-    Line(SavedLine),
-}
+use super::{ContactModel, ContactState, State, System};
 
 impl System {
-    /// What a saved state has to hold.
-    pub(crate) fn saved(&self) -> SavedSystem {
-        SavedSystem {
-            state: self.state.clone(),
-            contact: self.saved_contact(),
-        }
-    }
-
     /// Takes a saved state over in a fresh system of the same scene.
     ///
     /// Fails with what is impossible about it; the system is then useless.
-    pub(crate) fn restore(&mut self, saved: SavedSystem) -> Result<(), &'static str> {
-        saved.state.check()?;
-        if self.model.feed.is_some() != saved.state.feed.is_some() {
+    pub(crate) fn restore(&mut self, state: State) -> Result<(), &'static str> {
+        state.check()?;
+        if self.model.feed.is_some() != state.feed.is_some() {
             return Err("a feed is there in one of scene and state only");
         }
-        self.restore_contact(saved.contact, saved.state.rod.nodes())?;
-        self.state = saved.state;
-        Ok(())
-    }
-
-    fn saved_contact(&self) -> SavedContact {
-        SavedContact {
-            frozen: self.frozen_wire.as_ref().map(|f| f.tube.nodes().collect()),
-            model: match &self.contact {
-                ContactModel::None => SavedModel::None,
-                ContactModel::Nodal(nodal) => SavedModel::Nodal {
-                    contacts: nodal.contacts.saved(),
-                    live: nodal.live.clone(),
-                    wire: nodal.wire.clone(),
-                },
-                ContactModel::Line(line) => SavedModel::Line(line.saved()),
-            },
-        }
-    }
-
-    /// Takes over what was saved of contact of a wire with so many live nodes. Fails with what is impossible about it.
-    fn restore_contact(&mut self, saved: SavedContact, nodes: usize) -> Result<(), &'static str> {
         let far = self.far().unwrap_or(f64::INFINITY);
-        match (&mut self.frozen_wire, saved.frozen) {
-            (Some(wire), Some(frozen)) => {
-                wire.tube = restore_tube(frozen, wire.tube.radius(), far)?;
-            }
-            (None, None) => {}
-            _ => return Err("frozen wire is there in one of scene and state only"),
+        let (nodes, frozen) = (state.rod.nodes(), &state.frozen);
+        if frozen.radius() != self.state.frozen.radius() || !frozen.lies_within(far) {
+            return Err("frozen wire is not one");
         }
-        match (&mut self.contact, saved.model) {
-            (ContactModel::None, SavedModel::None) => {}
-            (
-                ContactModel::Nodal(nodal),
-                SavedModel::Nodal {
-                    contacts,
-                    live,
-                    wire,
-                },
-            ) => {
-                let fits = live.as_ref().is_none_or(|l| l.fits(nodes));
-                if !fits || ![0, nodes].contains(&wire.length.len()) {
-                    return Err("a pair is beyond the live wire");
-                }
-                nodal.contacts.restore(contacts, nodes)?;
-                (nodal.live, nodal.wire) = (live, wire);
+        match (&self.model.contact, &state.contact) {
+            (ContactModel::None, ContactState::None) => {}
+            (ContactModel::Nodal(model), ContactState::Nodal(nodal)) => {
+                nodal.check(model, nodes, frozen.len())?;
             }
-            (ContactModel::Line(line), SavedModel::Line(saved)) => {
-                let tube = self.frozen_wire.as_ref().map(|f| &f.tube);
-                let wire = tube.into_iter().flat_map(|tube| tube.nodes());
-                line.restore(saved, wire.map(|node| (node.point, node.arc)), nodes, far)?;
+            (ContactModel::Line(_), ContactState::Line(line)) => {
+                let last = frozen
+                    .points
+                    .last()
+                    .copied()
+                    .zip(frozen.arc.last().copied());
+                line.check(nodes, frozen.len(), last, far)?;
             }
             _ => return Err("contact is of another kind in scene and state"),
+        }
+        self.state = state;
+        let wire: Vec<_> = self
+            .state
+            .frozen
+            .nodes()
+            .map(|n| (n.point, n.arc))
+            .collect();
+        if let Some(mut line) = self.line_contact() {
+            line.relay(wire.into_iter());
         }
         Ok(())
     }

@@ -1,14 +1,15 @@
-//! The least that restarts a run to the bit, together with what contact remembers: what a saved state holds.
+//! The least that restarts a run to the bit: what a saved state holds.
 //!
 //! What influences the rounding of a later step belongs to it, be it a cache: forces of the last
-//! evaluation, history of the step formula. Work arrays do not.
+//! evaluation, history of the step formula. Work arrays do not, nor does what follows from the state.
 
-use super::{EnergyBalance, FrozenHistory, Past, Spindle, Support};
+use super::{ContactState, EnergyBalance, FrozenHistory, Past, Spindle, Support};
 use crate::feed::Feed;
+use crate::geometry::Tube;
 use crate::rod::{Load, Rod};
 use serde::{Deserialize, Serialize};
 
-/// State of a [`super::System`] but for that of contact.
+/// State of a [`super::System`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct State {
     /// the live wire
@@ -19,7 +20,11 @@ pub struct State {
     pub spindle: Spindle,
     /// accepted instants before this one, for the implicit method
     pub past: Past,
-    /// frozen wire of the implicit method, oldest node first
+    /// what contact remembers
+    pub contact: ContactState,
+    /// frozen wire as fixed geometry, oldest node first
+    pub frozen: Tube,
+    /// frozen wire of the implicit method, as it is kept to let it move again
     pub(crate) frozen_history: FrozenHistory,
     /// feed at the last node, if there is one
     pub feed: Option<Feed>,
@@ -50,14 +55,16 @@ pub struct State {
 }
 
 impl State {
-    /// The state of a wire at rest on which nothing acts.
-    pub(super) fn of(rod: Rod) -> Self {
+    /// The state of a wire of this `radius` (m) at rest on which nothing acts.
+    pub(super) fn of(rod: Rod, radius: f64) -> Self {
         let roll = vec![0.0; rod.edges()];
         Self {
             rod,
             support: [Support::free(), Support::free()],
             spindle: Spindle::default(),
             past: Past::default(),
+            contact: ContactState::None,
+            frozen: Tube::new(radius),
             frozen_history: FrozenHistory::default(),
             feed: None,
             set_tension: 0.0,

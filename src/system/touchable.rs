@@ -1,68 +1,115 @@
 //! What the wire of a system can touch: core and frozen wire.
 
-use super::{ContactModel, System};
-use crate::contact::far;
-use crate::geometry::{FrozenNode, Surface, Tube};
-use std::sync::Arc;
+use super::{ContactModel, ContactScratch, ContactState, System, line_contact};
+use crate::contact::{
+    ContactPoint, LineContact, LineModel, LineScratch, LineState, NodalModel, NodalScratch,
+    NodalState, far,
+};
+use crate::geometry::FrozenNode;
+use crate::math::V3;
 
 impl System {
-    /// The core's mesh, if there is a core that has one.
-    pub fn core_surface(&self) -> Option<&Arc<Surface>> {
-        match (&self.contact, &self.frozen_wire) {
-            (ContactModel::Nodal(nodal), _) => Some(&nodal.contacts.surface),
-            (_, frozen) => frozen.as_ref().map(|f| &f.surface),
-        }
+    /// Lets the wire touch along its centreline from now on.
+    pub fn touch_along(&mut self, model: LineModel) {
+        let nodes = self.state.rod.nodes();
+        self.state.contact = ContactState::Line(Box::new(LineState::new(nodes)));
+        self.scratch.contact = ContactScratch::Line(Box::new(LineScratch::new(model.radius)));
+        self.model.contact = ContactModel::Line(model);
     }
 
-    /// Frozen wire as nodes on the core, if it is kept.
-    pub fn frozen_tube(&self) -> Option<&Tube> {
-        match (&self.contact, &self.frozen_wire) {
-            (ContactModel::Nodal(nodal), _) => Some(&nodal.contacts.tube),
-            (_, frozen) => frozen.as_ref().map(|f| &f.tube),
+    /// Lets the wire touch at its nodes from now on.
+    pub fn touch_at_nodes(&mut self, model: NodalModel) {
+        let nodes = self.state.rod.nodes();
+        self.state.contact = ContactState::Nodal(Box::new(NodalState::new(nodes)));
+        self.scratch.contact = ContactScratch::Nodal(NodalScratch::default());
+        self.model.contact = ContactModel::Nodal(model);
+    }
+
+    /// Contact along the wire as one, if it is of that kind.
+    pub fn line_contact(&mut self) -> Option<LineContact<'_>> {
+        line_contact(
+            &self.model.contact,
+            &mut self.state.contact,
+            &mut self.scratch.contact,
+        )
+    }
+
+    /// What contact along the wire works with, if it is of that kind.
+    pub fn line_scratch(&self) -> Option<&LineScratch> {
+        match &self.scratch.contact {
+            ContactScratch::Line(scratch) => Some(scratch),
+            ContactScratch::None | ContactScratch::Nodal(_) => None,
         }
     }
 
     /// A distance from the origin far outside of what wire can lie on, m, if there is a core with a mesh.
     pub(crate) fn far(&self) -> Option<f64> {
-        self.core_surface()
-            .map(|core| far(core, self.model.section.radius()))
-    }
-
-    fn frozen_tube_mut(&mut self) -> Option<&mut Tube> {
-        match (&mut self.contact, &mut self.frozen_wire) {
-            (ContactModel::Nodal(nodal), _) => Some(&mut nodal.contacts.tube),
-            (_, frozen) => frozen.as_mut().map(|f| &mut f.tube),
-        }
+        let core = self.model.core.as_deref();
+        core.map(|core| far(core, self.model.section.radius()))
     }
 
     /// Adds a node to what wire can touch as frozen wire.
     pub(crate) fn lay_frozen(&mut self, node: FrozenNode) {
-        if let Some(line) = self.contact.as_line_mut() {
+        if let Some(mut line) = self.line_contact() {
             line.lay(node.point, node.arc);
         }
-        if let Some(tube) = self.frozen_tube_mut() {
-            tube.push(node);
-        }
+        self.state.frozen.push(node);
     }
 
     /// Takes the last `count` frozen nodes away from what wire can touch.
     pub(crate) fn take_up_frozen(&mut self, count: usize) {
         for _ in 0..count {
-            if let Some(line) = self.contact.as_line_mut() {
+            if let ContactScratch::Line(line) = &mut self.scratch.contact {
                 line.tube.pop();
             }
-            if let Some(tube) = self.frozen_tube_mut() {
-                tube.pop();
-            }
+            self.state.frozen.pop();
         }
     }
 
     /// The last `count` nodes have just been laid: contact looks up again what lies round them.
     pub(crate) fn notice_laid(&mut self, count: usize) {
-        match &mut self.contact {
-            ContactModel::None => {}
-            ContactModel::Nodal(nodal) => nodal.contacts.forget_surroundings(),
-            ContactModel::Line(line) => line.forget_near(line.tube.len() - count),
+        if let Some(nodal) = self.state.contact.as_nodal_mut() {
+            nodal.forget_surroundings();
+        }
+        if let Some(mut line) = self.line_contact() {
+            line.forget_near(line.scratch.tube.len() - count);
+        }
+    }
+
+    /// Whether node `i` touches core or frozen wire.
+    pub fn touches(&self, i: usize) -> bool {
+        match &self.state.contact {
+            ContactState::Line(line) => line.touches(i),
+            ContactState::Nodal(nodal) => nodal.nodes[i].touches(),
+            ContactState::None => false,
+        }
+    }
+
+    /// Depth of node `i` in what it touches, m.
+    pub fn depth(&self, i: usize) -> f64 {
+        match &self.state.contact {
+            ContactState::Line(line) => line.depth(i),
+            ContactState::Nodal(nodal) => nodal.nodes[i].depth(),
+            ContactState::None => 0.0,
+        }
+    }
+
+    /// Signed distance of a point from the core, core frame, m; far away without a core.
+    pub fn distance_to_core(&self, p: V3) -> f64 {
+        match &self.model.contact {
+            ContactModel::Line(line) => line.shape.nearness(p).distance,
+            ContactModel::Nodal(nodal) => nodal.surface.nearest(p).distance,
+            ContactModel::None => f64::INFINITY,
+        }
+    }
+
+    /// Where the wire at node `i` lies: on its smooth centreline where contact is along the wire.
+    pub fn centre(&self, i: usize) -> V3 {
+        let x = &self.state.rod.x;
+        if self.model.contact.is_line() && i > 0 && i + 1 < x.len() {
+            ContactPoint::Node(i).place(x)
+        } else {
+            x[i]
         }
     }
 }

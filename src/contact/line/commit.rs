@@ -1,6 +1,9 @@
 //! An iterate becomes accepted: friction limits, anchors, losses; and the energy that touches store.
 
 use super::line_contact::LineContact;
+use super::model::LineModel;
+use super::point::PointState;
+use super::state::LineState;
 use crate::contact::friction::across;
 use crate::contact::law::{NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
 use crate::math::V3;
@@ -8,35 +11,21 @@ use crate::math::V3;
 /// Stretch of a bristle below which it is rounding of places, m.
 const ROUNDING: f64 = 1e-15;
 
-impl LineContact {
+impl LineContact<'_> {
     /// Begins an attempt at a step.
     pub fn begin_attempt(&mut self) {
-        self.undo.clear();
+        self.scratch.undo.clear();
     }
 
     /// Takes back all that a failed attempt at a step changed.
     pub fn undo_attempt(&mut self) {
-        for (k, point) in self.undo.drain(..).rev() {
-            *self.points[k as usize] = point;
+        for (k, point) in self.scratch.undo.drain(..).rev() {
+            *self.state.points[k as usize] = point;
         }
-        for p in &mut self.points {
+        for p in &mut self.state.points {
             if p.has_surroundings() {
                 for t in p.touches_mut() {
                     t.limit.lagged = t.limit.accepted;
-                }
-            }
-        }
-    }
-
-    /// Makes the friction limits of the iterate in hand the lagged ones; call when an iterate is accepted.
-    pub fn renew_limits(&mut self) {
-        if let Some(pairs) = &mut self.self_contact {
-            pairs.renew_limits();
-        }
-        for p in &mut self.points {
-            if p.has_surroundings() {
-                for t in p.touches_mut() {
-                    t.limit.lagged = t.limit.current;
                 }
             }
         }
@@ -53,18 +42,19 @@ impl LineContact {
         let force = self
             .push(k, p, length, own, step)
             .map_or(V3::zeros(), |s| -s.gradient);
-        let k_t = self.law.stiffness * length * TANGENTIAL_SHARE;
-        let damping = self.damping_over(step);
-        let point = &mut self.points[k];
+        let k_t = self.model.law.stiffness * length * TANGENTIAL_SHARE;
+        let damping = self.model.damping_over(step);
+        let point = &mut self.state.points[k];
         let last = point.last;
-        let stiffness = self.law.stiffness * length;
+        let stiffness = self.model.law.stiffness * length;
         for t in point.touches_mut() {
             t.limit.accept();
             let out = (p - last).dot(&t.normal);
             if t.depth <= 0.0 {
                 if t.anchored && out >= t.depth_before {
-                    let before = NormalLaw::at(t.depth_before, self.onset);
-                    self.lifted += stiffness * work_beyond_stored(before.force, before.energy, out);
+                    let before = NormalLaw::at(t.depth_before, self.model.onset);
+                    self.scratch.lifted +=
+                        stiffness * work_beyond_stored(before.force, before.energy, out);
                 }
                 t.anchored = false;
                 t.depth_before = 0.0;
@@ -72,9 +62,10 @@ impl LineContact {
             }
             let lands = !t.anchored && -out >= t.depth;
             if lands || damping > 0.0 {
-                let spring = NormalLaw::at(t.depth, self.onset);
-                let all = NormalLaw::damped(t.depth, self.onset, damping, t.depth_before).force;
-                self.loss.damping += stiffness
+                let spring = NormalLaw::at(t.depth, self.model.onset);
+                let all =
+                    NormalLaw::damped(t.depth, self.model.onset, damping, t.depth_before).force;
+                self.state.loss.damping += stiffness
                     * if lands {
                         work_beyond_stored(all, spring.energy, -out)
                     } else {
@@ -82,7 +73,7 @@ impl LineContact {
                     };
             }
             t.depth_before = t.depth;
-            self.deepest = self.deepest.max(t.depth);
+            self.state.deepest = self.state.deepest.max(t.depth);
             let (b, _) = t.bristle(p, last, k_t, 0.0);
             let (damped, k_damped) = t.bristle(p, last, k_t, damping);
             let (size, pull) = (b.norm(), k_damped * damped.norm());
@@ -94,33 +85,41 @@ impl LineContact {
                 let kept = (t.limit.current / k_t).min(size);
                 let dir = damped * (k_damped / pull);
                 t.anchor = p - dir * kept;
-                self.loss.friction += share * t.limit.current * (size - kept);
+                self.state.loss.friction += share * t.limit.current * (size - kept);
             }
         }
         point.last = p;
         force
     }
+}
 
+impl LineState {
     /// Normal force of each touch of point `k` at the last evaluation, which stands for `length` (m), core frame, N: the
     /// core's first, then those of frozen wire.
-    pub fn normal_forces(&self, k: usize, length: f64) -> impl Iterator<Item = V3> + '_ {
-        let k_n = self.law.stiffness * length;
+    pub fn normal_forces<'a>(
+        &'a self,
+        model: &LineModel,
+        k: usize,
+        length: f64,
+    ) -> impl Iterator<Item = V3> + 'a {
+        let onset = model.onset;
+        let k_n = model.law.stiffness * length;
         self.points[k]
             .touches()
             .iter()
             .filter(|t| t.depth > 0.0)
-            .map(move |t| t.normal * (k_n * NormalLaw::at(t.depth, self.onset).force))
+            .map(move |t| t.normal * (k_n * NormalLaw::at(t.depth, onset).force))
     }
 
     /// The contact point whose bristle pulls hardest relative to what static friction can hold there, and the ratio of
     /// both; both scale with the length of wire that the point stands for.
-    pub fn friction_over_limit(&self) -> (usize, f64) {
+    pub fn friction_over_limit(&self, model: &LineModel) -> (usize, f64) {
         let mut worst = (0, 0.0);
         for (k, point) in self.points.iter().enumerate() {
             for t in point.touches() {
                 if t.depth > 0.0 && t.anchored {
                     let b = across(point.last - t.anchor, &t.normal);
-                    let limit = self.law.mu_static * NormalLaw::at(t.depth, self.onset).force;
+                    let limit = model.law.mu_static * NormalLaw::at(t.depth, model.onset).force;
                     let pull = TANGENTIAL_SHARE * b.norm();
                     if pull > limit * worst.1 && b.norm() > ROUNDING {
                         worst = (k, pull / limit);
@@ -130,22 +129,21 @@ impl LineContact {
         }
         worst
     }
+}
 
-    /// Energy stored in the touches of point `k`, which stands for `length` (m), J. Touches that a change of the wire has
-    /// just brought about count as well; no bristle holds them yet.
-    pub fn stored(&self, k: usize, length: f64) -> f64 {
-        let k_n = self.law.stiffness * length;
-        let point = &self.points[k];
-        point
-            .touches()
+impl PointState {
+    /// Energy stored in the touches of the point, which stands for `length` (m), J.
+    pub(super) fn stored(&self, model: &LineModel, length: f64) -> f64 {
+        let k_n = model.law.stiffness * length;
+        self.touches()
             .iter()
             .filter(|t| t.depth > 0.0)
             .map(|t| {
-                let pressed = k_n * NormalLaw::at(t.depth, self.onset).energy;
+                let pressed = k_n * NormalLaw::at(t.depth, model.onset).energy;
                 if !t.anchored {
                     return pressed;
                 }
-                let b = across(point.last - t.anchor, &t.normal);
+                let b = across(self.last - t.anchor, &t.normal);
                 pressed + 0.5 * k_n * TANGENTIAL_SHARE * b.norm_squared()
             })
             .sum()

@@ -6,25 +6,29 @@
 //! limits both forces derive from one potential. The limits are renewed with every iterate: the converged
 //! step has the limit of its own normal force.
 //!
-//! * [`LineContact`]: state, and changes of the wire
+//! * [`LineModel`], [`LineState`], [`LineScratch`]: what the scene gives, what is remembered, what is worked with
+//! * [`LineContact`]: the three as one, while they are worked on
 //! * `search`: the surroundings of a point
 //! * `response`: potential, gradient and Hessian at an iterate
 //! * `prediction`: the same where an update leads
 //! * `commit`: an iterate becomes the accepted instant; what was lost and is stored
-//! * `saved`: the state in bytes
 
 mod commit;
 mod line_contact;
+mod model;
 mod near;
 mod point;
 mod prediction;
 mod record;
 mod response;
-mod saved;
 mod saved_touches;
+mod scratch;
 mod search;
+mod state;
 mod touch;
 
 pub use line_contact::LineContact;
+pub use model::LineModel;
 pub use record::ContactRecord;
-pub(crate) use saved::SavedLine;
+pub use scratch::LineScratch;
+pub use state::LineState;

@@ -7,7 +7,7 @@ use crate::math::{Block, V3, block_difference, block_times};
 /// Change of an update that calls for no new look, as a share of the prediction tolerance. Chosen.
 const SAME_UPDATE: f64 = 0.2;
 
-impl LineContact {
+impl LineContact<'_> {
     /// Evaluates the response where the update `move_of(point)` (m) leads every point, and replaces the models that promise
     /// something else by the tangents there; returns whether there were any.
     ///
@@ -23,9 +23,9 @@ impl LineContact {
         mut correct: impl FnMut(usize, &Block, &V3),
     ) -> bool {
         let mut any = false;
-        let tolerance = prediction_tolerance(2.0 * self.radius);
+        let tolerance = prediction_tolerance(2.0 * self.model.radius);
         let same = SAME_UPDATE * tolerance;
-        let mut near = std::mem::take(&mut self.near);
+        let mut near = std::mem::take(&mut self.scratch.near);
         for n in &mut near {
             let way = move_of(n.point as usize);
             let far = way.norm_squared();
@@ -41,7 +41,7 @@ impl LineContact {
             n.looked_along = Some(way);
             let there = self.respond_ahead(n.point as usize, n.place + way, n.length, step);
             let off = there.gradient - n.gradient - block_times(&n.hessian, &way);
-            if off.amax() <= tolerance * self.law.stiffness * n.length {
+            if off.amax() <= tolerance * self.model.law.stiffness * n.length {
                 continue;
             }
             any = true;
@@ -53,7 +53,7 @@ impl LineContact {
             );
             (n.gradient, n.hessian, n.room) = (gradient, there.hessian, 0.0);
         }
-        self.near = near;
+        self.scratch.near = near;
         any
     }
 }

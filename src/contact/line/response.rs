@@ -6,16 +6,10 @@ use super::touch::{Conditions, TouchState};
 use crate::contact::friction::{ContactResponse, LimitFrom};
 use crate::math::{Block, V3};
 
-impl LineContact {
+impl LineContact<'_> {
     /// Begins an evaluation of all points.
     pub fn begin(&mut self) {
-        self.near.clear();
-    }
-
-    /// The dashpot over stiffness and step.
-    #[inline(always)]
-    pub(super) fn damping_over(&self, step: f64) -> f64 {
-        self.damping / (self.law.stiffness * step)
+        self.scratch.near.clear();
     }
 
     /// Potential, gradient and Hessian of point `k` at `p` (m), which stands for `length` (m) of wire; `None` where
@@ -33,14 +27,14 @@ impl LineContact {
         step: f64,
     ) -> Option<ContactResponse> {
         self.look_up_if_moved(k, p, own);
-        let point = &self.points[k];
+        let point = &self.state.points[k];
         if !point.has_surroundings() {
             return None;
         }
         if point.clear_within > 0.0 {
             let way = (p - point.clear_at).norm();
             if way < point.clear_within {
-                self.near.push(NearPoint {
+                self.scratch.near.push(NearPoint {
                     point: k as u32,
                     length,
                     place: p,
@@ -57,27 +51,22 @@ impl LineContact {
 
     /// [`Self::push`] for a point that may touch.
     fn respond(&mut self, k: usize, p: V3, length: f64, step: f64) -> Option<ContactResponse> {
-        let damping = self.damping_over(step);
+        let damping = self.model.damping_over(step);
         let Self {
-            points,
-            tube,
-            shape,
-            law,
-            onset,
-            radius,
-            hold_limits,
-            near,
-            ..
+            model,
+            state,
+            scratch,
         } = self;
-        let point = &mut points[k];
+        let (law, radius, tube) = (&model.law, model.radius, &scratch.tube);
+        let point = &mut state.points[k];
         let around = Conditions {
             law,
-            onset: *onset,
+            onset: model.onset,
             stiffness: law.stiffness * length,
             damping,
             step,
             last: point.last,
-            limit_from: if *hold_limits {
+            limit_from: if state.hold_limits {
                 LimitFrom::Lagged
             } else {
                 LimitFrom::NormalForce
@@ -91,8 +80,8 @@ impl LineContact {
                 if !point.core_near {
                     continue;
                 }
-                let n = shape.nearness(p);
-                (*radius - n.distance, n.normal)
+                let n = model.shape.nearness(p);
+                (radius - n.distance, n.normal)
             } else {
                 let foot = tube.foot(p, point.touch[slot].start);
                 point.touch[slot].start = foot.segment;
@@ -101,7 +90,7 @@ impl LineContact {
                     (touch.depth, touch.limit.current) = (0.0, 0.0);
                     continue;
                 }
-                (foot.depth(*radius + tube.radius()), foot.normal)
+                (foot.depth(radius + tube.radius()), foot.normal)
             };
             let touch = &mut point.touch[slot];
             touch.depth = depth;
@@ -115,7 +104,7 @@ impl LineContact {
             (touch.limit.current, touch.slide) = touch.respond(p, &around, &mut sum);
         }
         (point.clear_at, point.clear_within) = (p, if any { 0.0 } else { gap });
-        near.push(NearPoint {
+        scratch.near.push(NearPoint {
             point: k as u32,
             length,
             place: p,
@@ -136,12 +125,12 @@ impl LineContact {
         length: f64,
         step: f64,
     ) -> ContactResponse {
-        let damping = self.damping_over(step);
-        let point = &mut self.points[k];
+        let damping = self.model.damping_over(step);
+        let point = &mut self.state.points[k];
         let around = Conditions {
-            law: &self.law,
-            onset: self.onset,
-            stiffness: self.law.stiffness * length,
+            law: &self.model.law,
+            onset: self.model.onset,
+            stiffness: self.model.law.stiffness * length,
             damping,
             step,
             last: point.last,
@@ -157,11 +146,11 @@ impl LineContact {
                 if !point.core_near {
                     continue;
                 }
-                let n = self.shape.nearness(p);
-                (self.radius - n.distance, n.normal)
+                let n = self.model.shape.nearness(p);
+                (self.model.radius - n.distance, n.normal)
             } else {
-                let foot = self.tube.foot(p, touch.start);
-                let wire = self.radius + self.tube.radius();
+                let foot = self.scratch.tube.foot(p, touch.start);
+                let wire = self.model.radius + self.scratch.tube.radius();
                 (foot.depth(wire), foot.normal)
             };
             if depth > 0.0 {

@@ -12,22 +12,15 @@ const SKIN: f64 = 0.15;
 /// Passages whose segments are nearer along the wire than this are one passage at successive searches.
 const SAME_PASSAGE: u32 = 6;
 
-impl LineContact {
-    /// Makes every point look its surroundings up again.
-    pub fn forget_surroundings(&mut self) {
-        for p in &mut self.points {
-            p.reach = -1.0;
-        }
-    }
-
+impl LineContact<'_> {
     /// Makes points near frozen wire from node `from` on look their surroundings up again: that wire has just
     /// been laid.
     pub fn forget_near(&mut self, from: usize) {
-        let skin = SKIN * 2.0 * self.tube.radius();
-        let wire = self.radius + self.tube.radius();
+        let skin = SKIN * 2.0 * self.scratch.tube.radius();
+        let wire = self.model.radius + self.scratch.tube.radius();
         // the share of the curve that belongs to the node before has changed as well
-        let laid = &self.tube.controls()[from.saturating_sub(2)..];
-        for p in &mut self.points {
+        let laid = &self.scratch.tube.controls()[from.saturating_sub(2)..];
+        for p in &mut self.state.points {
             let reach = wire + p.reach.max(skin);
             let near = |ends: &[V3]| {
                 let (middle, length) = ((ends[0] + ends[1]) * 0.5, (ends[1] - ends[0]).norm());
@@ -42,7 +35,7 @@ impl LineContact {
     /// Looks up the surroundings of point `k` at `p` if they may have changed since they were.
     #[inline(always)]
     pub(super) fn look_up_if_moved(&mut self, k: usize, p: V3, own: f64) {
-        let point = &self.points[k];
+        let point = &self.state.points[k];
         if point.reach < 0.0 || (p - point.centre).norm_squared() >= point.reach * point.reach {
             self.look_up(k, p, own);
         }
@@ -51,39 +44,41 @@ impl LineContact {
     /// Looks up the surroundings of point `k` at `p`, and how far they hold. Frozen wire beyond the unstretched length
     /// `own` from the clamp belongs to the point's own neighbourhood.
     fn look_up(&mut self, k: usize, p: V3, own: f64) {
-        let skin = SKIN * 2.0 * self.tube.radius();
-        let point = &mut self.points[k];
-        self.undo.push((k as u32, **point));
+        let skin = SKIN * 2.0 * self.scratch.tube.radius();
+        let point = &mut self.state.points[k];
+        self.scratch.undo.push((k as u32, **point));
         point.centre = p;
         point.clear_within = 0.0;
-        let core = self.shape.lower_bound(p);
-        let core = if core > skin + self.radius {
+        let core = self.model.shape.lower_bound(p);
+        let core = if core > skin + self.model.radius {
             core
         } else {
-            self.shape.nearness(p).distance
+            self.model.shape.nearness(p).distance
         };
-        let core_room = core - self.radius;
+        let core_room = core - self.model.radius;
         point.core_near = core_room < skin;
         if !point.core_near {
             point.touch[0] = TouchState::UNUSED;
         }
-        let wire = self.radius + self.tube.radius();
+        let wire = self.model.radius + self.scratch.tube.radius();
         // above all frozen wire there is nothing to search for; elsewhere the search ball must stay small
-        let above = core_room - self.height;
+        let above = core_room - self.state.height;
         let reach = if above > skin {
             above
         } else {
             (core_room + skin).clamp(skin, 4.0 * skin)
         };
-        self.found.clear();
-        if self.tube.len() > 1 && above <= skin {
-            self.tube.gather(p, wire + reach, own, &mut self.found);
+        self.scratch.found.clear();
+        if self.scratch.tube.len() > 1 && above <= skin {
+            self.scratch
+                .tube
+                .gather(p, wire + reach, own, &mut self.scratch.found);
         }
         let mut next = [TouchState::UNUSED; PASSAGES];
         let mut count = 0;
         let mut nearest = f64::INFINITY;
-        for &start in &self.found {
-            let foot = self.tube.foot(p, start);
+        for &start in &self.scratch.found {
+            let foot = self.scratch.tube.foot(p, start);
             nearest = nearest.min(-foot.depth(wire));
             if -foot.depth(wire) > skin || count == PASSAGES {
                 continue;

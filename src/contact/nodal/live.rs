@@ -38,15 +38,25 @@ pub struct Wire {
     pub arc: Vec<f64>,
 }
 
+/// What the forces of the pairs depend on besides the wire.
+#[derive(Clone, Copy, Debug)]
+pub struct LiveConditions<'a> {
+    /// the law
+    pub law: &'a ContactLaw,
+    /// wire diameter, m
+    pub diameter: f64,
+    /// mass of the wire, kg/m
+    pub per_length: f64,
+    /// length of the step that this evaluation ends, s
+    pub commit: Option<f64>,
+}
+
 /// Pairs of live wire with their friction state.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct LiveContact {
     pairs: Vec<Pair>,
     /// places of the nodes when the pairs were listed, m; empty: they have to be listed
     seen: Vec<V3>,
-    /// forces per node, core frame, N
-    #[serde(skip)]
-    pub force: Vec<V3>,
     /// deepest penetration at the last committed evaluation, m
     pub deepest: f64,
     /// friction and damping losses so far, J
@@ -123,16 +133,9 @@ impl LiveContact {
         self.seen.clone_from(x);
     }
 
-    /// Computes [`Self::force`] on a wire of `per_length` kg/m. With `commit = Some(dt)` bristles move on and losses grow
-    /// by those of the step `dt` (s).
-    pub fn evaluate(
-        &mut self,
-        wire: &Wire,
-        law: &ContactLaw,
-        diameter: f64,
-        per_length: f64,
-        commit: Option<f64>,
-    ) {
+    /// Computes the `force` on each node of the wire, core frame, N. With a `commit` bristles move on and losses grow.
+    pub fn evaluate(&mut self, wire: &Wire, around: &LiveConditions, force: &mut Vec<V3>) {
+        let (diameter, commit) = (around.diameter, around.commit);
         let limit = 0.5 * SKIN * diameter;
         let moved = self.seen.len() != wire.position.len()
             || self
@@ -143,8 +146,8 @@ impl LiveContact {
         if moved {
             self.list_pairs(wire, diameter);
         }
-        self.force.clear();
-        self.force.resize(wire.position.len(), V3::zeros());
+        force.clear();
+        force.resize(wire.position.len(), V3::zeros());
         if commit.is_some() {
             self.deepest = 0.0;
         }
@@ -158,26 +161,30 @@ impl LiveContact {
             {
                 end += 1;
             }
-            self.touch(k, end, wire, law, diameter, per_length, commit);
+            self.touch(k..end, wire, around, force);
             k = end;
         }
     }
 
-    /// Adds the touch of the pairs `from..to`, neighbouring segments near one node: the nearest segment touches.
+    /// Adds the touch of a run of pairs, neighbouring segments near one node: the nearest segment touches.
     fn touch(
         &mut self,
-        from: usize,
-        to: usize,
+        run: std::ops::Range<usize>,
         wire: &Wire,
-        law: &ContactLaw,
-        diameter: f64,
-        per_length: f64,
-        commit: Option<f64>,
+        around: &LiveConditions,
+        force: &mut [V3],
     ) {
+        let LiveConditions {
+            law,
+            diameter,
+            per_length,
+            commit,
+        } = *around;
+        let from = run.start;
         let i = self.pairs[from].node as usize;
         let p = wire.position[i];
         let (mut best, mut nearest) = (diameter * diameter, None);
-        for pair in &self.pairs[from..to] {
+        for pair in &self.pairs[run] {
             let j = pair.segment as usize;
             let (a, b) = (wire.position[j], wire.position[j + 1]);
             let d = b - a;
@@ -212,9 +219,9 @@ impl LiveContact {
             length,
             per_length * length,
         );
-        self.force[i] += f.force;
-        self.force[j] -= f.force * (1.0 - s);
-        self.force[j + 1] -= f.force * s;
+        force[i] += f.force;
+        force[j] -= f.force * (1.0 - s);
+        force[j + 1] -= f.force * s;
         if let Some(dt) = commit {
             self.pairs[from].bristle = f.bristle;
             self.pairs[from].depth = diameter - distance;
@@ -274,6 +281,15 @@ mod tests {
         w
     }
 
+    fn around(law: &ContactLaw, step: f64) -> LiveConditions<'_> {
+        LiveConditions {
+            law,
+            diameter: D,
+            per_length: 3.4e-3,
+            commit: Some(step),
+        }
+    }
+
     /// First node of the younger strand.
     const YOUNG: usize = 22;
 
@@ -282,7 +298,8 @@ mod tests {
         fn listed_pairs_find_what_all_pairs_find(x in -2e-4..2e-4f64, y in 0.95..1.2f64, z in -0.3..0.3f64) {
             let w = strands(V3::new(x, y * D, z * D));
             let mut live = LiveContact::default();
-            live.evaluate(&w, &law(0.0), D, 3.4e-3, Some(1e-7));
+            let mut force = Vec::new();
+            live.evaluate(&w, &around(&law(0.0), 1e-7), &mut force);
             // brute: nearest point of the old strand and what leaves it, for each young node
             let mut total = 0.0;
             for i in YOUNG..42 {
@@ -294,9 +311,9 @@ mod tests {
                 }).fold(f64::INFINITY, f64::min);
                 total += 1e10 * 0.5e-3 * (D - best).max(0.0);
             }
-            let got: f64 = (YOUNG..42).map(|i| live.force[i].norm()).sum();
+            let got: f64 = (YOUNG..42).map(|i| force[i].norm()).sum();
             prop_assert!((got - total).abs() < 1e-9 * (1.0 + total), "{} {}", got, total);
-            let net: V3 = live.force.iter().sum();
+            let net: V3 = force.iter().sum();
             prop_assert!(net.norm() < 1e-9 * (1.0 + total), "action and reaction");
         }
     }
@@ -309,16 +326,17 @@ mod tests {
             *v = V3::new(0.1, 0.0, 0.0);
         }
         let l = law(0.2);
-        live.evaluate(&w, &l, D, 3.4e-3, Some(1e-9));
-        let early = live.force[30].x.abs() / live.force[30].y.abs();
+        let mut force = Vec::new();
+        live.evaluate(&w, &around(&l, 1e-9), &mut force);
+        let early = force[30].x.abs() / force[30].y.abs();
         for _ in 0..400 {
             for i in YOUNG..42 {
                 let v = w.velocity[i];
                 w.position[i] += v * 1e-7;
             }
-            live.evaluate(&w, &l, D, 3.4e-3, Some(1e-7));
+            live.evaluate(&w, &around(&l, 1e-7), &mut force);
         }
-        let late = -live.force[30].x / live.force[30].y;
+        let late = -force[30].x / force[30].y;
         assert!(early < 0.2 && (late - 0.2).abs() < 1e-6, "{early} {late}");
         assert!(live.loss.friction > 0.0 && live.deepest > 0.9e-6);
     }

@@ -1,18 +1,23 @@
 //! Contact of the explicit methods: the paper's, with its errors removed.
 //!
-//! Each node is a sphere that touches the triangles of the core, prisms of frozen wire ([`Contacts`]) and
+//! Each node is a sphere that touches the triangles of the core, prisms of frozen wire ([`NodalContact`]) and
 //! segments of older live wire ([`LiveContact`]). The force of a touch is [`ContactLaw::force`], with a dashpot and
 //! stick-slip friction.
 //!
 //! [`ContactLaw::force`]: super::ContactLaw::force
 
-mod contacts;
 mod force;
 mod live;
+mod model;
+mod nodal_contact;
 mod node;
+mod state;
 
-pub use contacts::{Body, Contacts};
-pub(crate) use contacts::{SavedContacts, far, restore_tube};
 pub use force::TouchForce;
-pub use live::{LiveContact, Wire};
+pub use live::{LiveConditions, LiveContact, Wire};
+pub use model::NodalModel;
+pub use nodal_contact::NodalScratch;
+pub(crate) use nodal_contact::far;
+pub use nodal_contact::{Body, NodalContact};
 pub use node::NodeContact;
+pub use state::NodalState;

@@ -6,7 +6,7 @@
 //! share of the Hessian between the partners is kept as a [`Coupling`], and the linear system is solved by conjugate
 //! gradients with the banded part as preconditioner.
 //!
-//! * [`SelfContact`]: the pairs, and how they follow changes of the wire
+//! * [`SelfContact`]: the pairs, and how they follow changes of the wire; [`PairScratch`]: what they are worked on with
 //! * `search`: which pairs a step has to look at
 //! * `response`: potential, gradient, Hessian and couplings, at an iterate and where an update leads
 //! * `commit`: an iterate becomes the accepted instant; what was lost and is stored
@@ -15,8 +15,10 @@ mod commit;
 mod coupling;
 mod pairs;
 mod response;
+mod scratch;
 mod search;
 
 pub use coupling::{Coupling, add_couplings};
 pub use pairs::SelfContact;
 pub use response::PairConditions;
+pub use scratch::PairScratch;

@@ -1,11 +1,10 @@
 //! Pairs of a contact point and older live wire near it, and how they follow changes of the wire.
 
-use super::coupling::Coupling;
 use crate::contact::friction::FrictionLimit;
 use crate::contact::law::ContactLoss;
-use crate::contact::stencil::{ContactPoint, NodeWeights};
+use crate::contact::stencil::ContactPoint;
 use crate::geometry::Curve;
-use crate::math::{Block, V3};
+use crate::math::V3;
 use serde::{Deserialize, Serialize};
 
 /// A contact point and the older wire near it; core frame.
@@ -29,70 +28,12 @@ pub(super) struct Pair {
     pub(super) normal: V3,
 }
 
-/// A listed pair and the quadratic model of its potential in the linear system, by the distance vector.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct NearPair {
-    /// index of the pair
-    pub(super) pair: u32,
-    /// the point
-    pub(super) young: NodeWeights,
-    /// its foot, with negative weights
-    pub(super) old: NodeWeights,
-    /// contact stiffness of the wire that the point stands for, N/m
-    pub(super) stiffness: f64,
-    /// gradient at the iterate, N
-    pub(super) gradient: V3,
-    /// Hessian, N/m
-    pub(super) hessian: Block,
-    /// distance to touching, while the model has no touch, m
-    pub(super) room: f64,
-    /// the model is that of a place that an update led to
-    pub(super) predicted: bool,
-    /// direction of the slide in the model; 0: the bristle holds
-    pub(super) slide: V3,
-    /// index of its coupling, if it has one
-    pub(super) coupling: Option<u32>,
-}
-
-/// A contact point next to older wire with which it makes no pair.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Unpaired {
-    /// number of the point
-    pub(super) point: u32,
-    /// way that both together may move before they would be a pair, m
-    pub(super) room: f64,
-    /// node of the older wire
-    pub(super) other: u32,
-}
-
-/// Contact of live wire with live wire: the pairs with their friction state, and their couplings.
+/// Contact of live wire with live wire: the pairs with their friction state.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SelfContact {
     pub(super) pairs: Vec<Pair>,
     /// the live wire begins at a seam with frozen wire
     pub(in crate::contact) has_seam: bool,
-    /// the pairs of the step before, while those of the next are listed
-    #[serde(skip)]
-    pub(super) previous: Vec<Pair>,
-    /// polar angle of each node from the clamp, rad
-    #[serde(skip)]
-    pub(super) angle: Vec<f64>,
-    /// unstretched length from the clamp to each node, m
-    #[serde(skip)]
-    pub(super) arc: Vec<f64>,
-    #[serde(skip)]
-    pub(super) unpaired: Vec<Unpaired>,
-    /// by turns back along the wire, the node that the search has reached
-    #[serde(skip)]
-    pub(super) reached: Vec<usize>,
-    /// room for the wire in the core frame
-    #[serde(skip)]
-    pub scratch: Vec<V3>,
-    /// couplings by the last evaluation
-    #[serde(skip)]
-    pub couplings: Vec<Coupling>,
-    #[serde(skip)]
-    pub(super) near: Vec<NearPair>,
     /// totals of what was lost
     pub loss: ContactLoss,
 }

@@ -1,7 +1,8 @@
 //! Potential, gradient, Hessian and couplings of the pairs, at an iterate and where an update leads.
 
 use super::coupling::Coupling;
-use super::pairs::{NearPair, Pair, SelfContact};
+use super::pairs::{Pair, SelfContact};
+use super::scratch::{NearPair, PairScratch};
 use crate::contact::friction::{ContactResponse, LimitFrom, Touching, across};
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE};
 use crate::contact::stencil::{ContactPoint, NodeWeights};
@@ -20,7 +21,7 @@ pub struct PairConditions<'a> {
     /// time since the last accepted instant, s
     pub step: f64,
     /// take the friction limits of the iterate before, see
-    /// [`LineContact::hold_limits`](crate::contact::LineContact::hold_limits)
+    /// [`LineState::hold_limits`](crate::contact::LineState::hold_limits)
     pub hold_limits: bool,
 }
 
@@ -57,18 +58,24 @@ impl Pair {
 impl SelfContact {
     /// Evaluates all pairs with the wire at `q`; `last` is the wire at the last accepted instant (core frame, m), `length`
     /// tells what the point of a number stands for, m. Hands the coupling and the response of each touching pair
-    /// to `take`, and keeps the couplings.
+    /// to `take`, and keeps the couplings in `scratch`.
     ///
     /// The gradient of a response acts on the point; its negative acts on the foot.
     pub fn evaluate(
         &mut self,
+        scratch: &mut PairScratch,
         around: &PairConditions,
         (q, last): (&[V3], &[V3]),
         length: impl Fn(usize) -> f64,
         mut take: impl FnMut(&Coupling, &ContactResponse),
     ) {
-        self.couplings.clear();
-        self.near.clear();
+        let PairScratch {
+            couplings,
+            near: all_near,
+            ..
+        } = scratch;
+        couplings.clear();
+        all_near.clear();
         let limit_from = if around.hold_limits {
             LimitFrom::Lagged
         } else {
@@ -85,7 +92,7 @@ impl SelfContact {
             let old = NodeWeights::from(curve.weights(foot.segment as usize, foot.share));
             let stiffness = around.law.stiffness * length(pair.point as usize);
             let mut near = NearPair {
-                pair: self.near.len() as u32,
+                pair: all_near.len() as u32,
                 young,
                 old: old.negative(),
                 stiffness,
@@ -98,24 +105,24 @@ impl SelfContact {
             };
             if pair.depth <= 0.0 {
                 pair.limit.current = 0.0;
-                self.near.push(near);
+                all_near.push(near);
                 continue;
             }
             let way = (p - young.sum(last)) - (foot.point - old.sum(last));
             let (response, limit, slide) =
                 pair.respond(around, limit_from, stiffness, way, V3::zeros());
             pair.limit.current = limit;
-            near.coupling = Some(self.couplings.len() as u32);
+            near.coupling = Some(couplings.len() as u32);
             (near.gradient, near.hessian) = (response.gradient, response.hessian);
             near.slide = slide;
-            self.near.push(near);
+            all_near.push(near);
             let coupling = Coupling {
                 young,
                 old: near.old,
                 block: response.hessian,
             };
             take(&coupling, &response);
-            self.couplings.push(coupling);
+            couplings.push(coupling);
         }
     }
 
@@ -123,15 +130,21 @@ impl SelfContact {
     /// wire `last` at the last accepted instant and the wire `there` to which the update leads. `correct` gets the
     /// point, its foot with negative weights, and the changes of Hessian and gradient.
     pub fn predict(
-        &mut self,
+        &self,
+        scratch: &mut PairScratch,
         around: &PairConditions,
         (q, last, there): (&[V3], &[V3], &[V3]),
         mut correct: impl FnMut(&NodeWeights, &NodeWeights, &Block, &V3),
     ) -> bool {
+        let PairScratch {
+            couplings,
+            near: all_near,
+            ..
+        } = scratch;
         let mut any = false;
         let curve = self.curve(there);
         let tolerance = prediction_tolerance(around.diameter);
-        for near in &mut self.near {
+        for near in all_near {
             let relative = |q: &[V3]| near.young.sum(q) + near.old.sum(q);
             let way = relative(there) - relative(q);
             let far = way.norm_squared();
@@ -164,14 +177,14 @@ impl SelfContact {
             let more = block_difference(&hessian, &near.hessian);
             correct(&near.young, &near.old, &more, &(gradient - near.gradient));
             let at = *near.coupling.get_or_insert_with(|| {
-                self.couplings.push(Coupling {
+                couplings.push(Coupling {
                     young: near.young,
                     old: near.old,
                     block: Block::default(),
                 });
-                self.couplings.len() as u32 - 1
+                couplings.len() as u32 - 1
             });
-            self.couplings[at as usize].block = hessian;
+            couplings[at as usize].block = hessian;
             (near.gradient, near.hessian, near.room) = (gradient, hessian, 0.0);
             near.predicted = true;
         }

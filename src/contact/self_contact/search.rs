@@ -1,6 +1,7 @@
 //! Which pairs of live wire a step has to look at.
 
-use super::pairs::{Pair, SelfContact, Unpaired};
+use super::pairs::{Pair, SelfContact};
+use super::scratch::{PairScratch, Unpaired};
 use crate::contact::friction::FrictionLimit;
 use crate::contact::own_wire::own_wire;
 use crate::contact::stencil::ContactPoint;
@@ -20,20 +21,33 @@ impl SelfContact {
     /// Lists the pairs for a step from `q` that is expected to lead to `guess`, places of the nodes in the core frame, m.
     /// `rest` are the unstretched lengths of the edges, m.
     #[inline(never)]
-    pub fn list(&mut self, q: &[V3], guess: &[V3], rest: &[f64], diameter: f64) {
-        self.measure_wire(q, rest);
-        self.unpaired.clear();
+    pub fn list(
+        &mut self,
+        scratch: &mut PairScratch,
+        (q, guess): (&[V3], &[V3]),
+        rest: &[f64],
+        diameter: f64,
+    ) {
+        scratch.measure_wire(q, rest);
+        let PairScratch {
+            previous,
+            angle,
+            arc,
+            unpaired,
+            reached,
+            ..
+        } = scratch;
+        unpaired.clear();
         let curve = self.curve(q);
-        let arc = &self.arc;
-        std::mem::swap(&mut self.pairs, &mut self.previous);
+        std::mem::swap(&mut self.pairs, previous);
         self.pairs.clear();
         // both lists of pairs run along the wire
         let mut known = 0;
-        self.reached.clear();
+        reached.clear();
         for contact_point in ContactPoint::all(q.len() - 1) {
             let point = contact_point.number() as u32;
             let i = point as usize / 2;
-            if self.angle[i] - TAU < -WINDOW {
+            if angle[i] - TAU < -WINDOW {
                 continue;
             }
             let weights = contact_point.weights();
@@ -44,41 +58,41 @@ impl SelfContact {
             if end < 2 {
                 continue;
             }
-            while known < self.previous.len() && self.previous[known].point < point {
+            while known < previous.len() && previous[known].point < point {
                 known += 1;
             }
             // from every whole turn back along the wire to the closest point
             for turns in 1.. {
-                let back = self.angle[i] - turns as f64 * TAU;
+                let back = angle[i] - turns as f64 * TAU;
                 if back < -WINDOW {
                     break;
                 }
-                if self.reached.len() < turns {
-                    self.reached.push(0);
+                if reached.len() < turns {
+                    reached.push(0);
                 }
-                let near = &mut self.reached[turns - 1];
-                while *near + 1 < end - 1 && self.angle[*near] < back {
+                let near = &mut reached[turns - 1];
+                while *near + 1 < end - 1 && angle[*near] < back {
                     *near += 1;
                 }
-                while *near > 0 && self.angle[*near - 1] >= back {
+                while *near > 0 && angle[*near - 1] >= back {
                     *near -= 1;
                 }
                 let foot = curve.foot(p, *near as u32);
                 let gap = -foot.depth(diameter);
                 let other = foot.segment as usize;
-                if arc[other] > own || (self.angle[other] - back).abs() > WINDOW {
+                if arc[other] > own || (angle[other] - back).abs() > WINDOW {
                     continue;
                 }
                 let way = way + (guess[other] - q[other]).norm();
                 if gap > SKIN * diameter + FOLLOW * way {
-                    self.unpaired.push(Unpaired {
+                    unpaired.push(Unpaired {
                         point,
                         room: gap,
                         other: foot.segment,
                     });
                     continue;
                 }
-                let before = self.previous[known..]
+                let before = previous[known..]
                     .iter()
                     .take_while(|o| o.point == point)
                     .find(|o| o.segment.abs_diff(foot.segment) < SAME_PASSAGE);
@@ -100,7 +114,9 @@ impl SelfContact {
             }
         }
     }
+}
 
+impl PairScratch {
     /// Polar angles from the clamp, positive along the wire, and unstretched lengths of the nodes.
     fn measure_wire(&mut self, q: &[V3], rest: &[f64]) {
         self.angle.clear();

@@ -69,7 +69,7 @@ impl Implicit {
             // the node before the nozzle gains mass that moves as it does
             sys.state.balance.inflow += 0.5 * inflow * sys.state.rod.v[last].norm_squared();
         }
-        if let Some(line) = sys.contact.as_line_mut() {
+        if let Some(line) = sys.state.contact.as_line_mut() {
             // late Newton steps hold the friction limits of the iterate before; what is accepted goes by its own
             line.hold_limits = false;
         }

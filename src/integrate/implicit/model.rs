@@ -7,13 +7,13 @@ use super::work::{Axial, Work};
 use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
 use crate::math::{Spin, V3};
 use crate::rod::{Block, Laws, Rod, stretched, turning};
-use crate::system::{Loads, Spindle, Support, System};
+use crate::system::{Loads, Spindle, Support, System, line_contact};
 
 /// What an evaluation needs besides the iterate.
 pub(super) struct Model<'a> {
     pub(super) rod: &'a Rod,
     pub(super) laws: &'a Laws,
-    pub(super) line: Option<&'a mut LineContact>,
+    pub(super) line: Option<LineContact<'a>>,
     pub(super) loads: &'a Loads,
     /// the wire at the last accepted instant, core frame
     pub(super) last: &'a [V3],
@@ -57,7 +57,11 @@ impl<'a> Model<'a> {
         Self {
             rod: &sys.state.rod,
             laws: &sys.model.laws,
-            line: sys.contact.as_line_mut(),
+            line: line_contact(
+                &sys.model.contact,
+                &mut sys.state.contact,
+                &mut sys.scratch.contact,
+            ),
             loads: &sys.model.loads,
             last: &sys.state.past.q[0],
             tension: &sys.state.load.tension,
@@ -306,7 +310,7 @@ impl Model<'_> {
         value: &mut Value,
     ) {
         // taken out while it changes along with the rest of the model at hand
-        let Some(line) = self.line.take() else {
+        let Some(mut line) = self.line.take() else {
             return;
         };
         line.begin();
@@ -314,13 +318,13 @@ impl Model<'_> {
         for (j, rest) in self.rod.rest.iter().enumerate() {
             if j > 0 {
                 let point = ContactPoint::Node(j);
-                self.contact_of::<D, HESSIAN>(point, arc, line, work, value);
+                self.contact_of::<D, HESSIAN>(point, arc, &mut line, work, value);
             }
             let point = ContactPoint::Edge(j);
-            self.contact_of::<D, HESSIAN>(point, arc, line, work, value);
+            self.contact_of::<D, HESSIAN>(point, arc, &mut line, work, value);
             arc += rest;
         }
-        self.contact_of_pairs::<D, HESSIAN>(line, work, value);
+        self.contact_of_pairs::<D, HESSIAN>(&mut line, work, value);
         self.line = Some(line);
     }
 
@@ -330,7 +334,7 @@ impl Model<'_> {
         &self,
         point: ContactPoint,
         arc: f64,
-        line: &mut LineContact,
+        line: &mut LineContact<'_>,
         work: &mut Work<D>,
         value: &mut Value,
     ) {
@@ -352,18 +356,18 @@ impl Model<'_> {
     /// Adds the touches of live wire with live wire.
     fn contact_of_pairs<const D: usize, const HESSIAN: bool>(
         &self,
-        line: &mut LineContact,
+        line: &mut LineContact<'_>,
         work: &mut Work<D>,
         value: &mut Value,
     ) {
         let conditions = PairConditions {
-            law: &line.law,
-            onset: line.onset,
+            law: &line.model.law,
+            onset: line.model.onset,
             diameter: self.diameter,
             step: self.elapsed,
-            hold_limits: line.hold_limits,
+            hold_limits: line.state.hold_limits,
         };
-        let Some(pairs) = &mut line.self_contact else {
+        let Some(pairs) = &mut line.state.self_contact else {
             return;
         };
         let Work {
@@ -373,6 +377,7 @@ impl Model<'_> {
             ..
         } = work;
         pairs.evaluate(
+            &mut line.scratch.pairs,
             &conditions,
             (q, self.last),
             |point| ContactPoint::of_number(point).length(self.rod),

@@ -191,8 +191,8 @@ pub(super) fn solve<const D: usize>(
             let trial = model.evaluate(work);
             if trial.merit <= value + NOISE * value.abs() || share * update < close {
                 value = trial.now;
-                if let Some(line) = model.line.as_deref_mut() {
-                    line.renew_limits();
+                if let Some(line) = &mut model.line {
+                    line.state.renew_limits();
                 }
                 break;
             }
@@ -233,8 +233,8 @@ fn end_by_chord<const D: usize>(
     damped: bool,
 ) -> bool {
     let coupled = |model: &Model| {
-        let line = model.line.as_deref();
-        line.is_some_and(|l| !l.couplings().is_empty())
+        let line = model.line.as_ref();
+        line.is_some_and(|l| !l.scratch.pairs.couplings.is_empty())
     };
     // pairs of live wire have their share of the matrix outside the band, and that is always of the present
     if first > CHORD * close || coupled(model) {
@@ -289,8 +289,8 @@ fn largest_update<const D: usize>(model: &Model, work: &Work<D>) -> (f64, usize,
 }
 
 fn hold_limits(model: &mut Model, hold: bool) {
-    if let Some(line) = model.line.as_deref_mut() {
-        line.hold_limits = hold;
+    if let Some(line) = &mut model.line {
+        line.state.hold_limits = hold;
     }
 }
 
@@ -302,7 +302,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
     for look in 0.. {
         work.matrix.factor().map_err(|loose| loose.node)?;
         work.update.clone_from(&work.load);
-        match model.line.as_deref().map_or(&[][..], |l| l.couplings()) {
+        match (model.line.as_ref()).map_or(&[][..], |l| &l.scratch.pairs.couplings) {
             [] => work.matrix.solve(&mut work.update),
             couplings => conjugate::solve(
                 &work.matrix,
@@ -342,24 +342,25 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
                 }
             }
         };
-        if let Some(line) = model.line.as_deref_mut() {
+        if let Some(line) = &mut model.line {
             any |= line.predict(model.elapsed, move_of, |point, stiffness, gradient| {
                 let place = ContactPoint::of_number(point).weights();
                 correct(&place, stiffness, gradient);
             });
             let conditions = PairConditions {
-                law: &line.law,
-                onset: line.onset,
+                law: &line.model.law,
+                onset: line.model.onset,
                 diameter: model.diameter,
                 step: model.elapsed,
-                hold_limits: line.hold_limits,
+                hold_limits: line.state.hold_limits,
             };
-            if let Some(pairs) = &mut line.self_contact {
+            if let Some(pairs) = &mut line.state.self_contact {
                 there.clear();
                 for (i, p) in q.iter().enumerate() {
                     there.push(p + V3::new(update[D * i], update[D * i + 1], update[D * i + 2]));
                 }
                 any |= pairs.predict(
+                    &mut line.scratch.pairs,
                     &conditions,
                     (q, model.last, there),
                     |young, old, stiffness, gradient| {

@@ -82,15 +82,13 @@ impl Implicit {
         lift: usize,
     ) -> Result<(OutputSensitivity, [OutputSensitivity; INPUTS]), StepError> {
         sys.begin_past();
-        let kept = sys.contact.as_line().map(|l| l.saved());
+        let kept = sys.state.contact.clone();
         let inputs = (sys.state.spindle, sys.state.support, sys.state.set_tension);
         let statistics = self.statistics;
         let tangent = with_work!(self, sys, work => self.tangent_with(work, sys, h, lift));
         self.statistics = statistics;
         (sys.state.spindle, sys.state.support, sys.state.set_tension) = inputs;
-        if let (Some(line), Some(kept)) = (sys.contact.as_line_mut(), kept) {
-            line.take_back(kept);
-        }
+        sys.state.contact = kept;
         tangent
     }
 
@@ -104,13 +102,7 @@ impl Implicit {
         let step = step_of(sys, self.scheme, h);
         let base = (sys.state.spindle, sys.state.support, sys.state.set_tension);
         let now = set(work, sys, &step, &base, 0, 0.0);
-        if let Some(line) = sys.contact.as_line_mut() {
-            line.begin_attempt();
-            if let Some(b) = &mut line.self_contact {
-                let (from, guess) = (&sys.state.past.q[0], &work.guess);
-                b.list(from, guess, &sys.state.rod.rest, sys.model.section.diameter);
-            }
-        }
+        sys.begin_attempt(&work.guess);
         let mut model = Model::of_step(sys, &step, &now.spindle, &now.support, now.nozzle);
         // to rounding: the tangent belongs to the solution, not to what is near enough to it
         let close = (1e-4 * CLOSE * self.tolerance).max(ROUNDING);
@@ -185,7 +177,7 @@ impl Implicit {
                 if settled {
                     break;
                 }
-                match sys.contact.as_line().map_or(&[][..], |l| l.couplings()) {
+                match sys.line_scratch().map_or(&[][..], |l| &l.pairs.couplings) {
                     [] => work.matrix.solve(&mut residual),
                     couplings => {
                         let scratch = &mut work.gradients;

@@ -10,7 +10,7 @@ use super::scheme::StepFormula;
 use super::work::Work;
 use super::{CLOSE, Implicit, StepError, with_work};
 use crate::math::{Spin, V3};
-use crate::system::System;
+use crate::system::{System, line_contact};
 
 /// Time over which forces act in a static solve, s: inertia is then 1e-10 of the softest wire's stiffness.
 const LONG: f64 = 1e3;
@@ -206,7 +206,11 @@ fn model_at_rest(sys: &mut System) -> Model<'_> {
         last: &sys.state.past.q[0],
         rod: &sys.state.rod,
         laws: &sys.model.laws,
-        line: sys.contact.as_line_mut(),
+        line: line_contact(
+            &sys.model.contact,
+            &mut sys.state.contact,
+            &mut sys.scratch.contact,
+        ),
         loads: &sys.model.loads,
         tension: &sys.state.load.tension,
         nozzle: None,

@@ -32,13 +32,7 @@ impl Implicit {
                 h = (share * h).max(self.shortest);
                 continue;
             }
-            if let Some(line) = sys.contact.as_line_mut() {
-                line.begin_attempt();
-                if let Some(b) = &mut line.self_contact {
-                    let (from, guess) = (&sys.state.past.q[0], &work.guess);
-                    b.list(from, guess, &sys.state.rod.rest, sys.model.section.diameter);
-                }
-            }
+            sys.begin_attempt(&work.guess);
             let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
             let solved = newton::solve(
                 &mut model,
@@ -58,10 +52,8 @@ impl Implicit {
             self.statistics.solves += std::mem::take(&mut work.solves);
             self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
             self.statistics.cg_iterations += std::mem::take(&mut work.gradients.cg_iterations);
-            let missed = sys.contact.as_line().and_then(|l| {
-                let pairs = l.self_contact.as_ref()?;
-                pairs.missed(&sys.state.past.q[0], &work.q)
-            });
+            let line = sys.line_scratch();
+            let missed = line.and_then(|line| line.pairs.missed(&sys.state.past.q[0], &work.q));
             let retry = match solved {
                 // farther than the pairs of wire were looked for
                 Ok(_) if missed.is_some() && h > self.shortest && self.fixed.is_none() => {
@@ -96,7 +88,7 @@ impl Implicit {
             };
             h = retry.max(self.shortest);
             self.next = h;
-            if let Some(line) = sys.contact.as_line_mut() {
+            if let Some(mut line) = sys.line_contact() {
                 line.undo_attempt();
             }
         }

@@ -56,14 +56,15 @@ impl<const D: usize> Work<D> {
     /// estimate and contact search
     /// both know nothing of a surface that lies between the ends of a step.
     pub(super) fn share_of_way(&self, sys: &System) -> f64 {
-        let Some(line) = sys.contact.as_line() else {
+        let (Some(model), Some(line)) = (sys.model.contact.as_line(), sys.state.contact.as_line())
+        else {
             return 1.0;
         };
         let mut share: f64 = 1.0;
         for (q, guess) in sys.state.past.q[0].iter().zip(&self.guess) {
             let way = (guess - q).norm();
-            if way > line.radius {
-                let room = (line.shape.lower_bound(*q) - line.height).max(line.radius);
+            if way > model.radius {
+                let room = (model.shape.lower_bound(*q) - line.height).max(model.radius);
                 share = share.min(room / way);
             }
         }

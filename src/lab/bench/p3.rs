@@ -9,13 +9,13 @@ use super::options::BenchOptions;
 use super::record::{Details, Outcome};
 use super::setup::elastic_wire;
 use super::watch::Watch;
-use crate::contact::{ContactLaw, LineContact};
+use crate::contact::{ContactLaw, LineModel};
 use crate::geometry::Shape;
 use crate::integrate::{Implicit, Scheme};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
-use crate::system::{ContactModel, Support, System};
+use crate::system::{Support, System};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Cylinder radius, m; force on the slack side, N; friction; share of the bending stiffness.
@@ -143,7 +143,7 @@ fn capstan(section: &Section, n: usize) -> (System, f64) {
         radius: RADIUS,
         half_y: RADIUS,
     };
-    sys.contact = ContactModel::line(LineContact::new(shape, law, section.radius(), points.len()));
+    sys.touch_along(LineModel::new(shape, law, section.radius()));
     sys.model.loads.nodal = vec![(0, V3::x() * HOLD)];
     sys.state.support[1] = Support {
         hold: [true, false, false],

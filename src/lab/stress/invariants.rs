@@ -241,7 +241,7 @@ impl Watch {
     }
 
     fn frozen_wire(&mut self, sim: &Simulation) -> Found {
-        let Some(line) = sim.system().contact.as_line() else {
+        let Some(line) = sim.system().line_scratch() else {
             return Ok(());
         };
         let now = line.tube.points();
@@ -326,10 +326,12 @@ fn tension(sim: &Simulation) -> Found {
 }
 
 fn cone(sim: &Simulation, m: &mut Measures) -> Found {
-    let Some(line) = sim.system().contact.as_line() else {
+    let sys = sim.system();
+    let (Some(model), Some(line)) = (sys.model.contact.as_line(), sys.state.contact.as_line())
+    else {
         return Ok(());
     };
-    let (point, share) = line.friction_over_limit();
+    let (point, share) = line.friction_over_limit(model);
     m.cone = m.cone.max(share);
     if share > 1.0 + CONE {
         let text = format!("friction of contact point {point} is {share:.4} of its limit");
@@ -370,7 +372,7 @@ fn penetration(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
 /// method's own search found.
 fn wire_in_wire(sim: &Simulation, scene: &Scene, m: &mut Measures) -> Found {
     let sys = sim.system();
-    let Some(line) = sys.contact.as_line() else {
+    let Some(line) = sys.line_scratch() else {
         return Ok(());
     };
     let d = scene.wire.diameter;

@@ -3,8 +3,8 @@
 
 use super::equilibrium::no_answer;
 use super::{Context, VerifyError};
-use crate::contact::{ContactLaw, Contacts, LineContact};
-use crate::geometry::{FrozenNode, SIDES, Tube};
+use crate::contact::{ContactLaw, LineModel, NodalModel};
+use crate::geometry::{FrozenNode, SIDES};
 use crate::geometry::{Shape, Surface, Touch, TriMesh, generate};
 use crate::integrate::{
     Explicit, ExplicitMethod, Implicit, Scheme, VERLET_LIMIT, highest_frequency,
@@ -14,7 +14,7 @@ use crate::math::{align, frame_along};
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{ContactModel, NodalContact, Support, System};
+use crate::system::{ContactModel, Support, System};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -149,21 +149,21 @@ impl Bench {
                 half_y: reach,
                 corner_radius: 0.0,
             };
-            let mut line = LineContact::new(floor, law, r, points.len());
-            line.damping = line_damping(&law, section);
-            for node in straight_wires(neighbours, height, length) {
-                line.lay(node.point, node.arc);
-            }
-            sys.contact = ContactModel::line(line);
+            sys.touch_along(LineModel {
+                damping: line_damping(&law, section),
+                ..LineModel::new(floor, law, r)
+            });
         } else {
             let floor = box_mesh(4.0 * length, 2.0 * half_height, 2.0 * reach)?;
-            let diameter = section.diameter;
-            let mut contacts = Contacts::new(Arc::new(floor), law, r, diameter, points.len());
-            contacts.tube = Tube::new(r);
-            for node in straight_wires(neighbours, height, length) {
-                contacts.tube.push(node);
-            }
-            sys.contact = ContactModel::nodal(contacts);
+            sys.touch_at_nodes(NodalModel {
+                surface: Arc::new(floor),
+                law,
+                radius: r,
+                diameter: section.diameter,
+            });
+        }
+        for node in straight_wires(neighbours, height, length) {
+            sys.lay_frozen(node);
         }
         // guided along itself: ridges of rolled wire are screws
         sys.state.support[0] = Support {
@@ -304,39 +304,34 @@ pub(super) fn stable_step(section: &Section, h: f64, stiffness: f64, twist: bool
 
 /// Force of each touch of node `i` at rest, from the law that moves the wire, N.
 pub(super) fn touch_forces(sys: &System, i: usize) -> Vec<V3> {
-    if let Some(line) = sys.contact.as_line() {
+    if let (Some(model), Some(line)) = (sys.model.contact.as_line(), sys.state.contact.as_line()) {
         // the node's own point and the middle of the edge after it
         let rod = &sys.state.rod;
         let mut forces = Vec::new();
         if i > 0 && i < rod.edges() {
-            forces.extend(line.normal_forces(2 * i, 0.5 * rod.voronoi(i)));
+            forces.extend(line.normal_forces(model, 2 * i, 0.5 * rod.voronoi(i)));
         }
         if i < rod.edges() {
-            forces.extend(line.normal_forces(2 * i + 1, 0.5 * rod.rest[i]));
+            forces.extend(line.normal_forces(model, 2 * i + 1, 0.5 * rod.rest[i]));
         }
         return forces;
     }
-    let Some(NodalContact { contacts, .. }) = sys.contact.as_nodal() else {
+    let ContactModel::Nodal(model) = &sys.model.contact else {
         return Vec::new();
     };
     let p = crate::math::Spin::new(sys.state.spindle.angle).to_core(sys.state.rod.x[i]);
     let (mut triangles, mut segments, mut touches) = (Vec::new(), Vec::new(), Vec::new());
-    contacts.surface.near(p, contacts.radius, &mut triangles);
-    contacts
-        .surface
-        .touching(p, contacts.radius, &triangles, &mut touches);
-    contacts
-        .tube
-        .near(p, contacts.radius, f64::INFINITY, &mut segments);
-    contacts
-        .tube
-        .touching(p, contacts.radius, &segments, &mut touches);
+    let (core, frozen, r) = (&model.surface, &sys.state.frozen, model.radius);
+    core.near(p, r, &mut triangles);
+    core.touching(p, r, &triangles, &mut touches);
+    frozen.near(p, r, f64::INFINITY, &mut segments);
+    frozen.touching(p, r, &segments, &mut touches);
     let force = |t: &Touch| {
         let (length, mass) = (
             sys.state.rod.voronoi(i),
             sys.state.rod.mass(&sys.model.section, i),
         );
-        contacts
+        model
             .law
             .force(t.normal, t.depth, V3::zeros(), V3::zeros(), length, mass)
             .force

@@ -6,7 +6,7 @@
 
 use super::bench::{SmoothMean, Stepper, law, line_damping, mesh, stable_step};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::contact::{Contacts, LineContact};
+use crate::contact::{LineModel, NodalModel};
 use crate::geometry::Shape;
 use crate::geometry::generate::cylinder;
 use crate::integrate::{Explicit, ExplicitMethod};
@@ -14,7 +14,7 @@ use crate::math::V3;
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{ContactModel, Support, System};
+use crate::system::{Support, System};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
@@ -116,7 +116,7 @@ impl Capstan {
         sys.model.twist = Twist::Off;
         let stiffness = hold / (bend * bend * DEPTH);
         let law = law(stiffness, 1.0, mu);
-        let (count, r) = (points.len(), section.radius());
+        let r = section.radius();
         let wave = (hold / section.mass_per_length()).sqrt();
         let step;
         if ctx.integrator == Integrator::Implicit {
@@ -124,14 +124,18 @@ impl Capstan {
                 radius,
                 half_y: 10.0 * section.diameter,
             };
-            let mut line = LineContact::new(core, law, r, count);
+            let mut line = LineModel::new(core, law, r);
             line.damping = line_damping(&law, section);
-            sys.contact = ContactModel::line(line);
+            sys.touch_along(line);
             step = Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave));
         } else {
             let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
-            let contacts = Contacts::new(core, law, r, section.diameter, count);
-            sys.contact = ContactModel::nodal(contacts);
+            sys.touch_at_nodes(NodalModel {
+                surface: core,
+                law,
+                radius: r,
+                diameter: section.diameter,
+            });
             step = Stepper::Explicit(Explicit::new(ExplicitMethod::Verlet));
         }
         let start = FRAC_PI_2 + wrap;

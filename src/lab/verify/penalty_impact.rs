@@ -8,11 +8,11 @@
 
 use super::bench::{box_mesh, law};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::contact::Contacts;
+use crate::contact::NodalModel;
 use crate::integrate::{Explicit, ExplicitMethod};
 use crate::math::V3;
 use crate::rod::Rod;
-use crate::system::{ContactModel, System};
+use crate::system::System;
 use std::sync::Arc;
 
 /// Steps in `sqrt(m / k)`; a contact takes pi or more of these times.
@@ -37,7 +37,12 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     sys.state.rod.v = vec![V3::new(0.0, 0.0, -speed); 2];
     let law = law(stiffness / length, damping_ratio, 0.0);
     let floor = Arc::new(box_mesh(side, side, side)?);
-    sys.contact = ContactModel::nodal(Contacts::new(floor, law, r, section.diameter, 2));
+    sys.touch_at_nodes(NodalModel {
+        surface: floor,
+        law,
+        radius: r,
+        diameter: section.diameter,
+    });
     sys.evaluate(Some(0.0));
     let depth = |s: &System| half + r - s.state.rod.x[0].z;
     let mut deepest: f64 = 0.0;

@@ -9,7 +9,7 @@
 
 use super::bench::{SmoothMean, Stepper, law, line_damping, mesh, stable_step, touch_forces};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::contact::{Contacts, LineContact};
+use crate::contact::{LineModel, NodalModel};
 use crate::feed::{Feed, FeedSpec};
 use crate::geometry::Shape;
 use crate::geometry::generate::cylinder;
@@ -19,7 +19,7 @@ use crate::math::{V3, spin_velocity};
 use crate::rod::Twist;
 use crate::rod::{Rod, Section};
 use crate::scene::Integrator;
-use crate::system::{ContactModel, NodalContact, Spindle, Support, System};
+use crate::system::{ContactModel, Spindle, Support, System};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -225,18 +225,22 @@ impl<'a> Wound<'a> {
                 radius: radius - r,
                 half_y: 10.0 * r,
             };
-            let mut line = LineContact::new(core, law, r, sys.state.rod.nodes());
+            let mut line = LineModel::new(core, law, r);
             line.damping = line_damping(&law, section);
             // the load falls to nothing here: let the depth fall with it
             line.onset = ONSET * pull / (radius * stiffness);
-            sys.contact = ContactModel::line(line);
+            sys.touch_along(line);
         } else {
             // the middles of the facets on the circle
             let flat = libm::cos(0.5 * TAU / (EDGES * FACETS) as f64);
             let core = mesh(cylinder((radius - r) / flat, 20.0 * r, EDGES * FACETS))?;
             let core = Arc::new(core);
-            let contacts = Contacts::new(core, law, r, section.diameter, EDGES + 1);
-            sys.contact = ContactModel::nodal(contacts);
+            sys.touch_at_nodes(NodalModel {
+                surface: core,
+                law,
+                radius: r,
+                diameter: section.diameter,
+            });
         }
         let spec = FeedSpec {
             mass: 0.0,
@@ -297,14 +301,16 @@ impl<'a> Wound<'a> {
 fn line_load(sys: &System) -> f64 {
     let (mut force, mut length) = (0.0, 0.0);
     let half = sys.state.rod.edges() / 4..=sys.state.rod.edges() * 3 / 4;
-    if sys.contact.is_line() {
+    if sys.model.contact.is_line() {
         for i in half {
             force += touch_forces(sys, i).iter().map(V3::norm).sum::<f64>();
             length += sys.state.rod.rest[i];
         }
         return force / length;
     }
-    let Some(NodalContact { contacts, .. }) = sys.contact.as_nodal() else {
+    let (ContactModel::Nodal(model), Some(nodal)) =
+        (&sys.model.contact, sys.state.contact.as_nodal())
+    else {
         return 0.0;
     };
     let at_rest = V3::zeros();
@@ -313,9 +319,9 @@ fn line_load(sys: &System) -> f64 {
             sys.state.rod.voronoi(i),
             sys.state.rod.mass(&sys.model.section, i),
         );
-        let depth = contacts.nodes[i].depth();
+        let depth = nodal.nodes[i].depth();
         if depth > 0.0 {
-            force += contacts
+            force += model
                 .law
                 .force(V3::x(), depth, at_rest, at_rest, l, m)
                 .force

@@ -50,7 +50,7 @@ impl System {
 
     /// Puts the first `count` nodes on record for [`Self::thaw_front`].
     fn record_frozen(&mut self, count: usize) {
-        let Some(line) = self.contact.as_line() else {
+        let Some(line) = self.state.contact.as_line() else {
             return;
         };
         let spin = Spin::new(self.state.spindle.angle);

@@ -84,7 +84,7 @@ impl System {
     /// The wire's spline runs elsewhere round a node taken out at `i`: its contact points move along with
     /// their anchors.
     fn move_points(&mut self, i: usize) {
-        let Some(line) = self.contact.as_line_mut() else {
+        let Some(line) = self.state.contact.as_line_mut() else {
             return;
         };
         let q = &self.state.past.q[0];

@@ -37,7 +37,7 @@ impl System {
         [
             &mut self.state.rod,
             &mut self.state.roll,
-            &mut self.contact,
+            &mut self.state.contact,
             &mut self.state.past,
         ]
     }

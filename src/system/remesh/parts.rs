@@ -1,6 +1,6 @@
 //! How each part of the system follows a change of the wire.
 
-use super::super::{ContactModel, Past};
+use super::super::{ContactState, Past};
 use super::{Merge, Remesh, Split, Thaw};
 use crate::math::{Spin, V3, spin_velocity, turn_about_y};
 use crate::rod::{Rod, Scalar};
@@ -113,7 +113,7 @@ impl Remesh for Vec<f64> {
     }
 }
 
-impl Remesh for ContactModel {
+impl Remesh for ContactState {
     fn split(&mut self, split: &Split) {
         match self {
             Self::None => {}

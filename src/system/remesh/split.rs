@@ -120,7 +120,7 @@ impl System {
     ///
     /// Only the implicit method, whose edges roll by what is asked of them, spreads twist over the halves of an edge.
     fn twist_along(&self, j: usize) -> f64 {
-        if !self.contact.is_line() || !self.model.twist.is_carried() {
+        if !self.model.contact.is_line() || !self.model.twist.is_carried() {
             return 0.0;
         }
         let rod = &self.state.rod;

@@ -1,0 +1,37 @@
+//! What contact along the wire works with, and what follows from the state.
+
+use super::near::NearPoint;
+use super::point::PointState;
+use crate::contact::self_contact::PairScratch;
+use crate::geometry::SplineTube;
+
+/// Work arrays of contact along the wire, and the search among frozen wire. None of it is saved.
+#[derive(Clone, Debug)]
+pub struct LineScratch {
+    /// the frozen wire of the state, to be searched; it grows by [`super::LineContact::lay`]
+    pub tube: SplineTube,
+    /// work that the energy balance ascribes to touches which ended within the step, and that they did not do, J
+    pub lifted: f64,
+    /// of the pairs of live wire
+    pub pairs: PairScratch,
+    /// the points with surfaces near them at the last evaluation
+    pub(super) near: Vec<NearPoint>,
+    /// points whose surroundings this attempt at a step looked up, as they were
+    pub(super) undo: Vec<(u32, PointState)>,
+    /// room for the segments that a search finds
+    pub(super) found: Vec<u32>,
+}
+
+impl LineScratch {
+    /// Room for the contact of wire of this `radius`, m; no frozen wire.
+    pub fn new(radius: f64) -> Self {
+        Self {
+            tube: SplineTube::new(radius),
+            lifted: 0.0,
+            pairs: PairScratch::default(),
+            near: Vec::new(),
+            undo: Vec::with_capacity(256),
+            found: Vec::with_capacity(64),
+        }
+    }
+}

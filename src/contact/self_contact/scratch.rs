@@ -1,0 +1,63 @@
+//! What contact of live wire with live wire works with.
+
+use super::coupling::Coupling;
+use super::pairs::Pair;
+use crate::contact::stencil::NodeWeights;
+use crate::math::{Block, V3};
+
+/// A listed pair and the quadratic model of its potential in the linear system, by the distance vector.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NearPair {
+    /// index of the pair
+    pub(super) pair: u32,
+    /// the point
+    pub(super) young: NodeWeights,
+    /// its foot, with negative weights
+    pub(super) old: NodeWeights,
+    /// contact stiffness of the wire that the point stands for, N/m
+    pub(super) stiffness: f64,
+    /// gradient at the iterate, N
+    pub(super) gradient: V3,
+    /// Hessian, N/m
+    pub(super) hessian: Block,
+    /// distance to touching, while the model has no touch, m
+    pub(super) room: f64,
+    /// the model is that of a place that an update led to
+    pub(super) predicted: bool,
+    /// direction of the slide in the model; 0: the bristle holds
+    pub(super) slide: V3,
+    /// index of its coupling, if it has one
+    pub(super) coupling: Option<u32>,
+}
+
+/// A contact point next to older wire with which it makes no pair.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unpaired {
+    /// number of the point
+    pub(super) point: u32,
+    /// way that both together may move before they would be a pair, m
+    pub(super) room: f64,
+    /// node of the older wire
+    pub(super) other: u32,
+}
+
+/// Work arrays of the pairs. Nothing in here outlives a step.
+#[derive(Clone, Debug, Default)]
+pub struct PairScratch {
+    /// the pairs of the step before, while those of the next are listed
+    pub(super) previous: Vec<Pair>,
+    /// polar angle of each node from the clamp, rad
+    pub(super) angle: Vec<f64>,
+    /// unstretched length from the clamp to each node, m
+    pub(super) arc: Vec<f64>,
+    /// points next to wire with which they make no pair
+    pub(super) unpaired: Vec<Unpaired>,
+    /// by turns back along the wire, the node that the search has reached
+    pub(super) reached: Vec<usize>,
+    /// room for the wire in the core frame
+    pub wire: Vec<V3>,
+    /// couplings of nodes on touching live wires, by the last evaluation
+    pub couplings: Vec<Coupling>,
+    /// the pairs as the linear system sees them
+    pub(super) near: Vec<NearPair>,
+}
