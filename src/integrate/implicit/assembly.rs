@@ -3,14 +3,12 @@
 //! Nothing is added up in memory: each block of the matrix is put once, as the sum of what the
 //! joints and edges around its node have ([`Joints`]), many nodes side by side.
 
-use super::roll::carries_twist;
+use super::unknowns::{FAR, NEAR, ROW, Unknowns};
 use crate::linalg::Banded;
 use crate::math::V3;
 use crate::math::simd::{Columns, Lanes, Lanes3, ROWS, RowBlock, WithSimd, run};
 use crate::rod::YieldBranch;
-use crate::rod::batch::{
-    BendingJoints, CROSS, GRADIENT, JOINT, Joints, OWN, ROLL_OWN, ROLL_WITH, TORQUE, TwistingJoints,
-};
+use crate::rod::batch::{CROSS, GRADIENT, JOINT, Joints, OWN};
 use pulp::Simd;
 
 /// Columns of a node: where it would go without forces, its mass, where it is.
@@ -30,17 +28,9 @@ const EDGE: usize = 9;
 const EDGE_OWN: usize = 0;
 const EDGE_GRADIENT: usize = 6;
 
-/// Numbers of a node's row of the matrix: lower half of its own block, blocks with the next node and the one after.
-const ROW: usize = 10 + 16 + 16;
-const NEAR: usize = 10;
-const FAR: usize = 26;
-
 /// What an evaluation has laid out in columns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Assembly {
-    /// joints with twist, or without
-    pub(super) rolling: TwistingJoints,
-    pub(super) plain: BendingJoints,
     nodes: Columns<NODE>,
     stretch: Columns<PULL>,
     /// energy of each node
@@ -71,16 +61,14 @@ impl Assembly {
     /// returns the energy of inertia and gravity, J.
     ///
     /// Inertia weighs `weight`, 1/s^2, for each mass; `gravity`, m/s^2, and everything else are in the core frame.
-    pub(super) fn gather<const D: usize, const HESSIAN: bool>(
+    pub(super) fn gather<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
         &mut self,
         q: &[V3],
         (weight, gravity): (f64, V3),
         yield_branches: &mut [(u32, YieldBranch)],
-        (gradient, torque, matrix): (&mut Vec<V3>, &mut Vec<f64>, &mut Banded<D>),
+        (gradient, unknowns, matrix): (&mut Vec<V3>, &mut U, &mut Banded<D>),
     ) -> f64 {
         let Self {
-            rolling,
-            plain,
             nodes,
             stretch,
             energy,
@@ -94,64 +82,59 @@ impl Assembly {
             matrix.resize(q.len());
         }
         gradient.resize(q.len(), V3::zeros());
-        if carries_twist(D) {
-            torque.resize(q.len(), 0.0);
-        }
+        unknowns.fit(q.len());
         let out = Out {
             nodes,
             stretch,
             energy,
             gradient,
-            torque,
+            unknowns,
             matrix,
             weight,
             gravity,
         };
-        if carries_twist(D) {
-            run(Gather::<D, _, HESSIAN>(rolling, yield_branches, out));
-        } else {
-            run(Gather::<D, _, HESSIAN>(plain, yield_branches, out));
-        }
+        run(Gather::<D, U, HESSIAN>(yield_branches, out));
         energy.iter().sum()
     }
 }
 
 /// Joints, edges and nodes, block by block: edges need the joints at both ends, nodes the edges on both sides, so
 /// these follow one block behind.
-struct Gather<'a, const D: usize, J, const HESSIAN: bool>(
-    &'a J,
+struct Gather<'a, const D: usize, U, const HESSIAN: bool>(
     &'a mut [(u32, YieldBranch)],
-    Out<'a, D>,
+    Out<'a, D, U>,
 );
 
 /// What nodes have, and what is put for them.
-struct Out<'a, const D: usize> {
+struct Out<'a, const D: usize, U> {
     nodes: &'a Columns<NODE>,
     stretch: &'a Columns<PULL>,
     energy: &'a mut [f64],
     gradient: &'a mut [V3],
-    torque: &'a mut [f64],
+    unknowns: &'a mut U,
     matrix: &'a mut Banded<D>,
     weight: f64,
     gravity: V3,
 }
 
-impl<const D: usize, J: Joints, const HESSIAN: bool> WithSimd for Gather<'_, D, J, HESSIAN> {
+impl<const D: usize, U: Unknowns<D>, const HESSIAN: bool> WithSimd for Gather<'_, D, U, HESSIAN> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self(all, mut yield_branches, mut out) = self;
-        let blocks = all.blocks();
+        let Self(mut yield_branches, mut out) = self;
+        let blocks = out.unknowns.joints().blocks();
         let edges = out.gradient.len() - 1;
         let mut blocks_of_joints = [RowBlock::<JOINT>::default(); 2];
         let mut blocks_of_edges = [RowBlock::<EDGE>::default(); 2];
         let [mut joints, mut next] = blocks_of_joints.each_mut();
         let [mut before, mut around] = blocks_of_edges.each_mut();
         // (made once: clearing them is a tenth of the work)
-        let (mut row, mut force) = ([[0.0; ROWS]; ROW], [[0.0; ROWS]; 5]);
+        let (mut row, mut force) = ([[0.0; ROWS]; ROW], [[0.0; ROWS]; 4]);
+        let all = out.unknowns.joints();
         all.joints::<S, HESSIAN>(simd, 0, joints, &mut yield_branches);
         for block in 0..blocks {
+            let all = out.unknowns.joints();
             if block + 1 < blocks {
                 all.joints::<S, HESSIAN>(simd, block + 1, next, &mut yield_branches);
             } else {
@@ -224,14 +207,14 @@ fn lower(r: usize, s: usize) -> usize {
     }
 }
 
-impl<const D: usize> Out<'_, D> {
+impl<const D: usize, U: Unknowns<D>> Out<'_, D, U> {
     /// Rows of the matrix and the gradient of as many nodes as there are lanes.
     #[inline(always)]
     fn node<S: Simd, const HESSIAN: bool>(
         &mut self,
         simd: S,
         (joints, edges): (&RowBlock<JOINT>, &RowBlock<EDGE>),
-        (row, force): (&mut [[f64; ROWS]; ROW], &mut [[f64; ROWS]; 5]),
+        (row, force): (&mut [[f64; ROWS]; ROW], &mut [[f64; ROWS]; 4]),
         block: usize,
         first: usize,
     ) {
@@ -248,19 +231,13 @@ impl<const D: usize> Out<'_, D> {
         g.y.store(&mut force[1]);
         g.z.store(&mut force[2]);
         (d.dot(d) * (k * 0.5) - pull.dot(place)).store(&mut force[3]);
-        if carries_twist(D) {
-            let behind = joints.load(simd, TORQUE + 1, first, 1);
-            (behind + joints.load(simd, TORQUE, first, 2)).store(&mut force[4]);
-        }
         let start = block * ROWS + first;
         for l in 0..Lanes::<S>::COUNT.min(self.gradient.len() - start) {
             let (i, l) = (start + l, l & (ROWS - 1));
             self.gradient[i] = V3::new(force[0][l], force[1][l], force[2][l]);
             self.energy[i] = force[3][l];
-            if carries_twist(D) {
-                self.torque[i] = force[4][l];
-            }
         }
+        self.unknowns.put_torques(simd, joints, first, start);
         if !HESSIAN {
             return;
         }
@@ -284,9 +261,7 @@ impl<const D: usize> Out<'_, D> {
                 (-next[3 * r + s]).store(&mut row[FAR + 4 * r + s]);
             }
         }
-        if carries_twist(D) {
-            rolls(simd, joints, first, row);
-        }
+        U::put_rolls(simd, joints, first, row);
         for l in 0..Lanes::<S>::COUNT.min(self.gradient.len() - start) {
             let (i, l) = (start + l, l & (ROWS - 1));
             self.matrix.put(
@@ -297,28 +272,4 @@ impl<const D: usize> Out<'_, D> {
             );
         }
     }
-}
-
-/// What rolls put into the rows of nodes: that of the edge before a joint is an unknown of the node before it.
-#[inline(always)]
-fn rolls<S: Simd>(simd: S, joints: &RowBlock<JOINT>, first: usize, row: &mut [[f64; ROWS]; ROW]) {
-    let back = joints.load3(simd, ROLL_WITH[1][0], first, 1);
-    let on = joints.load3(simd, ROLL_WITH[1][1], first, 1);
-    let from = joints.load3(simd, ROLL_WITH[0][0], first, 2);
-    let to = joints.load3(simd, ROLL_WITH[0][1], first, 2);
-    let other = (-joints.load3(simd, ROLL_WITH[1][0], first, 2)).components();
-    let own = (back - on - from).components();
-    let near = (on + (from - to)).components();
-    let far = to.components();
-    for s in 0..3 {
-        own[s].store(&mut row[6 + s]);
-        near[s].store(&mut row[NEAR + 12 + s]);
-        other[s].store(&mut row[NEAR + 4 * s + 3]);
-        far[s].store(&mut row[FAR + 12 + s]);
-    }
-    let corner = joints.load(simd, ROLL_OWN + 2, first, 1) + joints.load(simd, ROLL_OWN, first, 2);
-    corner.store(&mut row[9]);
-    joints
-        .load(simd, ROLL_OWN + 1, first, 2)
-        .store(&mut row[NEAR + 15]);
 }

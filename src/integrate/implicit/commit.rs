@@ -3,14 +3,15 @@
 use super::Implicit;
 use super::scheme::{Scheme, StepFormula};
 use super::tensioner::{NozzleEdge, advance};
+use super::unknowns::Unknowns;
 use super::work::Work;
 use crate::math::{Spin, V3};
 use crate::system::{Spindle, Support, System};
 
 impl Implicit {
-    pub(super) fn commit<const D: usize>(
+    pub(super) fn commit<const D: usize, U: Unknowns<D>>(
         &mut self,
-        w: &mut Work<D>,
+        w: &mut Work<D, U>,
         sys: &mut System,
         step: &StepFormula,
         spindle: Spindle,
@@ -31,10 +32,7 @@ impl Implicit {
             sys.state.unbalanced,
             sys.state.load.tension.last().copied(),
         );
-        if Work::<D>::ROLLS {
-            w.rolls.keep_torques(sys);
-            w.rolls.hand_over(sys, self.scheme, step);
-        }
+        w.unknowns.hand_over(sys, self.scheme, step);
         let (fed, grown) = self::feed(sys, step, nozzle, &w.q);
         for i in 0..nodes {
             let x = spin.to_lab(w.q[i]);
@@ -102,9 +100,7 @@ impl Implicit {
             work += 0.5
                 * (sys.state.load.force[i] + w.force[i]).dot(&(sys.state.rod.x[i] - w.start[i]));
         }
-        if Work::<D>::ROLLS {
-            work += w.rolls.work(sys);
-        }
+        work += w.unknowns.work(sys);
         let gained = if feeds {
             0.5 * inflow * sys.state.rod.v[sys.state.rod.edges() - 1].norm_squared()
         } else {

@@ -7,52 +7,35 @@
 mod assembly;
 mod commit;
 mod conjugate;
+mod dispatch;
 mod error;
 mod lengths;
 mod model;
 mod newton;
+mod places;
+mod places_and_rolls;
 mod predictor;
-mod roll;
+mod rolls;
 mod scheme;
 mod sensitivity;
 mod statics;
 mod step;
 mod step_control;
 mod tensioner;
+mod unknowns;
 mod work;
 
 pub use error::StepError;
 pub use scheme::Scheme;
 pub use sensitivity::OutputSensitivity;
 
-use roll::WITH_ROLL;
+use places::Places;
+use places_and_rolls::PlacesAndRolls;
 use serde::{Deserialize, Serialize};
 use work::Work;
 
 /// Newton's update at which a solve is done, over the tolerance.
 const CLOSE: f64 = 0.1;
-
-/// Runs `$body` with the work arrays that go with how the system carries twist, under the name `$work`.
-///
-/// Code with three and with four unknowns a node is compiled apart; this is the one place that chooses.
-macro_rules! with_work {
-    ($method:ident, $sys:ident, $work:ident => $body:expr) => {
-        if $sys.model.twist == crate::rod::Twist::Off {
-            let mut arrays = std::mem::take(&mut $method.work);
-            let $work = &mut arrays;
-            let out = $body;
-            $method.work = arrays;
-            out
-        } else {
-            let mut arrays = std::mem::take(&mut $method.twisted);
-            let $work = &mut arrays;
-            let out = $body;
-            $method.twisted = arrays;
-            out
-        }
-    };
-}
-use with_work;
 
 /// Settings and step length of the production method.
 #[derive(Clone, Debug)]
@@ -74,9 +57,9 @@ pub struct Implicit {
     pub flat: bool,
     /// what it took so far
     pub statistics: SolverStatistics,
-    work: Work<3>,
+    work: Work<3, Places>,
     /// the same where twist is carried
-    twisted: Work<WITH_ROLL>,
+    twisted: Work<4, PlacesAndRolls>,
 }
 
 impl SolverStatistics {

@@ -3,9 +3,11 @@
 use super::lengths::voronoi;
 use super::scheme::StepFormula;
 use super::tensioner::NozzleEdge;
+use super::unknowns::Unknowns;
 use super::work::{Axial, Work};
 use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
 use crate::math::{Spin, V3};
+use crate::rod::batch::Joints;
 use crate::rod::{Block, Laws, Rod, stretched, turning};
 use crate::system::{Loads, Spindle, Support, System, line_contact};
 
@@ -80,26 +82,36 @@ impl<'a> Model<'a> {
 
 impl Model<'_> {
     /// Evaluates at `work.q` into `work.gradient` and `work.matrix`.
-    pub(super) fn evaluate<const D: usize>(&mut self, work: &mut Work<D>) -> Value {
-        self.evaluate_with::<D, true>(work)
+    pub(super) fn evaluate<const D: usize, U: Unknowns<D>>(
+        &mut self,
+        work: &mut Work<D, U>,
+    ) -> Value {
+        self.evaluate_with::<D, U, true>(work)
     }
 
     /// Evaluates at `work.q` into `work.gradient`; `work.matrix` stays what it was, yield branches are forgotten.
-    pub(super) fn evaluate_forces<const D: usize>(&mut self, work: &mut Work<D>) -> Value {
-        self.evaluate_with::<D, false>(work)
+    pub(super) fn evaluate_forces<const D: usize, U: Unknowns<D>>(
+        &mut self,
+        work: &mut Work<D, U>,
+    ) -> Value {
+        self.evaluate_with::<D, U, false>(work)
     }
 
     #[inline(always)]
-    fn evaluate_with<const D: usize, const HESSIAN: bool>(&mut self, work: &mut Work<D>) -> Value {
+    fn evaluate_with<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
+        &mut self,
+        work: &mut Work<D, U>,
+    ) -> Value {
         work.evaluations += 1;
         let nodes = work.q.len();
-        let (rod, stretch) = self.rod_and_inertia::<D, HESSIAN>(work);
-        let energy = rod + self.loads::<D, HESSIAN>(work) - self.shared_inertia::<D, HESSIAN>(work);
+        let (rod, stretch) = self.rod_and_inertia::<D, U, HESSIAN>(work);
+        let energy =
+            rod + self.loads::<D, U, HESSIAN>(work) - self.shared_inertia::<D, U, HESSIAN>(work);
         let mut value = Value {
             merit: energy + stretch.merit,
             now: energy + stretch.now,
         };
-        self.contact::<D, HESSIAN>(work, &mut value);
+        self.contact::<D, U, HESSIAN>(work, &mut value);
         let Work {
             matrix, gradient, ..
         } = work;
@@ -109,10 +121,8 @@ impl Model<'_> {
                 matrix.pin(i, a);
             }
         });
-        if Work::<D>::ROLLS {
-            let matrix = HESSIAN.then_some(&mut work.matrix);
-            work.rolls.pin(matrix);
-        }
+        let matrix = HESSIAN.then_some(&mut work.matrix);
+        work.unknowns.pin(matrix);
         value
     }
 
@@ -134,7 +144,10 @@ impl Model<'_> {
 
     /// What lumped inertia has too much where mass is not lumped: `m_e / 12 |d_b - d_a|^2 / gamma^2` of an edge whose
     /// ends are `d` away from where they would fly.
-    fn shared_inertia<const D: usize, const HESSIAN: bool>(&self, work: &mut Work<D>) -> f64 {
+    fn shared_inertia<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
+        &self,
+        work: &mut Work<D, U>,
+    ) -> f64 {
         let mut energy = 0.0;
         for (j, m) in work.shared_mass.iter().enumerate() {
             let k = m / (self.gamma * self.gamma);
@@ -154,7 +167,10 @@ impl Model<'_> {
         energy
     }
 
-    fn loads<const D: usize, const HESSIAN: bool>(&self, work: &mut Work<D>) -> f64 {
+    fn loads<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
+        &self,
+        work: &mut Work<D, U>,
+    ) -> f64 {
         let mut energy = 0.0;
         if self.loads.drag > 0.0 {
             // against the lab-frame velocity (x - x*) / gamma
@@ -170,11 +186,9 @@ impl Model<'_> {
                 }
             }
         }
-        if Work::<D>::ROLLS {
-            let drag = self.loads.drag;
-            let matrix = HESSIAN.then_some(&mut work.matrix);
-            energy += work.rolls.add_inertia(self.gamma, drag, matrix);
-        }
+        let matrix = HESSIAN.then_some(&mut work.matrix);
+        let drag = self.loads.drag;
+        energy += work.unknowns.add_inertia(self.gamma, drag, matrix);
         for (i, f) in &self.loads.nodal {
             let f = self.back.to_core(*f);
             energy -= f.dot(&work.q[*i]);
@@ -188,13 +202,8 @@ impl Model<'_> {
             let (length, from) = (d.norm(), work.guess[j + 1] - work.guess[*j]);
             let t = d / length;
             energy -= m.dot(&turning([&(from / from.norm()), &t]));
-            let mut couple = m.cross(&t) / length;
-            if Work::<D>::ROLLS {
-                let about = m.dot(&t);
-                couple = work.assembly.rolling.turned(*j).derivative(&m).0;
-                energy -= about * (work.rolls.angle[*j] - work.rolls.guess[*j]);
-                work.rolls.gradient[*j] -= about;
-            }
+            let (couple, rolling) = work.unknowns.couple(*j, &m, &t, length);
+            energy -= rolling;
             work.gradient[j + 1] -= couple;
             work.gradient[*j] += couple;
         }
@@ -204,9 +213,9 @@ impl Model<'_> {
     /// Stretch of edge `j` with its direction, length and inverse length: into `work.axial` and the energy in
     /// `sum`; returns the stiffness across it.
     #[inline(always)]
-    fn stretch<const D: usize>(
+    fn stretch<const D: usize, U: Unknowns<D>>(
         &self,
-        work: &mut Work<D>,
+        work: &mut Work<D, U>,
         j: usize,
         (along, length, inverse): (V3, f64, f64),
         sum: &mut Value,
@@ -243,45 +252,21 @@ impl Model<'_> {
     }
 
     /// Energy of inertia, gravity and joints, and of stretch.
-    fn rod_and_inertia<const D: usize, const HESSIAN: bool>(
+    fn rod_and_inertia<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
         &self,
-        work: &mut Work<D>,
+        work: &mut Work<D, U>,
     ) -> (f64, Value) {
-        let Work {
-            assembly,
-            q,
-            rolls,
-            set,
-            yield_branches,
-            ..
-        } = work;
-        yield_branches.clear();
-        let mut energy;
-        if Work::<D>::ROLLS {
-            assembly.rolling.place(q, &rolls.angle);
-            energy = (assembly.rolling).respond(self.laws, HESSIAN.then_some(yield_branches));
-        } else {
-            assembly.plain.place(q);
-            let state = (&set[..], &self.rod.bend[..]);
-            let own = |j| voronoi(self.rod, self.grown, j);
-            energy =
-                (assembly.plain).respond(&self.laws.bend, state, own, &mut yield_branches.bending);
-        }
+        work.yield_branches.clear();
+        let wire = (self.rod, self.laws, self.grown);
+        let branches = &mut work.yield_branches;
+        let mut energy = (work.unknowns).respond::<HESSIAN>(wire, &work.q, branches);
         let mut axial = Value::default();
         for j in 0..self.rod.edges() {
-            let edge = if Work::<D>::ROLLS {
-                let all = &work.assembly.rolling;
-                (all.along(j), all.length(j), all.inverse(j))
-            } else {
-                let all = &work.assembly.plain;
-                (all.along(j), all.length(j), all.inverse(j))
-            };
+            let joints = work.unknowns.joints();
+            let edge = (joints.along(j), joints.length(j), joints.inverse(j));
             let across = self.stretch(work, j, edge, &mut axial);
             let s = work.axial[j];
             work.assembly.stretch(j, s.tension, s.stiffness, across);
-        }
-        if !HESSIAN {
-            work.yield_branches.clear();
         }
         let weight = 1.0 / (self.gamma * self.gamma);
         let gravity = self.back.to_core(self.loads.gravity);
@@ -290,23 +275,23 @@ impl Model<'_> {
             q,
             gradient,
             matrix,
-            rolls,
+            unknowns,
             yield_branches,
             ..
         } = work;
-        energy += assembly.gather::<D, HESSIAN>(
+        energy += assembly.gather::<D, U, HESSIAN>(
             q,
             (weight, gravity),
             &mut yield_branches.bending,
-            (gradient, &mut rolls.gradient, matrix),
+            (gradient, unknowns, matrix),
         );
         (energy, axial)
     }
 
     /// Adds the touches of the wire.
-    fn contact<const D: usize, const HESSIAN: bool>(
+    fn contact<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
         &mut self,
-        work: &mut Work<D>,
+        work: &mut Work<D, U>,
         value: &mut Value,
     ) {
         // taken out while it changes along with the rest of the model at hand
@@ -318,24 +303,24 @@ impl Model<'_> {
         for (j, rest) in self.rod.rest.iter().enumerate() {
             if j > 0 {
                 let point = ContactPoint::Node(j);
-                self.contact_of::<D, HESSIAN>(point, arc, &mut line, work, value);
+                self.contact_of::<D, U, HESSIAN>(point, arc, &mut line, work, value);
             }
             let point = ContactPoint::Edge(j);
-            self.contact_of::<D, HESSIAN>(point, arc, &mut line, work, value);
+            self.contact_of::<D, U, HESSIAN>(point, arc, &mut line, work, value);
             arc += rest;
         }
-        self.contact_of_pairs::<D, HESSIAN>(&mut line, work, value);
+        self.contact_of_pairs::<D, U, HESSIAN>(&mut line, work, value);
         self.line = Some(line);
     }
 
     /// Adds the touches of one contact point, whose node or edge begins at the unstretched length `arc`.
     #[inline(always)]
-    fn contact_of<const D: usize, const HESSIAN: bool>(
+    fn contact_of<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
         &self,
         point: ContactPoint,
         arc: f64,
         line: &mut LineContact<'_>,
-        work: &mut Work<D>,
+        work: &mut Work<D, U>,
         value: &mut Value,
     ) {
         let rest = &self.rod.rest;
@@ -354,10 +339,10 @@ impl Model<'_> {
     }
 
     /// Adds the touches of live wire with live wire.
-    fn contact_of_pairs<const D: usize, const HESSIAN: bool>(
+    fn contact_of_pairs<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
         &self,
         line: &mut LineContact<'_>,
-        work: &mut Work<D>,
+        work: &mut Work<D, U>,
         value: &mut Value,
     ) {
         let conditions = PairConditions {

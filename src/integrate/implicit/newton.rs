@@ -1,10 +1,10 @@
 //! Newton's method on the incremental potential, with line search.
 
+use super::conjugate;
 use super::model::Model;
+use super::unknowns::{Unknowns, add_at};
 use super::work::{Axial, Work};
-use super::{conjugate, roll};
 use crate::contact::{ContactPoint, NodeWeights, PairConditions};
-use crate::linalg::Banded;
 use crate::math::V3;
 use crate::rod::{Block, Laws, add_outer};
 
@@ -73,20 +73,14 @@ impl NewtonLimits {
     }
 
     /// Share of an update that is within reach, at most 1.
-    fn share<const D: usize>(&self, work: &Work<D>, update: f64) -> f64 {
+    fn share<const D: usize, U: Unknowns<D>>(&self, work: &Work<D, U>, update: f64) -> f64 {
         let mut share = (self.longest / update).min(1.0);
         if self.turn.is_finite() {
             for j in 0..work.q.len() - 1 {
                 let change = work.update_of(j + 1) - work.update_of(j);
                 share = share.min(self.turn * work.axial[j].length / change.norm());
             }
-            if Work::<D>::ROLLS {
-                // a joint must stay clear of half a turn
-                for j in 1..work.q.len() - 1 {
-                    let twist = work.update[D * j + 3] - work.update[D * j - 1];
-                    share = share.min(self.turn / twist.abs());
-                }
-            }
+            share = share.min(U::share(&work.update, self.turn));
         }
         share
     }
@@ -107,9 +101,9 @@ pub(super) struct NewtonFailure {
 
 /// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
 #[inline(never)]
-pub(super) fn solve<const D: usize>(
+pub(super) fn solve<const D: usize, U: Unknowns<D>>(
     model: &mut Model,
-    work: &mut Work<D>,
+    work: &mut Work<D, U>,
     close: f64,
     limits: NewtonLimits,
 ) -> Result<usize, NewtonFailure> {
@@ -120,15 +114,13 @@ pub(super) fn solve<const D: usize>(
     // inertia bounds the update from above: a guess that is good enough costs no solve
     let weight = model.gamma * model.gamma;
     let radius = 0.5 * model.diameter;
-    let mut bound = work
+    let bound = work
         .gradient
         .iter()
         .zip(&work.mass)
         .map(|(g, m)| g.amax() * weight / m)
         .fold(0.0, f64::max);
-    if Work::<D>::ROLLS {
-        bound = bound.max(work.rolls.bound(model.gamma, radius));
-    }
+    let bound = bound.max(work.unknowns.bound(model.gamma, radius));
     // (the midpoint rule keeps what is wrong with a guess for ever)
     if bound < close && limits.damped {
         return Ok(0);
@@ -163,9 +155,8 @@ pub(super) fn solve<const D: usize>(
             }
         }
         let mut share = limits.share(work, update);
-        work.start.clone_from(&work.q);
+        work.keep_start();
         work.base.clone_from(&work.axial);
-        work.rolls.start.clone_from(&work.rolls.angle);
         // near the end each step shrinks the update by the same factor or better
         let next = if last_update.is_finite() {
             update * (update / last_update).min(1.0)
@@ -173,7 +164,7 @@ pub(super) fn solve<const D: usize>(
             update
         };
         if share == 1.0 && fits && (update < close || next < 0.5 * close) {
-            take(work, 1.0);
+            work.take(1.0);
             return Ok(step);
         }
         let mut line_search_halvings = 0;
@@ -186,7 +177,7 @@ pub(super) fn solve<const D: usize>(
         }
         loop {
             hold_limits(model, step > LIMIT_STEPS);
-            take(work, share);
+            work.take(share);
             expect_tension(work, share);
             let trial = model.evaluate(work);
             if trial.merit <= value + NOISE * value.abs() || share * update < close {
@@ -225,9 +216,9 @@ pub(super) fn solve<const D: usize>(
 /// Most solves end with their second update, a thirtieth of the first, and old factors are good enough for it: what
 /// is then wrong is about its square over the first. It needs neither a new Hessian nor new factors with looks ahead, more
 /// than half the cost of an iteration. Where it is not the last (one in five), the work was in vain.
-fn end_by_chord<const D: usize>(
+fn end_by_chord<const D: usize, U: Unknowns<D>>(
     model: &mut Model,
-    work: &mut Work<D>,
+    work: &mut Work<D, U>,
     value: f64,
     (first, close): (f64, f64),
     damped: bool,
@@ -241,7 +232,7 @@ fn end_by_chord<const D: usize>(
         return false;
     }
     hold_limits(model, false);
-    take(work, 1.0);
+    work.take(1.0);
     expect_tension(work, 1.0);
     let trial = model.evaluate_forces(work);
     if trial.merit > value + NOISE * value.abs() || coupled(model) {
@@ -258,24 +249,24 @@ fn end_by_chord<const D: usize>(
         std::mem::swap(&mut work.update, &mut work.plain);
         return false;
     }
-    work.start.clone_from(&work.q);
-    work.rolls.start.clone_from(&work.rolls.angle);
-    take(work, 1.0);
+    work.keep_start();
+    work.take(1.0);
     true
 }
 
-fn load_gradient<const D: usize>(work: &mut Work<D>) {
+fn load_gradient<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U>) {
     work.load.clear();
-    for (i, g) in work.gradient.iter().enumerate() {
-        work.load.extend_from_slice(&[-g.x, -g.y, -g.z]);
-        if Work::<D>::ROLLS {
-            work.load.push(-work.rolls.gradient[i]);
-        }
+    for (i, places) in work.gradient.iter().enumerate() {
+        let gradient = work.unknowns.gradient(i, places);
+        work.load.extend_from_slice(&gradient.map(|g| -g));
     }
 }
 
 /// Largest update of an unknown, m, its node, and whether it is a roll, which counts by the way of the wire's surface.
-fn largest_update<const D: usize>(model: &Model, work: &Work<D>) -> (f64, usize, bool) {
+fn largest_update<const D: usize, U: Unknowns<D>>(
+    model: &Model,
+    work: &Work<D, U>,
+) -> (f64, usize, bool) {
     let radius = 0.5 * model.diameter;
     let (mut update, mut at) = (0.0, 0);
     for (k, u) in work.update.iter().enumerate() {
@@ -296,7 +287,10 @@ fn hold_limits(model: &mut Model, hold: bool) {
 
 /// The update from gradient and Hessian, with tangents of contact that fit where it leads; whether all of them do.
 #[inline(never)]
-fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result<bool, usize> {
+fn solve_linear<const D: usize, U: Unknowns<D>>(
+    model: &mut Model,
+    work: &mut Work<D, U>,
+) -> Result<bool, usize> {
     let nodes = work.q.len();
     load_gradient(work);
     for look in 0.. {
@@ -309,7 +303,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
                 couplings,
                 model.held,
                 &mut work.update,
-                &mut work.gradients,
+                &mut work.conjugate,
             ),
         }
         if look == 0 {
@@ -379,11 +373,9 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
                 work.matrix.pin(i, a);
                 work.load[D * i + a] = 0.0;
             });
-            if Work::<D>::ROLLS {
-                for i in work.rolls.pinned().into_iter().flatten() {
-                    work.matrix.pin(i, 3);
-                    work.load[D * i + 3] = 0.0;
-                }
+            for (i, a) in work.unknowns.pinned() {
+                work.matrix.pin(i, a);
+                work.load[D * i + a] = 0.0;
             }
         }
         work.solves += 1;
@@ -392,7 +384,7 @@ fn solve_linear<const D: usize>(model: &mut Model, work: &mut Work<D>) -> Result
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
-fn predict_branches<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
+fn predict_branches<const D: usize, U: Unknowns<D>>(laws: &Laws, work: &mut Work<D, U>) -> bool {
     let Work {
         yield_branches,
         update,
@@ -414,30 +406,20 @@ fn predict_branches<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
     for (law, (joint, yield_branch)) in bending.chain(twist) {
         let j = *joint as usize;
         // derivative of the angle by the rolls, which stand with the first nodes of their edges
-        let mut rolls = [0.0; 3];
-        if Work::<D>::ROLLS {
-            if j > 0 {
-                rolls[0] = yield_branch.rolls[0];
-            }
-            if j + 1 < nodes {
-                rolls[1] = yield_branch.rolls[1];
-            }
-        }
+        let (by_rolls, mut rolls) = (U::by_rolls(yield_branch), [0.0; 3]);
         let move_of = |u: &[f64]| V3::new(u[0], u[1], u[2]);
         let mut angle = 0.0;
         if j > 0 {
             let u = &update[D * (j - 1)..D * (j + 1)];
             angle += yield_branch.rows[0].dot(&(move_of(&u[D..]) - move_of(u)));
-            if Work::<D>::ROLLS {
-                angle += rolls[0] * u[D - 1];
-            }
+            rolls[0] = by_rolls[0];
+            angle += rolls[0] * U::roll(update, j - 1);
         }
         if j + 1 < nodes {
             let u = &update[D * j..D * (j + 2)];
             angle += yield_branch.rows[1].dot(&(move_of(&u[D..]) - move_of(u)));
-            if Work::<D>::ROLLS {
-                angle += rolls[1] * u[D - 1];
-            }
+            rolls[1] = by_rolls[1];
+            angle += rolls[1] * U::roll(update, j);
         }
         let Some((stiffness, moment)) = yield_branch.predict(law, angle) else {
             continue;
@@ -462,9 +444,7 @@ fn predict_branches<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
             for k in 0..3 {
                 load[D * i + k] -= moment * rows[a][k];
             }
-            if Work::<D>::ROLLS {
-                load[D * i + 3] -= moment * rolls[a];
-            }
+            U::relieve(load, i, moment * rolls[a]);
             for b in a..3 {
                 if none(b) {
                     continue;
@@ -472,34 +452,16 @@ fn predict_branches<const D: usize>(laws: &Laws, work: &mut Work<D>) -> bool {
                 let mut block = Block::default();
                 add_outer(&mut block, &(rows[a] * stiffness), &rows[b]);
                 add_at(matrix, i, b - a, &block);
-                if Work::<D>::ROLLS {
-                    let (own, other) = (rolls[a] * stiffness, rolls[b] * stiffness);
-                    let edge = roll::framed(rows[a] * other, rows[b] * own, own * rolls[b]);
-                    add_at(matrix, i, b - a, &edge);
-                }
+                let (one, other) = ((&rows[a], rolls[a]), (&rows[b], rolls[b]));
+                U::add_stiffness(matrix, i, b - a, one, other, stiffness);
             }
         }
     }
     any
 }
 
-/// Adds a block between nodes `i` and `i + k`.
-#[inline(always)]
-fn add_at<const D: usize, const B: usize>(
-    matrix: &mut Banded<D>,
-    i: usize,
-    k: usize,
-    block: &[[f64; B]; B],
-) {
-    if k == 0 {
-        matrix.add_diagonal(i, block);
-    } else {
-        matrix.add(i, k, block);
-    }
-}
-
 /// At the start tensions are expected to stay what they were at the last accepted instant.
-pub(super) fn expect_nothing<const D: usize>(model: &Model, work: &mut Work<D>) {
+pub(super) fn expect_nothing<const D: usize, U: Unknowns<D>>(model: &Model, work: &mut Work<D, U>) {
     work.expected.clear();
     for j in 0..model.rod.edges() {
         let tension = model.tension.get(j).copied().unwrap_or(0.0);
@@ -515,7 +477,7 @@ pub(super) fn expect_nothing<const D: usize>(model: &Model, work: &mut Work<D>) 
 
 /// What the update promises for the stretch of each edge.
 #[inline(never)]
-fn expect_tension<const D: usize>(work: &mut Work<D>, share: f64) {
+fn expect_tension<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U>, share: f64) {
     let update = &work.update;
     for (j, (e, a)) in work.expected.iter_mut().zip(&work.base).enumerate() {
         let (u, v) = (&update[D * j..], &update[D * (j + 1)..]);
@@ -528,27 +490,9 @@ fn expect_tension<const D: usize>(work: &mut Work<D>, share: f64) {
 }
 
 /// Slope of the potential along the update.
-fn slope<const D: usize>(work: &Work<D>) -> f64 {
-    work.gradient
-        .iter()
-        .zip(work.update.chunks_exact(D))
-        .enumerate()
-        .map(|(i, (g, u))| {
-            let places = g.x * u[0] + g.y * u[1] + g.z * u[2];
-            if Work::<D>::ROLLS {
-                places + work.rolls.gradient[i] * u[3]
-            } else {
-                places
-            }
-        })
+fn slope<const D: usize, U: Unknowns<D>>(work: &Work<D, U>) -> f64 {
+    work.gradients()
+        .zip(work.update.as_chunks::<D>().0)
+        .map(|(g, u)| g.iter().zip(u).map(|(g, u)| g * u).sum::<f64>())
         .sum()
-}
-
-fn take<const D: usize>(work: &mut Work<D>, share: f64) {
-    for i in 0..work.q.len() {
-        work.q[i] = work.start[i] + work.update_of(i) * share;
-    }
-    for (j, angle) in work.rolls.angle.iter_mut().enumerate() {
-        *angle = work.rolls.start[j] + work.update[D * j + 3] * share;
-    }
 }

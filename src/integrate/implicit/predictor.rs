@@ -1,16 +1,16 @@
 //! The guess of a step and what its solve starts from.
 
-use super::lengths::{set_share, voronoi};
+use super::lengths::voronoi;
 use super::scheme::{Scheme, StepFormula, extrapolation};
 use super::tensioner::NozzleEdge;
+use super::unknowns::Unknowns;
 use super::work::Work;
-use crate::math::{Quat, Spin, V3, align, rotate, turn_about_y};
-use crate::rod::Joint;
+use crate::math::Spin;
 use crate::system::{Mass, Spindle, Support, System};
 
-impl<const D: usize> Work<D> {
-    /// Fills guess, inertial target, masses, and plastic curvature or frames for a step; rolls are
-    /// without inertia where not `inert`.
+impl<const D: usize, U: Unknowns<D>> Work<D, U> {
+    /// Fills guess, inertial target and masses for a step, and lays out the joints; rolls are without inertia where
+    /// not `inert`.
     #[inline(never)]
     pub(super) fn prepare(
         &mut self,
@@ -69,18 +69,8 @@ impl<const D: usize> Work<D> {
             }
         }
         w.q.clone_from(&w.guess);
-        if Self::ROLLS {
-            self.rolls.prepare(sys, step, spindle, support, inert);
-            self.rolls.lay_out(&mut self.assembly.rolling);
-            let (state, ends) = ((&rod.bend[..], &rod.twist[..]), self.rolls.joints());
-            (self.assembly.rolling).lay(&sys.model.laws, state, ends, |j| {
-                (voronoi(rod, step.grown, j), set_share(rod, step.grown, j))
-            });
-        } else {
-            self.turn_plastic_curvature(sys, spindle, support, step.grown);
-            let clamps = clamp_directions(support, spindle);
-            self.assembly.plain.begin(rod.edges(), clamps);
-        }
+        let ends = (spindle, support);
+        self.unknowns.prepare(sys, step, ends, &self.guess, inert);
         self.assembly.begin(&self.target, &self.mass);
         let (spec, feed) = sys.model.feed.as_ref().zip(sys.state.feed.as_ref())?;
         let last = rod.edges() - 1;
@@ -98,46 +88,6 @@ impl<const D: usize> Work<D> {
             ),
         ))
     }
-
-    /// Plastic curvature of each joint as a vector in the core frame, turned along with the guess.
-    pub(super) fn turn_plastic_curvature(
-        &mut self,
-        sys: &System,
-        spindle: &Spindle,
-        support: &[Support; 2],
-        grown: f64,
-    ) {
-        let w = &mut *self;
-        let rod = &sys.state.rod;
-        let back = turn_about_y(-spindle.angle);
-        w.set.clear();
-        w.set.resize(rod.nodes(), V3::zeros());
-        for i in 0..rod.nodes() {
-            let k = rod.bend[i].curvature;
-            if k == [0.0; 2] {
-                continue;
-            }
-            let frame = |j: usize| {
-                let d = w.guess[j + 1] - w.guess[j];
-                align(&(back * rod.frame[j]), &(d / d.norm()), 0.0)
-            };
-            let clamp = |s: &Support| s.frame.map(|f| if s.turning { f } else { back * f });
-            let before = if i > 0 {
-                Some(frame(i - 1))
-            } else {
-                clamp(&support[0])
-            };
-            let after = if i < rod.edges() {
-                Some(frame(i))
-            } else {
-                clamp(&support[1])
-            };
-            let (Some(p), Some(n)) = (before, after) else {
-                continue;
-            };
-            w.set[i] = mid_frame_vector(&p, &n, k) * set_share(rod, grown, i);
-        }
-    }
 }
 
 /// The step of `h` from the present instant.
@@ -149,15 +99,6 @@ pub(super) fn step_of(sys: &System, scheme: Scheme, h: f64) -> StepFormula {
     }
 }
 
-/// A vector with components `k` in the frame half-way between the frames of two edges.
-fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
-    let joint = Joint::between(p, n);
-    let half = crate::math::relative([0.5 * joint.bend[0], 0.5 * joint.bend[1]], 0.0);
-    let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
-    let mid = p * Quat::new(c, 0.0, 0.0, s) * half;
-    rotate(&mid, &V3::new(k[0], k[1], 0.0))
-}
-
 /// The supports `dt` later.
 pub(super) fn moved(support: &[Support; 2], dt: f64) -> [Support; 2] {
     let mut s = *support;
@@ -165,16 +106,4 @@ pub(super) fn moved(support: &[Support; 2], dt: f64) -> [Support; 2] {
         s.point += s.velocity * dt;
     }
     s
-}
-
-/// Directions of the clamped ends in the core frame.
-fn clamp_directions(support: &[Support; 2], spindle: &Spindle) -> [Option<V3>; 2] {
-    let spin = Spin::new(spindle.angle);
-    let of = |s: &Support| {
-        s.frame.map(|f| {
-            let t = rotate(&f, &V3::z());
-            if s.turning { t } else { spin.to_core(t) }
-        })
-    };
-    [of(&support[0]), of(&support[1])]
 }

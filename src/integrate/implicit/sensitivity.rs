@@ -10,8 +10,9 @@ use super::model::Model;
 use super::predictor::{moved, step_of};
 use super::scheme::StepFormula;
 use super::tensioner::{NozzleEdge, advance};
+use super::unknowns::Unknowns;
 use super::work::Work;
-use super::{CLOSE, Implicit, StepError, conjugate, newton, with_work};
+use super::{CLOSE, Implicit, StepError, conjugate, newton};
 use crate::math::V3;
 use crate::system::{Spindle, Support, System};
 
@@ -85,16 +86,16 @@ impl Implicit {
         let kept = sys.state.contact.clone();
         let inputs = (sys.state.spindle, sys.state.support, sys.state.set_tension);
         let statistics = self.statistics;
-        let tangent = with_work!(self, sys, work => self.tangent_with(work, sys, h, lift));
+        let tangent = self.with_work(sys, |work, method, sys| work.tangent(method, sys, h, lift));
         self.statistics = statistics;
         (sys.state.spindle, sys.state.support, sys.state.set_tension) = inputs;
         sys.state.contact = kept;
         tangent
     }
 
-    fn tangent_with<const D: usize>(
+    pub(super) fn tangent_with<const D: usize, U: Unknowns<D>>(
         &self,
-        work: &mut Work<D>,
+        work: &mut Work<D, U>,
         sys: &mut System,
         h: f64,
         lift: usize,
@@ -124,20 +125,16 @@ impl Implicit {
             cause: "the equations of the step leave a node loose",
         })?;
         let held = model.held;
-        let (q, roll) = (work.q.clone(), work.rolls.angle.clone());
-        let (nodes, expected) = (q.len(), work.expected.clone());
-        let reach = q[nodes - 1].norm().max(WAY);
-        let seen = |work: &mut Work<D>, sys: &mut System, input: usize, by: f64, dq: &[f64]| {
+        work.keep_start();
+        let (nodes, expected) = (work.q.len(), work.expected.clone());
+        let reach = work.q[nodes - 1].norm().max(WAY);
+        let seen = |work: &mut Work<D, U>, sys: &mut System, input: usize, by: f64, dq: &[f64]| {
             let setting = set(work, sys, &step, &base, input, by);
-            for i in 0..nodes - 1 {
-                let d = V3::new(dq[D * i], dq[D * i + 1], dq[D * i + 2]);
-                work.q[i] = q[i] + d * by;
-            }
+            work.update.clear();
+            work.update.extend_from_slice(dq);
+            work.take(by);
             // where nothing pulls at the node at the nozzle, it is where its support is
             work.q[nodes - 1] = work.guess[nodes - 1];
-            for (j, angle) in work.rolls.angle.iter_mut().enumerate() {
-                *angle = roll[j] + dq[D * j + 3] * by;
-            }
             work.expected.clone_from(&expected);
             let mut model = Model::of_step(
                 sys,
@@ -158,9 +155,9 @@ impl Implicit {
             let (mut settled, mut last) = (false, f64::INFINITY);
             for _ in 0..ROUNDS {
                 let after = seen(work, sys, input, by, &dq);
-                let mut residual = residual_of(work);
+                let mut residual = work.gradients().flatten().collect::<Vec<_>>();
                 let before = seen(work, sys, input, -by, &dq);
-                for (r, b) in residual.iter_mut().zip(residual_of(work)) {
+                for (r, b) in residual.iter_mut().zip(work.gradients().flatten()) {
                     *r = (b - *r) / (2.0 * by);
                 }
                 for (end, first) in [(0, 0), (1, D * (nodes - 1))] {
@@ -168,10 +165,8 @@ impl Implicit {
                         residual[first + a] = 0.0;
                     }
                 }
-                if Work::<D>::ROLLS {
-                    for i in work.rolls.pinned().into_iter().flatten() {
-                        residual[D * i + 3] = 0.0;
-                    }
+                for (i, a) in work.unknowns.pinned() {
+                    residual[D * i + a] = 0.0;
                 }
                 slopes[input] = OutputSensitivity::slope(&after, &before, 2.0 * by);
                 if settled {
@@ -180,7 +175,7 @@ impl Implicit {
                 match sys.line_scratch().map_or(&[][..], |l| &l.pairs.couplings) {
                     [] => work.matrix.solve(&mut residual),
                     couplings => {
-                        let scratch = &mut work.gradients;
+                        let scratch = &mut work.conjugate;
                         conjugate::solve(&work.matrix, couplings, held, &mut residual, scratch);
                     }
                 }
@@ -209,8 +204,8 @@ impl Implicit {
 }
 
 /// Prepares the step with one input off by `by`.
-fn set<const D: usize>(
-    work: &mut Work<D>,
+fn set<const D: usize, U: Unknowns<D>>(
+    work: &mut Work<D, U>,
     sys: &mut System,
     step: &StepFormula,
     base: &(Spindle, [Support; 2], f64),
@@ -233,23 +228,11 @@ fn set<const D: usize>(
     }
 }
 
-/// The gradient, unknown by unknown.
-fn residual_of<const D: usize>(work: &Work<D>) -> Vec<f64> {
-    let mut all = Vec::with_capacity(D * work.q.len());
-    for (i, g) in work.gradient.iter().enumerate() {
-        all.extend_from_slice(&[g.x, g.y, g.z]);
-        if Work::<D>::ROLLS {
-            all.push(work.rolls.gradient[i]);
-        }
-    }
-    all
-}
-
 /// What there is to see at `work.q`, after an evaluation without pins.
 ///
 /// The moment on the core is what the wire does not keep: that of the nozzle's force less what turns the wire's mass.
-fn look<const D: usize>(
-    work: &Work<D>,
+fn look<const D: usize, U: Unknowns<D>>(
+    work: &Work<D, U>,
     sys: &System,
     step: &StepFormula,
     setting: &Setting,

@@ -7,8 +7,9 @@
 use super::model::Model;
 use super::newton::{self, NewtonLimits};
 use super::scheme::StepFormula;
+use super::unknowns::Unknowns;
 use super::work::Work;
-use super::{CLOSE, Implicit, StepError, with_work};
+use super::{CLOSE, Implicit, StepError};
 use crate::math::{Spin, V3};
 use crate::system::{System, line_contact};
 
@@ -87,7 +88,7 @@ impl Implicit {
 
     /// The same, and the torques on the edges about themselves, N m; none where twist is off.
     pub fn out_of_balance(&mut self, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
-        with_work!(self, sys, work => forces_with(work, sys))
+        self.with_work(sys, |work, _, sys| work.out_of_balance(sys))
     }
 
     /// Returns the solver's steps.
@@ -97,12 +98,14 @@ impl Implicit {
         moved: &[V3],
         share: f64,
     ) -> Result<usize, StepError> {
-        with_work!(self, sys, work => self.equilibrium_with(work, sys, moved, share))
+        self.with_work(sys, |work, method, sys| {
+            work.equilibrium(method, sys, moved, share)
+        })
     }
 
-    fn equilibrium_with<const D: usize>(
+    pub(super) fn equilibrium_with<const D: usize, U: Unknowns<D>>(
         &mut self,
-        work: &mut Work<D>,
+        work: &mut Work<D, U>,
         sys: &mut System,
         moved: &[V3],
         share: f64,
@@ -122,9 +125,7 @@ impl Implicit {
             }
         }
         let limits = NewtonLimits {
-            // wire bent and twisted far from its free shape converges by a factor, not by squares: what the
-            // Hessian leaves out is not small there
-            steps: if Work::<D>::ROLLS { 200 } else { 40 },
+            steps: U::STATIC_STEPS,
             longest: f64::INFINITY,
             turn: 0.4,
             far: f64::INFINITY,
@@ -135,9 +136,8 @@ impl Implicit {
         let mut taken = 0;
         for _ in 0..PASSES {
             work.q.clone_from(&work.guess);
-            if !Work::<D>::ROLLS {
-                work.turn_plastic_curvature(sys, &spindle, &support, 0.0);
-            }
+            let ends = (&spindle, &support);
+            work.unknowns.follow(sys, ends, &work.guess);
             let mut model = model_at_rest(sys);
             model.flat = self.flat;
             let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, limits);
@@ -155,9 +155,7 @@ impl Implicit {
         for (x, q) in sys.state.rod.x.iter_mut().zip(&work.q) {
             *x = spin.to_lab(*q);
         }
-        if Work::<D>::ROLLS {
-            sys.state.roll.clone_from(&work.rolls.angle);
-        }
+        work.unknowns.hand_over_equilibrium(sys);
         sys.place_supports();
         sys.evaluate_smooth(f64::INFINITY, true);
         sys.state.past.forget();
@@ -181,7 +179,10 @@ fn still(sys: &mut System) -> StepFormula {
     }
 }
 
-fn forces_with<const D: usize>(work: &mut Work<D>, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
+pub(super) fn out_of_balance_with<const D: usize, U: Unknowns<D>>(
+    work: &mut Work<D, U>,
+    sys: &mut System,
+) -> (Vec<V3>, Vec<f64>) {
     let step = still(sys);
     let (spindle, support) = (sys.state.spindle, sys.state.support);
     work.prepare(sys, &step, &spindle, &support, false);
@@ -195,9 +196,7 @@ fn forces_with<const D: usize>(work: &mut Work<D>, sys: &mut System) -> (Vec<V3>
     model.evaluate(work);
     let spin = Spin::new(sys.state.spindle.angle);
     let forces = work.gradient.iter().map(|g| -spin.to_lab(*g));
-    let rolls = work.rolls.angle.len();
-    let torques = work.rolls.gradient.iter().take(rolls).map(|g| -g);
-    (forces.collect(), torques.collect())
+    (forces.collect(), work.unknowns.torques())
 }
 
 fn model_at_rest(sys: &mut System) -> Model<'_> {

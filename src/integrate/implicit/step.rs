@@ -3,19 +3,20 @@
 use super::model::Model;
 use super::predictor::{moved, step_of};
 use super::step_control::SHORT;
+use super::unknowns::Unknowns;
 use super::work::Work;
-use super::{CLOSE, Implicit, Scheme, StepError, newton, with_work};
+use super::{CLOSE, Implicit, Scheme, StepError, newton};
 use crate::system::System;
 
 impl Implicit {
     /// Takes one step of at most `most` seconds; returns its length.
     pub fn step(&mut self, sys: &mut System, most: f64) -> Result<f64, StepError> {
-        with_work!(self, sys, work => self.step_with(work, sys, most))
+        self.with_work(sys, |work, method, sys| work.step(method, sys, most))
     }
 
-    fn step_with<const D: usize>(
+    pub(super) fn step_with<const D: usize, U: Unknowns<D>>(
         &mut self,
-        work: &mut Work<D>,
+        work: &mut Work<D, U>,
         sys: &mut System,
         most: f64,
     ) -> Result<f64, StepError> {
@@ -51,7 +52,7 @@ impl Implicit {
             self.statistics.evaluations += std::mem::take(&mut work.evaluations);
             self.statistics.solves += std::mem::take(&mut work.solves);
             self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
-            self.statistics.cg_iterations += std::mem::take(&mut work.gradients.cg_iterations);
+            self.statistics.cg_iterations += std::mem::take(&mut work.conjugate.cg_iterations);
             let line = sys.line_scratch();
             let missed = line.and_then(|line| line.pairs.missed(&sys.state.past.q[0], &work.q));
             let retry = match solved {
@@ -103,17 +104,23 @@ impl Implicit {
         h: f64,
         with: impl FnOnce(&mut dyn FnMut() -> f64),
     ) {
-        let scheme = self.scheme;
-        with_work!(self, sys, work => evaluating_with(scheme, work, sys, h, with));
+        let mut with = Some(with);
+        self.with_work(sys, |work, method, sys| {
+            work.evaluating(method.scheme, sys, h, &mut |evaluate| {
+                if let Some(with) = with.take() {
+                    with(evaluate);
+                }
+            });
+        });
     }
 }
 
-fn evaluating_with<const D: usize>(
+pub(super) fn evaluating_with<const D: usize, U: Unknowns<D>>(
     scheme: Scheme,
-    work: &mut Work<D>,
+    work: &mut Work<D, U>,
     sys: &mut System,
     h: f64,
-    with: impl FnOnce(&mut dyn FnMut() -> f64),
+    with: &mut dyn FnMut(&mut dyn FnMut() -> f64),
 ) {
     sys.begin_past();
     let step = step_of(sys, scheme, h);

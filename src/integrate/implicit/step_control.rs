@@ -1,6 +1,7 @@
 //! How long a step may be.
 
 use super::Implicit;
+use super::unknowns::Unknowns;
 use super::work::Work;
 use crate::system::System;
 
@@ -51,7 +52,7 @@ impl Implicit {
     }
 }
 
-impl<const D: usize> Work<D> {
+impl<const D: usize, U: Unknowns<D>> Work<D, U> {
     /// Share of the guess's way that takes no node deeper than its radius into core or frozen wire: error
     /// estimate and contact search
     /// both know nothing of a surface that lies between the ends of a step.

@@ -2,7 +2,7 @@
 
 use super::assembly::Assembly;
 use super::conjugate;
-use super::roll::{Rolls, carries_twist};
+use super::unknowns::Unknowns;
 use crate::linalg::Banded;
 use crate::math::V3;
 use crate::rod::YieldBranches;
@@ -26,9 +26,9 @@ pub(super) struct Axial {
     pub(super) energy: f64,
 }
 
-/// Scratch arrays of a step with `D` unknowns a node, core frame.
+/// Scratch arrays of a step with the `D` unknowns a node that `U` has, core frame.
 #[derive(Debug, Default)]
-pub(super) struct Work<const D: usize> {
+pub(super) struct Work<const D: usize, U> {
     /// places of the nodes at the iterate, m
     pub(super) q: Vec<V3>,
     /// places at the start of a Newton step, m
@@ -43,8 +43,6 @@ pub(super) struct Work<const D: usize> {
     pub(super) mass: Vec<f64>,
     /// mass that couples the ends of each edge, kg; none where it is lumped
     pub(super) shared_mass: Vec<f64>,
-    /// plastic curvature per joint as a vector, 1/m
-    pub(super) set: Vec<V3>,
     /// stretch of each edge at the last evaluation
     pub(super) axial: Vec<Axial>,
     /// stretch of each edge at the start of a Newton step
@@ -63,12 +61,12 @@ pub(super) struct Work<const D: usize> {
     pub(super) plain: Vec<f64>,
     /// Hessian of the potential, factored in place
     pub(super) matrix: Banded<D>,
-    /// rolls of the edges; empty where no twist is carried
-    pub(super) rolls: Rolls,
-    /// joints, edges and nodes laid out for the assembly
+    /// joints, and rolls where twist is carried
+    pub(super) unknowns: U,
+    /// edges and nodes laid out for the assembly
     pub(super) assembly: Assembly,
     /// vectors of the conjugate gradients
-    pub(super) gradients: conjugate::Scratch,
+    pub(super) conjugate: conjugate::Scratch,
     /// forces at the last accepted instant, lab frame, N; while solving, places after the update, m
     pub(super) force: Vec<V3>,
     /// evaluations of potential and gradient since they were last counted
@@ -80,16 +78,13 @@ pub(super) struct Work<const D: usize> {
 }
 
 /// Nothing in here outlives a step, so a copy starts with empty arrays.
-impl<const D: usize> Clone for Work<D> {
+impl<const D: usize, U: Default> Clone for Work<D, U> {
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
-impl<const D: usize> Work<D> {
-    /// Whether edges roll, so that twist is carried.
-    pub(super) const ROLLS: bool = carries_twist(D);
-
+impl<const D: usize, U: Unknowns<D>> Work<D, U> {
     /// The update of node `i`'s place.
     #[inline]
     pub(super) fn update_of(&self, i: usize) -> V3 {
@@ -108,11 +103,28 @@ impl<const D: usize> Work<D> {
 
     /// Root mean square over the wire of what Newton's method moved the guess by, m.
     pub(super) fn difference(&self) -> f64 {
-        let (mut sum, mass) = self.weighed(|i| self.q[i] - self.guess[i]);
-        if Self::ROLLS {
-            sum += self.rolls.difference();
+        let (sum, mass) = self.weighed(|i| self.q[i] - self.guess[i]);
+        ((sum + self.unknowns.difference()) / mass).sqrt()
+    }
+
+    /// Keeps places and rolls as those at the start of an update.
+    pub(super) fn keep_start(&mut self) {
+        self.start.clone_from(&self.q);
+        self.unknowns.keep_start();
+    }
+
+    /// Takes this share of the update from the start.
+    pub(super) fn take(&mut self, share: f64) {
+        for i in 0..self.q.len() {
+            self.q[i] = self.start[i] + self.update_of(i) * share;
         }
-        (sum / mass).sqrt()
+        self.unknowns.take(&self.update, share);
+    }
+
+    /// Derivative of the potential by the unknowns, node by node.
+    pub(super) fn gradients(&self) -> impl Iterator<Item = [f64; D]> {
+        let places = self.gradient.iter().enumerate();
+        places.map(|(i, places)| self.unknowns.gradient(i, places))
     }
 
     /// Sum of the squares of the nodes' ways, each times its mass, and of the masses.

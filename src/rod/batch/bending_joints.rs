@@ -79,24 +79,6 @@ impl BendingJoints {
         }
     }
 
-    /// Unit direction of edge `j`.
-    #[inline]
-    pub fn along(&self, j: usize) -> V3 {
-        self.edge.vector(ALONG, j)
-    }
-
-    /// Length of edge `j`, m.
-    #[inline]
-    pub fn length(&self, j: usize) -> f64 {
-        self.edge.get(LENGTH, j)
-    }
-
-    /// Inverse length of edge `j`, 1/m.
-    #[inline]
-    pub fn inverse(&self, j: usize) -> f64 {
-        self.edge.get(INVERSE, j)
-    }
-
     /// Computes the moments and stiffnesses of all joints by their law; returns their energy, J.
     ///
     /// `set` is the plastic curvature of each joint as a vector, 1/m, `length` its Voronoi length,
@@ -206,6 +188,21 @@ impl Joints for BendingJoints {
     #[inline(always)]
     fn directions<S: Simd>(&self, simd: S, block: usize, first: usize) -> Lanes3<S> {
         self.edge.blocks()[block].load3(simd, ALONG, first, 1)
+    }
+
+    #[inline]
+    fn along(&self, j: usize) -> V3 {
+        self.edge.vector(ALONG, j)
+    }
+
+    #[inline]
+    fn length(&self, j: usize) -> f64 {
+        self.edge.get(LENGTH, j)
+    }
+
+    #[inline]
+    fn inverse(&self, j: usize) -> f64 {
+        self.edge.get(INVERSE, j)
     }
 
     /// Third pass; see [`crate::rod::bent()`] for the formulas.

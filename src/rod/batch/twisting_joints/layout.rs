@@ -3,6 +3,7 @@
 use crate::math::simd::Columns;
 use crate::math::simd::ROWS;
 use crate::math::{Quat, V3, rotate};
+use crate::rod::batch::Joints;
 use crate::rod::forces::Laws;
 use crate::rod::plasticity::{Bend, Scalar};
 use crate::rod::twisting::Turned;
@@ -106,24 +107,6 @@ impl TwistingJoints {
     /// Frame of the clamp before the first edge.
     pub(super) fn frame_before(&self) -> Quat {
         quaternion(|a| self.edge.blocks()[0].before(FRAME + a))
-    }
-
-    /// Unit direction of edge `j`.
-    #[inline]
-    pub fn along(&self, j: usize) -> V3 {
-        self.edge.vector(ALONG, j)
-    }
-
-    /// Length of edge `j`, m.
-    #[inline]
-    pub fn length(&self, j: usize) -> f64 {
-        self.edge.get(LENGTH, j)
-    }
-
-    /// Inverse length of edge `j`, 1/m.
-    #[inline]
-    pub fn inverse(&self, j: usize) -> f64 {
-        self.edge.get(INVERSE, j)
     }
 
     /// Edge `j` as [`twisted`](crate::rod::twisted()) takes it.

@@ -182,6 +182,21 @@ impl Joints for TwistingJoints {
         self.edge.blocks()[block].load3(simd, ALONG, first, 1)
     }
 
+    #[inline]
+    fn along(&self, j: usize) -> V3 {
+        self.edge.vector(ALONG, j)
+    }
+
+    #[inline]
+    fn length(&self, j: usize) -> f64 {
+        self.edge.get(LENGTH, j)
+    }
+
+    #[inline]
+    fn inverse(&self, j: usize) -> f64 {
+        self.edge.get(INVERSE, j)
+    }
+
     #[inline(always)]
     fn derive<S: Simd, const HESSIAN: bool>(
         &self,

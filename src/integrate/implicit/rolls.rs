@@ -16,16 +16,8 @@ use crate::rod::Twist;
 use crate::rod::TwistingJoints;
 use crate::system::{Spindle, Support, System};
 
-/// Unknowns of a node with twist: place and roll.
-pub(super) const WITH_ROLL: usize = 4;
-
-/// Whether edges roll, so that twist is carried, with so many `unknowns` a node.
-pub(super) const fn carries_twist(unknowns: usize) -> bool {
-    unknowns == WITH_ROLL
-}
-
-/// Rolls of a step, rad, one per edge; all empty where no twist is carried.
-#[derive(Clone, Debug, Default)]
+/// Rolls of a step, rad, one per edge.
+#[derive(Debug, Default)]
 pub(super) struct Rolls {
     pub(super) angle: Vec<f64>,
     pub(super) start: Vec<f64>,
@@ -123,11 +115,11 @@ impl Rolls {
     }
 
     /// Adds inertia and drag of the rolls, to the matrix if there is one; returns their potential.
-    pub(super) fn add_inertia<const D: usize>(
+    pub(super) fn add_inertia(
         &mut self,
         gamma: f64,
         drag: f64,
-        mut matrix: Option<&mut Banded<D>>,
+        mut matrix: Option<&mut Banded<4>>,
     ) -> f64 {
         let mut energy = 0.0;
         for j in 0..self.angle.len() {
@@ -147,7 +139,7 @@ impl Rolls {
     }
 
     /// Holds what is no unknown.
-    pub(super) fn pin<const D: usize>(&mut self, mut matrix: Option<&mut Banded<D>>) {
+    pub(super) fn pin(&mut self, mut matrix: Option<&mut Banded<4>>) {
         for i in self.pinned().into_iter().flatten() {
             if let Some(matrix) = &mut matrix {
                 matrix.pin(i, 3);
@@ -212,15 +204,4 @@ impl Rolls {
             .map(|((a, b), roll)| 0.5 * (a + b) * roll)
             .sum()
     }
-}
-
-/// A block of nothing but a last column, a last row and their corner.
-#[inline]
-pub(super) fn framed(column: V3, row: V3, corner: f64) -> [[f64; WITH_ROLL]; WITH_ROLL] {
-    [
-        [0.0, 0.0, 0.0, column.x],
-        [0.0, 0.0, 0.0, column.y],
-        [0.0, 0.0, 0.0, column.z],
-        [row.x, row.y, row.z, corner],
-    ]
 }
