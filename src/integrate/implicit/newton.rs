@@ -36,10 +36,10 @@ pub(super) struct NewtonLimits {
     pub(super) far: f64,
     /// halvings of one Newton step before the solve counts as failed
     pub(super) line_search_halvings: usize,
-    /// the scheme forgets a small error: a guess that is good enough may stand
-    pub(super) damped: bool,
-    /// the last update may be taken with the factors of the one before
-    pub(super) chord: bool,
+    /// a guess stands unsolved if inertia alone bounds the update by so much, m
+    pub(super) guess: f64,
+    /// what a last update with the factors of the one before may leave, as a share of what is close; 0: there is none
+    pub(super) chord: f64,
 }
 
 impl NewtonLimits {
@@ -50,16 +50,17 @@ impl NewtonLimits {
         turn: f64::INFINITY,
         far: f64::INFINITY,
         line_search_halvings: 12,
-        damped: true,
-        chord: true,
+        guess: 0.0,
+        chord: CHORD_KEPT,
     };
 
     /// That of a time step, a `short` one or one that may as well be shorter. Then that is cheaper than a long search
-    /// for a smaller Newton step (`fig8` at 30 rad/s: a tenth of all evaluations).
+    /// for a smaller Newton step (`fig8` at 30 rad/s: a tenth of all evaluations). A scheme that is `damped` forgets a
+    /// small error.
     ///
     /// The first update tells how far the guess is off, within a few per cent where the solve comes to an end: one
     /// beyond `far` saves the rest of a solve that the error would throw away.
-    pub(super) fn of_step(short: bool, far: f64, damped: bool) -> Self {
+    pub(super) fn of_step(short: bool, far: f64, guess: f64, damped: bool) -> Self {
         Self {
             far,
             line_search_halvings: if short {
@@ -67,7 +68,8 @@ impl NewtonLimits {
             } else {
                 2
             },
-            damped,
+            guess,
+            chord: if damped { CHORD_LEFT } else { CHORD_KEPT },
             ..Self::STEP
         }
     }
@@ -121,8 +123,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         .map(|(g, m)| g.amax() * weight / m)
         .fold(0.0, f64::max);
     let bound = bound.max(work.unknowns.bound(model.gamma, radius));
-    // (the midpoint rule keeps what is wrong with a guess for ever)
-    if bound < close && limits.damped {
+    if bound < limits.guess {
         return Ok(0);
     }
     let mut last_update = f64::INFINITY;
@@ -170,8 +171,8 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         let mut line_search_halvings = 0;
         if share == 1.0
             && fits
-            && limits.chord
-            && end_by_chord(model, work, value, (update, close), limits.damped)
+            && limits.chord > 0.0
+            && end_by_chord(model, work, value, (update, close), limits.chord * close)
         {
             return Ok(step + 1);
         }
@@ -211,7 +212,8 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
     })
 }
 
-/// Takes the whole update, of size `first`, and with the factors it came from the one after it, if that is the last.
+/// Takes the whole update, of size `first`, and with the factors it came from the one after it, if that leaves no more
+/// than `left` (m).
 ///
 /// Most solves end with their second update, a thirtieth of the first, and old factors are good enough for it: what
 /// is then wrong is about its square over the first. It needs neither a new Hessian nor new factors with looks ahead, more
@@ -221,7 +223,7 @@ fn end_by_chord<const D: usize, U: Unknowns<D>>(
     work: &mut Work<D, U>,
     value: f64,
     (first, close): (f64, f64),
-    damped: bool,
+    left: f64,
 ) -> bool {
     let coupled = |model: &Model| {
         let line = model.line.as_ref();
@@ -244,7 +246,6 @@ fn end_by_chord<const D: usize, U: Unknowns<D>>(
     std::mem::swap(&mut work.update, &mut work.load);
     work.matrix.solve(&mut work.update);
     let (second, ..) = largest_update(model, work);
-    let left = close * if damped { CHORD_LEFT } else { CHORD_KEPT };
     if second >= left && second * second > first * left {
         std::mem::swap(&mut work.update, &mut work.plain);
         return false;

@@ -108,8 +108,7 @@ impl Implicit {
         // to rounding: the tangent belongs to the solution, not to what is near enough to it
         let close = (1e-4 * CLOSE * self.tolerance).max(ROUNDING);
         let limits = newton::NewtonLimits {
-            damped: false,
-            chord: false,
+            chord: 0.0,
             ..newton::NewtonLimits::STEP
         };
         newton::solve(&mut model, work, close, limits)

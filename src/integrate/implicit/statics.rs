@@ -130,8 +130,8 @@ impl Implicit {
             turn: 0.4,
             far: f64::INFINITY,
             line_search_halvings: 12,
-            damped: true,
-            chord: false,
+            guess: CLOSE * self.tolerance,
+            chord: 0.0,
         };
         let mut taken = 0;
         for _ in 0..PASSES {

@@ -46,6 +46,7 @@ impl Implicit {
                     } else {
                         f64::INFINITY
                     },
+                    self.largest_guess(h),
                     self.scheme == Scheme::Bdf2,
                 ),
             );
