@@ -17,12 +17,19 @@ mod self_contact;
 mod stencil;
 mod tolerance;
 
+#[cfg(feature = "lab")]
 pub use friction::ContactResponse;
-pub use law::{ContactLaw, ContactLoss, damping_for_restitution};
+#[cfg(feature = "lab")]
+pub use law::ContactLoss;
+pub use law::{ContactLaw, damping_for_restitution};
 pub(crate) use line::SavedLine;
 pub use line::{ContactRecord, LineContact};
-pub use nodal::{Body, Contacts, LiveContact, NodeContact, TouchForce, Wire};
+#[cfg(feature = "lab")]
+pub use nodal::TouchForce;
+pub use nodal::{Body, Contacts, LiveContact, NodeContact, Wire};
 pub(crate) use nodal::{SavedContacts, far, restore_tube};
 pub use own_wire::own_wire;
-pub use self_contact::{Coupling, PairConditions, SelfContact, add_couplings};
+#[cfg(feature = "lab")]
+pub use self_contact::SelfContact;
+pub use self_contact::{Coupling, PairConditions, add_couplings};
 pub use stencil::{ContactPoint, NodeWeights};

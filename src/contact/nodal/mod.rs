@@ -13,6 +13,7 @@ mod node;
 
 pub use contacts::{Body, Contacts};
 pub(crate) use contacts::{SavedContacts, far, restore_tube};
+#[cfg(feature = "lab")]
 pub use force::TouchForce;
 pub use live::{LiveContact, Wire};
 pub use node::NodeContact;
