@@ -64,8 +64,9 @@
 //! | [`output`] | tables, VTK, pictures |
 //!
 //! [`math`] is shown because vectors and frames of the other modules come from it. The laboratory (`lab`, with
-//! the feature of this name) belongs to the commands `verify`, `bench` and `stress`. All other modules are hidden:
-//! they are public so that tests, benchmarks and the laboratory reach the mechanics, and may change at any time.
+//! the feature of this name) belongs to the commands `verify`, `bench` and `stress`. All other modules are private. The
+//! same feature makes them public, though hidden from these pages, so that tests and benchmarks reach the mechanics:
+//! they may change at any time.
 //!
 //! # Errors
 //!
@@ -92,26 +93,44 @@
 //! Equal inputs on equal communication points give equal results to the bit, whatever the machine's vector width.
 #![forbid(unsafe_code)]
 
+#[cfg(not(feature = "lab"))]
+pub(crate) mod contact;
+#[cfg(feature = "lab")]
 #[doc(hidden)]
 pub mod contact;
 pub(crate) mod feed;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod geometry;
+#[cfg(feature = "lab")]
 #[doc(hidden)]
 pub mod geometry;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod integrate;
+#[cfg(feature = "lab")]
 #[doc(hidden)]
 pub mod integrate;
 #[cfg(feature = "lab")]
 pub mod lab;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod linalg;
+#[cfg(feature = "lab")]
 #[doc(hidden)]
 pub mod linalg;
 pub mod math;
 pub mod measure;
 pub mod output;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod rod;
+#[cfg(feature = "lab")]
 #[doc(hidden)]
 pub mod rod;
 pub mod scene;
 pub mod settings;
 pub mod signals;
 pub mod simulation;
+#[cfg(not(feature = "lab"))]
+pub(crate) mod system;
+#[cfg(feature = "lab")]
 #[doc(hidden)]
 pub mod system;
 pub mod variables;

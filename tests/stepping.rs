@@ -2,11 +2,11 @@
 
 mod common;
 
-use coilwind::signals::Inputs;
-use coilwind::simulation::Simulation;
 use coilwind::integrate::{Implicit, Scheme};
 use coilwind::math::V3;
 use coilwind::rod::{Rod, Twist};
+use coilwind::signals::Inputs;
+use coilwind::simulation::Simulation;
 use coilwind::system::{Support, System};
 use common::fig8;
 use std::f64::consts::TAU;

@@ -17,14 +17,22 @@ mod self_contact;
 mod stencil;
 mod tolerance;
 
+#[cfg(feature = "lab")]
 pub use friction::ContactResponse;
-pub use law::{ContactLaw, ContactLoss, damping_for_restitution};
+#[cfg(feature = "lab")]
+pub use law::ContactLoss;
+pub use law::{ContactLaw, damping_for_restitution};
 pub use line::{ContactRecord, LineContact, LineModel, LineScratch, LineState};
+#[cfg(feature = "lab")]
+pub use nodal::TouchForce;
 pub(crate) use nodal::far;
-pub use nodal::{
-    Body, LiveConditions, LiveContact, NodalContact, NodalModel, NodalScratch, NodalState,
-    NodeContact, TouchForce, Wire,
-};
+pub use nodal::{Body, LiveConditions, NodalContact, NodalModel, NodalScratch, NodalState};
+#[cfg(feature = "lab")]
+pub use nodal::{LiveContact, NodeContact, Wire};
 pub use own_wire::own_wire;
-pub use self_contact::{Coupling, PairConditions, PairScratch, SelfContact, add_couplings};
+#[cfg(feature = "lab")]
+pub use self_contact::PairScratch;
+#[cfg(feature = "lab")]
+pub use self_contact::SelfContact;
+pub use self_contact::{Coupling, PairConditions, add_couplings};
 pub use stencil::{ContactPoint, NodeWeights};

@@ -44,15 +44,6 @@ pub struct Feed {
     pub line_tension: f64,
 }
 
-/// What one feed step did.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct FeedStep {
-    /// unstretched length added to the last edge, m
-    pub grown: f64,
-    /// work taken out of the wire by the line, J (negative: put in)
-    pub taken: f64,
-}
-
 impl Feed {
     /// At rest with the line loaded to `tension`.
     pub fn at_rest(spec: &FeedSpec, tension: f64) -> Self {
@@ -70,7 +61,8 @@ impl Feed {
         }
     }
 
-    /// Advances by `dt` with the last edge of unstretched length `rest` now `length` long.
+    /// Advances by `dt` with the last edge of unstretched length `rest` now `length` long; returns the unstretched
+    /// length added to it, m.
     ///
     /// `plastic` is the edge's plastic stretch, `deflection` the angle at the exit, rad, `set` the
     /// tensioner's pull, N.
@@ -84,7 +76,7 @@ impl Feed {
         length: f64,
         plastic: f64,
         deflection: f64,
-    ) -> FeedStep {
+    ) -> f64 {
         // friction at the exit holds back whichever way the wire moves
         let grip =
             libm::exp(spec.exit_friction * deflection * if self.rate >= 0.0 { 1.0 } else { -1.0 });
@@ -134,10 +126,7 @@ impl Feed {
             self.paid = self.fed;
             self.paid_rate = self.rate;
         }
-        FeedStep {
-            grown,
-            taken: tension * grip * grown,
-        }
+        grown
     }
 }
 
@@ -169,8 +158,7 @@ mod tests {
         let mut t = 0.0;
         while t < end {
             length += speed(t) * dt;
-            let s = feed.step(spec, &l, 15.0, dt, rest, length, 0.0, 0.0);
-            rest += s.grown;
+            rest += feed.step(spec, &l, 15.0, dt, rest, length, 0.0, 0.0);
             // keep the edge short: drop whole wire behind it at the same strain
             let drop = rest - 1e-3;
             rest -= drop;

@@ -16,6 +16,7 @@ use std::f64::consts::{PI, TAU};
 const MOST_SEGMENTS: usize = 4096;
 
 /// Height of an arc of `radius` (m) over its chord, for `segments` chords in a full turn, m.
+#[cfg(any(test, feature = "lab"))]
 pub fn sagitta(radius: f64, segments: usize) -> f64 {
     // 1 - cos(a) = 2 sin^2(a / 2) keeps its digits for small angles.
     let half = libm::sin(0.5 * PI / segments.max(1) as f64);

@@ -30,12 +30,21 @@ mod topology;
 mod touch;
 mod tube;
 
+#[cfg(feature = "lab")]
 pub use bvh::Bvh;
+#[cfg(feature = "lab")]
 pub use error::MeshError;
+#[cfg(feature = "lab")]
 pub use feature::Nearest;
 pub use mesh::TriMesh;
-pub use shape::{Nearness, Shape};
-pub use spline::{Curve, Foot, SplineTube};
+#[cfg(feature = "lab")]
+pub use shape::Nearness;
+pub use shape::Shape;
+#[cfg(feature = "lab")]
+pub use spline::Foot;
+pub use spline::{Curve, SplineTube};
 pub use surface::Surface;
 pub use touch::Touch;
-pub use tube::{FrozenNode, SIDES, Tube};
+#[cfg(feature = "lab")]
+pub use tube::SIDES;
+pub use tube::{FrozenNode, Tube};

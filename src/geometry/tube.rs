@@ -153,6 +153,7 @@ impl Tube {
     }
 
     /// Whether nothing has frozen.
+    #[cfg(feature = "lab")]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -244,6 +245,7 @@ impl Tube {
     }
 
     /// Vertices of segment `s` at its start (`end` 0) or end (1), core frame, m.
+    #[cfg(test)]
     pub fn ring(&self, s: usize, end: usize) -> Vec<V3> {
         let prism = self.prism(s);
         (0..SIDES).map(|k| prism.vertex(end, k)).collect()

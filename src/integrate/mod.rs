@@ -4,9 +4,8 @@ mod explicit;
 pub mod implicit;
 mod stepper;
 
-pub use explicit::{
-    Explicit, ExplicitMethod, RK4_LIMIT, VERLET_LIMIT, highest_frequency, longest_step,
-    shift_velocities,
-};
+pub use explicit::{Explicit, ExplicitMethod, highest_frequency, longest_step, shift_velocities};
+#[cfg(feature = "lab")]
+pub use explicit::{RK4_LIMIT, VERLET_LIMIT};
 pub use implicit::{Implicit, OutputSensitivity, Scheme, SolverStatistics, StepError};
 pub use stepper::Stepper;

@@ -95,6 +95,7 @@ impl<const D: usize> Banded<D> {
     }
 
     /// Becomes the zero matrix of `nodes` nodes.
+    #[cfg(any(test, feature = "lab"))]
     pub fn reset(&mut self, nodes: usize) {
         self.resize(nodes);
         self.steps.fill(StepRows::ZERO);
@@ -296,6 +297,7 @@ impl<const D: usize> Banded<D> {
     ///
     /// # Panics
     /// Unless `x` and `y` have one entry for each unknown.
+    #[cfg(any(test, feature = "lab"))]
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         assert_eq!(x.len(), self.nodes * D, "one entry for each unknown");
         assert_eq!(y.len(), self.nodes * D, "one entry for each unknown");
@@ -378,6 +380,7 @@ impl<const D: usize> Banded<D> {
 }
 
 /// Adds the products of an entry off the diagonal and of its mirror image.
+#[cfg(any(test, feature = "lab"))]
 fn symmetric(entry: f64, row: usize, column: usize, x: &[f64], y: &mut [f64]) {
     y[row] += entry * x[column];
     y[column] += entry * x[row];

@@ -29,4 +29,5 @@ mod solve;
 mod tests;
 
 pub use banded::Banded;
+#[cfg(any(test, feature = "lab"))]
 pub use factor::SingularPivot;

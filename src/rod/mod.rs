@@ -17,12 +17,21 @@ mod yield_branch;
 
 pub use crate::math::{Block, add_outer};
 pub use batch::{BendingJoints, Forces, TwistingJoints};
-pub use bending::{Bent, Stretched, Symmetric, add_square, bent, stretched, turning};
+#[cfg(any(test, feature = "lab"))]
+pub use bending::bent;
+#[cfg(feature = "lab")]
+pub use bending::{Bent, Symmetric, add_square};
+pub use bending::{Stretched, stretched, turning};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::Joint;
-pub use plasticity::{Bend, Law, Scalar, respond_bend, respond_scalar};
+pub use plasticity::{Bend, Law, Scalar};
+#[cfg(feature = "lab")]
+pub use plasticity::{respond_bend, respond_scalar};
 pub use section::Section;
 pub use state::Rod;
 pub use twist::Twist;
-pub use twisting::{Rolled, Turned, twisted};
+#[cfg(any(test, feature = "lab"))]
+pub use twisting::twisted;
+#[cfg(feature = "lab")]
+pub use twisting::{Rolled, Turned};
 pub use yield_branch::{YieldBranch, YieldBranches};

@@ -2,8 +2,8 @@
 
 use super::plasticity::{Bend, Scalar};
 use super::section::Section;
+use crate::math::frame_along;
 use crate::math::{Quat, V3};
-use crate::math::{align, frame_along, rotate};
 use serde::{Deserialize, Serialize};
 
 /// Positions, velocities, frames and plastic state of a rod of `n + 1` nodes and `n` edges, lab
@@ -58,6 +58,7 @@ impl Rod {
 
     /// Length of the first edge over that of all others with which a clamp at the start is exact to
     /// one order more after [`Rod::refine_clamp`].
+    #[cfg(feature = "lab")]
     pub const FIRST_EDGE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
     /// Makes a clamp at the start exact to third order: fourth if the first edge is
@@ -70,6 +71,7 @@ impl Rod {
     /// (Gregory's rule, with weights 5/12 and 13/12 for even edges). A first edge shorter by
     /// `1/sqrt 2` removes the next term too, from `a + b = l0 + h/2`,
     /// `b l0 = (l0^2 + h l0)/2 + h^2/12`, `b l0^2 = l0 (l0 + h)(2 l0 + h)/6`.
+    #[cfg(feature = "lab")]
     pub fn refine_clamp(&mut self) {
         if let [first, second, ..] = self.rest[..] {
             self.lead = second * second / (12.0 * first);
@@ -106,7 +108,9 @@ impl Rod {
     }
 
     /// Turns every frame onto the present direction of its edge, the shortest way.
+    #[cfg(any(test, feature = "lab"))]
     pub fn realign(&mut self) {
+        use crate::math::{align, rotate};
         for j in 0..self.edges() {
             let t = self.tangent(j);
             let q = if rotate(&self.frame[j], &V3::z()).dot(&t) < -0.99 {
@@ -121,21 +125,5 @@ impl Rod {
     /// Lumped mass of node `i`, kg.
     pub fn mass(&self, section: &Section, i: usize) -> f64 {
         section.mass_per_length() * self.voronoi(i)
-    }
-
-    /// Kinetic energy of nodes `from..to` and the spin of the edges that start there, J.
-    pub fn kinetic_energy(&self, section: &Section, from: usize, to: usize) -> f64 {
-        let mut e = 0.0;
-        for i in from..to {
-            e += 0.5 * self.mass(section, i) * self.v[i].norm_squared();
-            if i < self.edges() {
-                e += 0.5
-                    * section.spin_inertia_per_length()
-                    * self.rest[i]
-                    * self.spin[i]
-                    * self.spin[i];
-            }
-        }
-        e
     }
 }

@@ -16,6 +16,7 @@ mod material;
 mod saved;
 mod write;
 
+pub use crate::rod::{Section, Twist};
 pub use description::{Core, Decision, Features, Integrator, LiveContact, Preset, Scene, Solver};
 pub use error::{SceneError, Warning};
 pub use file::packed_names;

@@ -21,6 +21,8 @@ mod start;
 mod stepping;
 mod summary;
 
+pub use crate::geometry::{Surface, TriMesh};
+pub use crate::integrate::SolverStatistics;
 pub use core_model::core_surface;
 pub use freezing::{FreezePolicy, Watch};
 pub use io::{Centreline, SimError};
@@ -28,7 +30,7 @@ pub use motion_profile::MotionProfile;
 pub use saved::RestoreError;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 
-use crate::integrate::{SolverStatistics, Stepper};
+use crate::integrate::Stepper;
 use crate::measure::Coil;
 use crate::scene::Scene;
 use crate::signals::{Event, EventKind, Inputs, Outputs};
@@ -153,11 +155,15 @@ impl Simulation {
     }
 
     /// The mechanical system, for verification and tests.
+    #[cfg(feature = "lab")]
+    #[doc(hidden)]
     pub fn system(&self) -> &System {
         &self.sys
     }
 
     /// The same, to put loads on it that no scene has (verification only).
+    #[cfg(feature = "lab")]
+    #[doc(hidden)]
     pub fn system_mut(&mut self) -> &mut System {
         &mut self.sys
     }

@@ -71,7 +71,7 @@ impl MotionProfile {
     }
 
     /// The motion between two times, s, in intervals of constant acceleration, at set tension `tension`, N.
-    pub fn drives(&self, from: f64, to: f64, tension: f64) -> [Option<Drive>; 2] {
+    pub(crate) fn drives(&self, from: f64, to: f64, tension: f64) -> [Option<Drive>; 2] {
         let mut ramp = self.ramp_time();
         for edge in [from, to] {
             // what is left between is not a time, but the rounding of two

@@ -32,7 +32,6 @@ pub use state::State;
 pub use support::{Spindle, Support};
 
 use crate::feed::{Feed, FeedSpec};
-use crate::math::rotate;
 use crate::math::turn_about_y;
 use crate::math::{Quat, Spin, V3, spin_velocity};
 use crate::rod::Twist;
@@ -79,8 +78,10 @@ impl System {
     }
 
     /// Direction in which the wire leaves a clamped end, lab frame.
+    #[cfg(feature = "lab")]
     pub fn clamp_direction(&self, end: usize) -> Option<V3> {
-        self.clamp_frame(end).map(|f| rotate(&f, &V3::z()))
+        self.clamp_frame(end)
+            .map(|f| crate::math::rotate(&f, &V3::z()))
     }
 
     /// Frame of a clamp in the lab, if that end is clamped.
@@ -168,7 +169,7 @@ impl System {
         let out = V3::new(self.state.rod.x[n].x, 0.0, self.state.rod.x[n].z).normalize();
         let deflection = libm::acos((d.dot(&out) / length).clamp(-1.0, 1.0));
         let law = self.model.laws.stretch;
-        let step = feed.step(
+        let grown = feed.step(
             spec,
             &law,
             self.state.set_tension,
@@ -178,14 +179,14 @@ impl System {
             plastic,
             deflection,
         );
-        let after = rest + step.grown;
+        let after = rest + grown;
         // the edge stretches and grows in the same step: its tension runs from the old to the new value
         let tension =
             0.5 * (self.state.load.tension[e] + law.modulus * (length / after - 1.0 - plastic));
         // wire arrives stretched, so it brings its elastic energy along
         self.state.balance.nozzle -=
-            (tension * (1.0 + plastic) + 0.5 * tension * tension / law.modulus) * step.grown;
-        let gained = 0.5 * self.model.section.mass_per_length() * step.grown;
+            (tension * (1.0 + plastic) + 0.5 * tension * tension / law.modulus) * grown;
+        let gained = 0.5 * self.model.section.mass_per_length() * grown;
         self.state.balance.inflow += 0.5 * gained * self.state.rod.v[e].norm_squared();
         self.state.rod.rest[e] = after;
     }

@@ -40,6 +40,7 @@ impl Support {
     }
 
     /// Position and direction held.
+    #[cfg(feature = "lab")]
     pub fn clamped(point: V3, frame: Quat) -> Self {
         Self {
             hold: [true; 3],

@@ -1,7 +1,7 @@
 //! What the program decides where a scene leaves it open.
 
 use crate::common::parse;
-use coilwind::rod::Twist;
+use coilwind::scene::Twist;
 use coilwind::scene::{Integrator, LiveContact, Preset, Scene};
 
 /// What `auto` came to for a switch; nothing where the scene says it.

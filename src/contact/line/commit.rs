@@ -9,6 +9,7 @@ use crate::contact::law::{NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
 use crate::math::V3;
 
 /// Stretch of a bristle below which it is rounding of places, m.
+#[cfg(feature = "lab")]
 const ROUNDING: f64 = 1e-15;
 
 impl LineContact<'_> {
@@ -96,6 +97,7 @@ impl LineContact<'_> {
 impl LineState {
     /// Normal force of each touch of point `k` at the last evaluation, which stands for `length` (m), core frame, N: the
     /// core's first, then those of frozen wire.
+    #[cfg(feature = "lab")]
     pub fn normal_forces<'a>(
         &'a self,
         model: &LineModel,
@@ -113,6 +115,7 @@ impl LineState {
 
     /// The contact point whose bristle pulls hardest relative to what static friction can hold there, and the ratio of
     /// both; both scale with the length of wire that the point stands for.
+    #[cfg(feature = "lab")]
     pub fn friction_over_limit(&self, model: &LineModel) -> (usize, f64) {
         let mut worst = (0, 0.0);
         for (k, point) in self.points.iter().enumerate() {

@@ -64,11 +64,6 @@ pub struct LiveContact {
 }
 
 impl LiveContact {
-    /// Makes the next evaluation list the pairs again.
-    pub fn forget(&mut self) {
-        self.seen.clear();
-    }
-
     /// Renumbers the pairs after a node was inserted before index `at`.
     pub fn insert(&mut self, at: usize) {
         self.seen.clear();

@@ -13,11 +13,15 @@ mod nodal_contact;
 mod node;
 mod state;
 
+#[cfg(feature = "lab")]
 pub use force::TouchForce;
-pub use live::{LiveConditions, LiveContact, Wire};
+pub use live::LiveConditions;
+#[cfg(feature = "lab")]
+pub use live::{LiveContact, Wire};
 pub use model::NodalModel;
 pub use nodal_contact::NodalScratch;
 pub(crate) use nodal_contact::far;
 pub use nodal_contact::{Body, NodalContact};
+#[cfg(feature = "lab")]
 pub use node::NodeContact;
 pub use state::NodalState;

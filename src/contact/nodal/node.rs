@@ -89,11 +89,6 @@ impl NodeContact {
         self.count > 0
     }
 
-    /// Whether it touched frozen wire.
-    pub fn touches_wire(&self) -> bool {
-        self.anchors[..self.count].iter().any(|a| a.on_tube)
-    }
-
     /// Deepest penetration at the last committed evaluation, m.
     pub fn depth(&self) -> f64 {
         self.anchors[..self.count]

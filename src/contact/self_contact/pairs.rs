@@ -94,11 +94,13 @@ impl SelfContact {
     }
 
     /// Number of pairs listed.
+    #[cfg(feature = "lab")]
     pub fn len(&self) -> usize {
         self.pairs.len()
     }
 
     /// Whether no pair is listed.
+    #[cfg(feature = "lab")]
     pub fn is_empty(&self) -> bool {
         self.pairs.is_empty()
     }

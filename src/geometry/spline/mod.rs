@@ -39,5 +39,6 @@ mod tests;
 mod tube;
 
 pub use curve::Curve;
+#[cfg(any(test, feature = "lab"))]
 pub use segment::Foot;
 pub use tube::SplineTube;

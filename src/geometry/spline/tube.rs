@@ -42,6 +42,7 @@ impl SplineTube {
     }
 
     /// Whether there is no wire.
+    #[cfg(any(test, feature = "lab"))]
     pub fn is_empty(&self) -> bool {
         self.points.is_empty()
     }
@@ -56,6 +57,7 @@ impl SplineTube {
     }
 
     /// Nodes, those shared over a seam left out: control points of the centreline, core frame, m.
+    #[cfg(any(test, feature = "lab"))]
     pub fn points(&self) -> &[V3] {
         &self.points[..self.len()]
     }
@@ -66,6 +68,7 @@ impl SplineTube {
     }
 
     /// Unstretched length from the clamp to each of [`Self::points`], m.
+    #[cfg(any(test, feature = "lab"))]
     pub fn arc(&self) -> &[f64] {
         &self.arc[..self.len()]
     }
@@ -205,6 +208,7 @@ impl SplineTube {
 
     /// All local minima of the distance within `reach`, by dense sampling and golden sections: the
     /// slow twin of [`Self::gather`] with [`Self::foot`].
+    #[cfg(test)]
     pub fn feet_brute(&self, p: V3, reach: f64, own: f64) -> Vec<Foot> {
         const SAMPLES: usize = 64;
         const GOLDEN: f64 = 0.618_033_988_749_894_9;

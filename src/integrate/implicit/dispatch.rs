@@ -5,7 +5,9 @@
 use super::sensitivity::{INPUTS, OutputSensitivity};
 use super::unknowns::Unknowns;
 use super::work::Work;
-use super::{Implicit, Scheme, StepError, statics, step};
+use super::{Implicit, StepError};
+#[cfg(feature = "lab")]
+use super::{Scheme, probe};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::system::System;
@@ -39,9 +41,11 @@ pub(super) trait AnyWork {
     ) -> Result<usize, StepError>;
 
     /// See [`Implicit::out_of_balance`].
+    #[cfg(feature = "lab")]
     fn out_of_balance(&mut self, sys: &mut System) -> (Vec<V3>, Vec<f64>);
 
     /// See [`Implicit::evaluating`].
+    #[cfg(feature = "lab")]
     fn evaluating(
         &mut self,
         scheme: Scheme,
@@ -81,10 +85,12 @@ impl<const D: usize, U: Unknowns<D>> AnyWork for Work<D, U> {
         method.equilibrium_with(self, sys, moved, share)
     }
 
+    #[cfg(feature = "lab")]
     fn out_of_balance(&mut self, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
-        statics::out_of_balance_with(self, sys)
+        probe::out_of_balance_with(self, sys)
     }
 
+    #[cfg(feature = "lab")]
     fn evaluating(
         &mut self,
         scheme: Scheme,
@@ -92,7 +98,7 @@ impl<const D: usize, U: Unknowns<D>> AnyWork for Work<D, U> {
         h: f64,
         with: &mut dyn FnMut(&mut dyn FnMut() -> f64),
     ) {
-        step::evaluating_with(scheme, self, sys, h, with);
+        probe::evaluating_with(scheme, self, sys, h, with);
     }
 }
 

@@ -15,6 +15,10 @@ mod newton;
 mod places;
 mod places_and_rolls;
 mod predictor;
+#[cfg(feature = "lab")]
+mod probe;
+#[cfg(feature = "lab")]
+mod ramp;
 mod rolls;
 mod scheme;
 mod sensitivity;

@@ -4,8 +4,7 @@ use super::lengths::{set_share, voronoi};
 use super::scheme::StepFormula;
 use super::unknowns::Unknowns;
 use crate::math::{Quat, Spin, V3, align, rotate, turn_about_y};
-use crate::rod::batch::BendingJoints;
-use crate::rod::{Joint, Laws, Rod, YieldBranches};
+use crate::rod::{BendingJoints, Joint, Laws, Rod, YieldBranches};
 use crate::system::{Spindle, Support, System};
 
 /// Joints that bend.

@@ -205,6 +205,7 @@ impl Unknowns<4> for PlacesAndRolls {
         self.rolls.work(sys)
     }
 
+    #[cfg(feature = "lab")]
     fn torques(&self) -> Vec<f64> {
         let edges = self.rolls.angle.len();
         self.rolls.gradient.iter().take(edges).map(|g| -g).collect()

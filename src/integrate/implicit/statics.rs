@@ -1,4 +1,4 @@
-//! Equilibrium by the same incremental potential without inertia, and along a ramp of loads.
+//! Equilibrium by the same incremental potential without inertia.
 //!
 //! A step so long that inertia is below rounding, from rest, is a static solve: rod, loads and contact
 //! are those of a time step. Plastic state, frames and anchors move on only where an increment has
@@ -17,12 +17,6 @@ use crate::system::{System, line_contact};
 const LONG: f64 = 1e3;
 /// Solves of one increment: the last ones turn plastic curvature along with what the first one found.
 const PASSES: usize = 3;
-/// Share of a ramp in its first increment, at most, and at least.
-const SHARES: [f64; 3] = [0.1, 0.25, 1e-5];
-/// Solver steps up to which an increment was quick, and what happens to the next one.
-const QUICK: usize = 8;
-const GROWTH: f64 = 1.4;
-const SHRINK: f64 = 0.5;
 
 impl Implicit {
     /// Moves `sys` to equilibrium under its present loads and supports, and commits it.
@@ -32,67 +26,8 @@ impl Implicit {
         self.equilibrium(sys, &[], 0.0).map(|_| ())
     }
 
-    /// Follows equilibrium while `apply` brings loads and supports from share 0 to share 1 of what
-    /// they shall be, in increments that shrink where the solve fails and grow where it is quick.
-    pub fn follow(
-        &mut self,
-        sys: &mut System,
-        mut apply: impl FnMut(&mut System, f64),
-    ) -> Result<(), StepError> {
-        let [mut step, largest, smallest] = SHARES;
-        let mut at = 0.0;
-        // how the wire moved in the last increment, and the share of the load that did it
-        let mut trend: (Vec<V3>, f64) = (Vec::new(), 1.0);
-        while at < 1.0 {
-            let to = if at + step > 1.0 - 1e-9 {
-                1.0
-            } else {
-                at + step
-            };
-            let before = sys.clone();
-            apply(sys, to);
-            match self.equilibrium(sys, &trend.0, (to - at) / trend.1) {
-                Ok(taken) => {
-                    let moved = sys
-                        .state
-                        .rod
-                        .x
-                        .iter()
-                        .zip(&before.state.rod.x)
-                        .map(|(x, b)| x - b);
-                    trend = (moved.collect(), to - at);
-                    at = to;
-                    if taken <= QUICK {
-                        step = (GROWTH * step).min(largest);
-                    }
-                }
-                Err(error) => {
-                    *sys = before;
-                    // an increment that led astray is no guide for the next one
-                    trend.0.clear();
-                    step *= SHRINK;
-                    if step < smallest {
-                        return Err(error);
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Forces on the nodes at the present state as the method sees them, lab frame, N; held
-    /// coordinates count as free.
-    pub fn forces(&mut self, sys: &mut System) -> Vec<V3> {
-        self.out_of_balance(sys).0
-    }
-
-    /// The same, and the torques on the edges about themselves, N m; none where twist is off.
-    pub fn out_of_balance(&mut self, sys: &mut System) -> (Vec<V3>, Vec<f64>) {
-        self.with_work(sys, |work, _, sys| work.out_of_balance(sys))
-    }
-
-    /// Returns the solver's steps.
-    fn equilibrium(
+    /// The same from where the wire is, moved by `share` of `moved`; returns the solver's steps.
+    pub(super) fn equilibrium(
         &mut self,
         sys: &mut System,
         moved: &[V3],
@@ -164,7 +99,7 @@ impl Implicit {
 }
 
 /// Brings everything to rest; the step that a static solve is.
-fn still(sys: &mut System) -> StepFormula {
+pub(super) fn still(sys: &mut System) -> StepFormula {
     sys.state.rod.v.fill(V3::zeros());
     sys.state.rod.spin.fill(0.0);
     sys.state.past.forget();
@@ -179,27 +114,7 @@ fn still(sys: &mut System) -> StepFormula {
     }
 }
 
-pub(super) fn out_of_balance_with<const D: usize, U: Unknowns<D>>(
-    work: &mut Work<D, U>,
-    sys: &mut System,
-) -> (Vec<V3>, Vec<f64>) {
-    let step = still(sys);
-    let (spindle, support) = (sys.state.spindle, sys.state.support);
-    work.prepare(sys, &step, &spindle, &support, false);
-    let mut model = model_at_rest(sys);
-    model.held = [[false; 3]; 2];
-    newton::expect_nothing(&model, work);
-    // the tensions that are there are no surprise
-    for (j, e) in work.expected.iter_mut().enumerate() {
-        e.length = (work.q[j + 1] - work.q[j]).norm();
-    }
-    model.evaluate(work);
-    let spin = Spin::new(sys.state.spindle.angle);
-    let forces = work.gradient.iter().map(|g| -spin.to_lab(*g));
-    (forces.collect(), work.unknowns.torques())
-}
-
-fn model_at_rest(sys: &mut System) -> Model<'_> {
+pub(super) fn model_at_rest(sys: &mut System) -> Model<'_> {
     let held = [sys.state.support[0].hold, sys.state.support[1].hold];
     Model {
         last: &sys.state.past.q[0],

@@ -95,42 +95,4 @@ impl Implicit {
             }
         }
     }
-
-    /// Hands `with` the evaluation of potential, gradient and Hessian at the guess of a step of `h`, to
-    /// be measured as often as it likes; nothing is committed.
-    #[doc(hidden)]
-    pub fn evaluating(
-        &mut self,
-        sys: &mut System,
-        h: f64,
-        with: impl FnOnce(&mut dyn FnMut() -> f64),
-    ) {
-        let mut with = Some(with);
-        self.with_work(sys, |work, method, sys| {
-            work.evaluating(method.scheme, sys, h, &mut |evaluate| {
-                if let Some(with) = with.take() {
-                    with(evaluate);
-                }
-            });
-        });
-    }
-}
-
-pub(super) fn evaluating_with<const D: usize, U: Unknowns<D>>(
-    scheme: Scheme,
-    work: &mut Work<D, U>,
-    sys: &mut System,
-    h: f64,
-    with: &mut dyn FnMut(&mut dyn FnMut() -> f64),
-) {
-    sys.begin_past();
-    let step = step_of(sys, scheme, h);
-    let (spindle, support) = (
-        sys.state.spindle.after(step.share * h),
-        moved(&sys.state.support, step.share * h),
-    );
-    let nozzle = work.prepare(sys, &step, &spindle, &support, true);
-    let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
-    newton::expect_nothing(&model, work);
-    with(&mut || model.evaluate(work).now);
 }

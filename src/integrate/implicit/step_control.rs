@@ -1,8 +1,8 @@
 //! How long a step may be.
 
-use super::{CLOSE, Implicit, Scheme};
 use super::unknowns::Unknowns;
 use super::work::Work;
+use super::{CLOSE, Implicit, Scheme};
 use crate::system::System;
 
 /// Largest growth of the step from one to the next; variable-step BDF2 is stable to 2.4.

@@ -172,6 +172,7 @@ pub(super) trait Unknowns<const D: usize>: Debug + Default {
     }
 
     /// Torques on the edges about themselves, N m.
+    #[cfg(feature = "lab")]
     fn torques(&self) -> Vec<f64> {
         Vec::new()
     }
