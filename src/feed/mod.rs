@@ -3,8 +3,8 @@
 //! The last edge ends at the nozzle and grows. A tensioner of equivalent mass `m` pulls back with
 //! the set force; between it and the nozzle lies an elastic line `k = EA / length` with a
 //! dashpot. Line and last edge are in series and massless between them, so the unstretched
-//! length that passes the nozzle in a step follows from equal forces, solved implicitly: the
-//! last edge is much stiffer than the dashpot's share and an explicit law would cut the step.
+//! length that passes the nozzle in a step follows from equal forces. It is solved for implicitly: the
+//! last edge is much stiffer than the dashpot's share, and an explicit law would cut the step.
 //!
 //! ```text
 //! m s_t'' = T_line - T_set          T_line = k (s - s_t) + c (s' - s_t'),  never below zero

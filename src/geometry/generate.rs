@@ -1,7 +1,7 @@
 //! Meshes of the shapes a scene can name without a file.
 //!
 //! Vertices lie *on* the true surface. So flats are exact and join the arcs without a step, and
-//! the arcs are chords: the mesh lies inside the true surface by at most the [`sagitta`], by two
+//! the arcs are chords. The mesh lies inside the true surface by at most the [`sagitta`], by two
 //! thirds of it on average. (Moving the vertices out to balance the error would lift the flats.)
 //! [`segments_for_sagitta`] chooses the number of chords.
 //!

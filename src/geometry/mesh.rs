@@ -1,9 +1,9 @@
 //! A closed triangle mesh, checked and prepared for distance queries.
 //!
-//! Everything a query needs is stored ready to use: a [`Facet`] per triangle (its plane and the
+//! Everything a query needs is stored ready to use. There is a [`Facet`] per triangle (its plane and the
 //! three planes of its prism), an [`Edge`] per shared edge and a [`Corner`] per vertex. The two
 //! triangles of an edge read the *same* edge record, so both decide alike whether a point lies
-//! beside the edge or past its end; that is what keeps a touch from being lost or counted twice.
+//! beside the edge or past its end. That is what keeps a touch from being lost or counted twice.
 
 use super::elements::{Corner, Edge, Facet};
 use super::error::MeshError;

@@ -2,7 +2,7 @@
 //!
 //! An implicit step wants a distance that is C1, or Newton rattles between the facets of a mesh.
 //! Outside any solid the distance is C1 wherever the closest point is unique, so for convex cores
-//! everywhere outside; the two shapes a scene can name have it in closed form, without the
+//! everywhere outside. The two shapes a scene can name have it in closed form, without the
 //! chords of [`super::generate`]. A polyhedron's is C1 outside as well, only with the corner
 //! arcs made of facets and edges. The wire's centreline stays its radius away from the surface,
 //! where that holds; inside, the distance has a ridge on the medial axis and one side is taken.

@@ -1,8 +1,8 @@
 //! Meshes from STL files, binary or ASCII.
 //!
-//! The `stl_io` crate parses. Before that the bytes are put into the form it expects: it takes
+//! The `stl_io` crate parses. Before that the bytes are put into the form it expects. It takes
 //! any file that begins with `solid ` for ASCII, although many programs write that into binary
-//! headers, and it knows only lower-case keywords and a named solid.
+//! headers. And it knows only lower-case keywords and a named solid.
 
 use super::error::MeshError;
 use super::mesh::TriMesh;

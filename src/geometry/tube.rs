@@ -2,8 +2,8 @@
 //!
 //! A segment is a prism of [`SIDES`] facets round its axis, its vertices at angles in the frame of
 //! the segment (eq. 13). At a node between two segments it ends in the plane halfway between their
-//! directions (eq. 14, 15 with unit directions): an ellipse whose long axis, r over the cosine of
-//! half the turning angle, lies in the plane of the bend; projected along either segment it is the
+//! directions (eq. 14, 15 with unit directions). The cut is an ellipse. Its long axis, r over the cosine of
+//! half the turning angle, lies in the plane of the bend. Projected along either segment it is the
 //! circle again. The published factor, the cosine itself, would make the wire thinner at every
 //! bend.
 //!

@@ -278,7 +278,7 @@ impl<const D: usize> Banded<D> {
     ///
     /// Call it after everything is added and before [`Banded::factor`].
     /// The solution is then the right-hand side of that unknown, and the other unknowns do not
-    /// feel it: for a held value other than zero, move its column to the right-hand side first.
+    /// feel it. For a held value other than zero, move its column to the right-hand side first.
     pub fn pin(&mut self, i: usize, a: usize) {
         for b in 0..D {
             *self.entry(i, a, i, b) = 0.0;

@@ -112,7 +112,7 @@ macro_rules! unrolled {
 
 /// Eliminates one node of each chain; false if a pivot is unsafe.
 ///
-/// The blocks of a node are finished before anything is taken from the next two: each number of
+/// The blocks of a node are finished before anything is taken from the next two. Each number of
 /// `after` is then summed over all pivots in a register and stored once.
 #[inline(always)]
 fn eliminate<const D: usize>(

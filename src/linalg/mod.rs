@@ -5,8 +5,8 @@
 //! a rod does.
 //! In a one-ended elimination each pivot needs the one before, so that its division and products
 //! cannot overlap with anything.
-//! Here the chain is folded in the middle instead (a twisted factorisation): step `s` eliminates
-//! node `s` and node `nodes - 1 - s` together, in the two lanes of one `Pair`, until two or three
+//! Here the chain is folded in the middle instead (a twisted factorisation). Step `s` eliminates
+//! node `s` and node `nodes - 1 - s` together, in the two lanes of one `Pair`. Two or three
 //! nodes are left, which are factored as a small dense matrix.
 //! The lanes never meet before that, so every operation on a `Pair` maps to one two-wide
 //! instruction of the baseline instruction set, without padding and with the symmetry fully used.

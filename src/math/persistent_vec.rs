@@ -1,7 +1,7 @@
 //! A stack that copies share: what is covered by later entries lies in chunks behind an `Arc`.
 //!
 //! Settled wire only grows at its end, and shrinks there where it is unwound. A copy of such an
-//! array costs the entries of its last chunk and a pointer for each of the others, so that hundreds
+//! array costs the entries of its last chunk and a pointer for each of the others. So hundreds
 //! of saved states of one run hold its settled wire once.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

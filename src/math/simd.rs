@@ -1,7 +1,7 @@
 //! The same arithmetic on many numbers at once, as wide as the machine can.
 //!
-//! Formulas are written once, for [`Lanes`] of numbers that never meet: each lane rounds as a lone
-//! number would (no fused multiply-add, no other order), so results are the same to the bit with
+//! Formulas are written once, for [`Lanes`] of numbers that never meet. Each lane rounds as a lone
+//! number would (no fused multiply-add, no other order). So results are the same to the bit with
 //! one lane, with four (AVX2) and with eight (AVX-512). What the machine has is found out at run
 //! time; only what is inlined into [`run`] is compiled for it, and closures may not be. Numbers of
 //! a kind lie side by side, in columns of eight rows ([`RowBlock`]).
@@ -335,7 +335,7 @@ pub const ROWS: usize = 8;
 
 /// `N` columns of eight rows each, with the row before them and the one after them.
 ///
-/// Loads begin at offset 0 (rows shifted back by one), 1 (the rows) or 2 (shifted on by one) and
+/// Loads begin at offset 0 (rows shifted back by one), 1 (the rows) or 2 (shifted on by one). They
 /// never leave the block: nothing to check at run time, and all of it close together in memory.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]

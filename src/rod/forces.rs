@@ -1,8 +1,8 @@
 //! Internal forces of the rod: one pass along the wire.
 //!
 //! Energy per edge `1/2 EA e^2 l`, per joint `lv (W_bend(kappa) + W_twist(tau))` with curvature
-//! and twist the joint angles over the Voronoi length. Forces are exact derivatives of it: a
-//! joint moment M turns the edge after it and, oppositely, the edge before it; an edge of
+//! and twist the joint angles over the Voronoi length. Forces are exact derivatives of it. A
+//! joint moment M turns the edge after it and, oppositely, the edge before it. An edge of
 //! length L and direction t passes the moment G on as the shear couple `G x t / L`.
 
 use super::joint::Joint;
@@ -81,8 +81,8 @@ pub struct ForceParts {
 
 /// Adds the internal forces of `rod` into a fitted `load`.
 ///
-/// `clamp` holds the frames that clamp the wire's direction at its two ends (lab frame; the
-/// body z axis is the direction of the wire there). `roll` is the angle by which each edge has
+/// `clamp` holds the frames that clamp the wire's direction at its two ends (lab frame). The
+/// body z axis is the direction of the wire there. `roll` is the angle by which each edge has
 /// turned about its axis since its frame was taken over, rad.
 pub fn internal_forces(
     rod: &mut Rod,

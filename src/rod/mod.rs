@@ -1,8 +1,8 @@
 //! The wire as a discrete rod: section law, stretch, bend and twist.
 //!
 //! Mass points joined by straight, bending and torsional springs (the paper's section II).
-//! Node 0 is the oldest wire (the clamp), the last node the youngest (the nozzle); edge `j` runs
-//! from node `j` to node `j + 1`; joint `i` is the bend and twist at node `i`.
+//! Node 0 is the oldest wire (the clamp), the last node the youngest (the nozzle). Edge `j` runs
+//! from node `j` to node `j + 1`, joint `i` is the bend and twist at node `i`.
 
 pub mod batch;
 mod bending;

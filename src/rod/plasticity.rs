@@ -1,6 +1,6 @@
 //! Bilinear laws with isotropic hardening, per unit length of wire.
 //!
-//! A trial force beyond the yield limit returns to it along the elastic stiffness; the limit
+//! A trial force beyond the yield limit returns to it along the elastic stiffness. The limit
 //! rises by the hardening modulus `H = E Ep / (E - Ep)` times the plastic strain, so that the
 //! tangent of the loading branch is exactly `Ep`. The return is exact for a straight strain
 //! path. State advances only where the caller commits it.

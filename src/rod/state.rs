@@ -65,7 +65,7 @@ impl Rod {
     /// [`Rod::FIRST_EDGE`] of the next.
     ///
     /// A joint bends the wire as much as its Voronoi length. So slope and position of clamped wire
-    /// are quadratures over the joints by the trapezoid rule, whose error comes from the end:
+    /// are quadratures over the joints by the trapezoid rule. Its error comes from the end:
     /// `h^2/12` of the integrand's slope there, or `h^2/6` of the wire's change of curvature as an
     /// angle all along the wire. Moving a share of the first joint to the second removes it
     /// (Gregory's rule, with weights 5/12 and 13/12 for even edges). A first edge shorter by

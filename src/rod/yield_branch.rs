@@ -2,7 +2,7 @@
 //!
 //! A joint that yields is tens of times softer than one that unloads. The tangent of one branch
 //! gives a moment that is far off on the other, in every joint of a corner at once. So the tangent
-//! is taken from the branch where the update ends: a joint's angle is linear in the update to good
+//! is taken from the branch where the update ends. A joint's angle is linear in the update to good
 //! accuracy, and along the direction of its moment the law is scalar.
 //!
 //! A joint that yields in twist lets all wire on one side roll against that on the other, and

@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 
 /// Node spacing near the core that goes with a tolerance, m: 0.4 mm to 2e-6 m.
 ///
-/// Above, steps are as the cube root of the tolerance, and both time and space are of second order:
-/// a spacing as that root too keeps the shares of the error that come from either (`fig8` at 1e-5 m
-/// and 0.4 mm: nearly all was from the steps).
+/// Above, steps are as the cube root of the tolerance, and both time and space are of second order.
+/// A spacing as that root too keeps the shares of the error that come from either. (`fig8` at 1e-5 m
+/// and 0.4 mm: nearly all was from the steps.)
 fn spacing_for(tolerance: f64) -> f64 {
     0.4e-3 * libm::cbrt((tolerance / 2e-6).max(1.0))
 }

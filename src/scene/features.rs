@@ -1,8 +1,8 @@
 //! What a scene does not need: decided once, before the first step.
 //!
 //! Every part of a step that some scene can do without has a switch `auto | on | off` (twist has
-//! levels instead). `on` and `off` are obeyed; `auto` takes the part in where it can change what a
-//! run shows, and leaves a [`Decision`] in the summary either way.
+//! levels instead). `on` and `off` are obeyed. `auto` takes the part in where it can change what a
+//! run shows. It leaves a [`Decision`] in the summary either way.
 
 use super::{Decision, Integrator, LiveContact, Scene, SceneError};
 use crate::rod::Section;
@@ -61,10 +61,10 @@ impl Decisions {
 
 /// The least of twist that a run needs.
 ///
-/// Wire that is bent beyond yield keeps a curvature whose direction turns with its roll: without
-/// twist the set of a corner points the wrong way on the next face, and `fig8` at 30 and 300 rad/s
+/// Wire that is bent beyond yield keeps a curvature whose direction turns with its roll. Without
+/// twist the set of a corner points the wrong way on the next face: `fig8` at 30 and 300 rad/s
 /// lands 75 and 81 um rms along the core elsewhere. Elastic wire is straight when unloaded, and
-/// nothing holds its roll at the nozzle, so it rolls freely whatever way it is bent: without twist
+/// nothing holds its roll at the nozzle, so it rolls freely whatever way it is bent. Without twist
 /// it lies 90 and 10 um rms elsewhere, while 0.7 um of the nozzle's place make 87 and 17. Rotary
 /// inertia changes nothing that a run shows. The explicit methods cannot solve for a balance of
 /// torques and step them in time.

@@ -93,7 +93,7 @@ impl System {
     /// Energy that the balance cannot explain, J: what should be there minus what is.
     ///
     /// With a staggered step of `dt` the motion energy is the product of the velocities before and
-    /// after this instant, which is the quantity the scheme conserves; `None` where velocities
+    /// after this instant, which is the quantity the scheme conserves. It is `None` where velocities
     /// belong to the present time.
     pub fn energy_residual(&self, staggered: Option<f64>) -> f64 {
         let b = self.state.balance;

@@ -2,7 +2,7 @@
 //!
 //! The wire touches at its [`ContactPoint`](super::ContactPoint)s. Each has the core and up to four passages of
 //! frozen wire near it. The normal force sets in smoothly. Friction is a bristle from an anchor, cut off at the
-//! coefficient times a normal force that is held while the potential is differentiated, so that for given
+//! coefficient times a normal force that is held while the potential is differentiated: for given
 //! limits both forces derive from one potential. The limits are renewed with every iterate: the converged
 //! step has the limit of its own normal force.
 //!

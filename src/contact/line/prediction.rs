@@ -13,7 +13,7 @@ impl LineContact<'_> {
     ///
     /// `correct(point, change of the Hessian, change of the gradient at the iterate)` hands the replacement over, N/m and N.
     /// Without it a point on its way through a surface that the Hessian does not hold yet would be thrown back
-    /// and forth, with all its neighbours on a flat; so would one that slides round a corner, or whose bristle
+    /// and forth, with all its neighbours on a flat. So would one that slides round a corner, or whose bristle
     /// comes to hold.
     #[inline(never)]
     pub fn predict(

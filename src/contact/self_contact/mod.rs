@@ -2,7 +2,7 @@
 //!
 //! Where wire lands before the turn below it is at rest, the younger wire's contact points touch the spline of the
 //! older wire. Force and reaction go to the nodes of both. The bristle of friction grows with the relative
-//! slide, so it travels with both partners. Such a pair couples nodes a whole turn apart, which no band holds: its
+//! slide, so it travels with both partners. Such a pair couples nodes a whole turn apart, which no band holds. Its
 //! share of the Hessian between the partners is kept as a [`Coupling`], and the linear system is solved by conjugate
 //! gradients with the banded part as preconditioner.
 //!

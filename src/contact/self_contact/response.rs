@@ -126,8 +126,8 @@ impl SelfContact {
         }
     }
 
-    /// Does for pairs what [`LineContact::predict`](crate::contact::LineContact::predict) does for points, with the iterate `q`, the
-    /// wire `last` at the last accepted instant and the wire `there` to which the update leads. `correct` gets the
+    /// Does for pairs what [`LineContact::predict`](crate::contact::LineContact::predict) does for points. The wire is
+    /// at the iterate `q`, was at `last` at the last accepted instant, and the update leads to `there`. `correct` gets the
     /// point, its foot with negative weights, and the changes of Hessian and gradient.
     pub fn predict(
         &self,

@@ -1,7 +1,7 @@
 //! Frozen wire as a smooth tube: its centreline is a quadratic B-spline, C1 along the wire.
 //!
 //! The prisms of [`super::Tube`] have facets and mitres, on which an implicit step would rattle.
-//! Here the surface is all that is one radius away from a curve with a continuous tangent, so the
+//! Here the surface is all that is one radius away from a curve with a continuous tangent. So the
 //! distance of a point from it is C1 as long as the point is nearer than the centre of curvature.
 //!
 //! # The curve
@@ -14,7 +14,7 @@
 //! ```
 //!
 //! It cuts corners: at node k it passes `(P[k-1] - 2 P[k] + P[k+1])/8` inside. Both ends have a
-//! neighbour mirrored in them, `2 P[0] - P[1]`, which makes their segments straight, with half of
+//! neighbour mirrored in them, `2 P[0] - P[1]`. Their segments are straight and have half of
 //! the range of s: the wire starts at node 0 with s = 1/2 in segment 0 and ends at node n-1 with
 //! s = 1/2 in segment n-1. There are as many segments as nodes, and C' is continuous throughout.
 //!

@@ -138,8 +138,8 @@ impl SplineTube {
     }
 
     /// Segments to start a foot from, ascending, one for every passage of the wire that comes
-    /// within `reach` (m) of `p` (core frame, m): for each local minimum of the distance along the
-    /// wire, its ends included. Segments whose node has an arc length above `own` (m) are left out.
+    /// within `reach` (m) of `p` (core frame, m). Each local minimum of the distance along the
+    /// wire counts as one, its ends included. Segments whose node has an arc length above `own` (m) are left out.
     ///
     /// `out` is emptied first; nothing else is allocated. Two minima on one segment, which need p
     /// beyond its centre of curvature, count as one.

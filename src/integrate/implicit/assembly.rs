@@ -1,6 +1,6 @@
 //! Gradient and Hessian of the rod, gathered node by node from its joints and edges.
 //!
-//! Nothing is added up in memory: each block of the matrix is put once, as the sum of what the
+//! Nothing is added up in memory. Each block of the matrix is put once, as the sum of what the
 //! joints and edges around its node have ([`Joints`]), many nodes side by side.
 
 use super::unknowns::{FAR, NEAR, ROW, Unknowns};

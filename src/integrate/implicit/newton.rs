@@ -58,7 +58,7 @@ impl NewtonLimits {
     /// for a smaller Newton step (`fig8` at 30 rad/s: a tenth of all evaluations). A scheme that is `damped` forgets a
     /// small error.
     ///
-    /// The first update tells how far the guess is off, within a few per cent where the solve comes to an end: one
+    /// The first update tells how far the guess is off, within a few per cent where the solve comes to an end. One
     /// beyond `far` saves the rest of a solve that the error would throw away.
     pub(super) fn of_step(short: bool, far: f64, guess: f64, damped: bool) -> Self {
         Self {
@@ -215,7 +215,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
 /// Takes the whole update, of size `first`, and with the factors it came from the one after it, if that leaves no more
 /// than `left` (m).
 ///
-/// Most solves end with their second update, a thirtieth of the first, and old factors are good enough for it: what
+/// Most solves end with their second update, a thirtieth of the first, and old factors are good enough for it. What
 /// is then wrong is about its square over the first. It needs neither a new Hessian nor new factors with looks ahead, more
 /// than half the cost of an iteration. Where it is not the last (one in five), the work was in vain.
 fn end_by_chord<const D: usize, U: Unknowns<D>>(

@@ -13,7 +13,7 @@ const SHRINK: f64 = 0.5;
 
 impl Implicit {
     /// Follows equilibrium while `apply` brings loads and supports from share 0 to share 1 of what
-    /// they shall be, in increments that shrink where the solve fails and grow where it is quick.
+    /// they shall be. Increments shrink where the solve fails and grow where it is quick.
     pub fn follow(
         &mut self,
         sys: &mut System,

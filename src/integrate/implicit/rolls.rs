@@ -1,7 +1,7 @@
 //! The rolls of the edges about themselves, the unknowns that carry twist.
 //!
 //! A roll counts from the frame that the edge had at the last accepted instant, carried along the
-//! shortest way onto the iterate's edge: that is how the explicit methods turn their frames, so a
+//! shortest way onto the iterate's edge. The explicit methods turn their frames in the same way, so a
 //! converged step is committed by them. The unknown of edge `j` stands with node `j`; the last node
 //! has none. With inertia the roll follows the scheme of the positions, without it every edge is
 //! where its torques balance. Contact acts on the centreline: friction puts no moment on the wire

@@ -2,7 +2,7 @@
 //!
 //! At the solution `q` of a step the gradient `g` of its potential vanishes for the nodes that are free. If the inputs
 //! change by `du`, the solution changes by `dq` with `K dq + dg/du du = 0`, `K` the Hessian. The method's own Hessian leaves
-//! out what Newton's method does without (the curvature of angles, part of sliding), so it serves as the factored
+//! out what Newton's method does without (the curvature of angles, part of sliding). So it serves as the factored
 //! approximation in an iteration on the true one, whose product with `dq` is the difference of two gradients:
 //! `dq -= K^-1 (g(q + s dq, u + s du) - g(q - s dq, u - s du)) / 2 s`. Nothing is committed, and no step is repeated.
 

@@ -7,7 +7,7 @@ use crate::system::System;
 
 /// Largest growth of the step from one to the next; variable-step BDF2 is stable to 2.4.
 const GROWTH: f64 = 1.7;
-/// Share of the tolerance that a step length is chosen for: fewer steps thrown away outweigh more
+/// Share of the tolerance that a step length is chosen for. Fewer steps thrown away outweigh more
 /// steps (at 0.7 a fifth of all steps was rejected, at 0.4 a tenth, for a tenth less work in all).
 const AIM: f64 = 0.4;
 /// Steps below this multiple of the shortest are taken in trouble only.
@@ -67,9 +67,8 @@ impl Implicit {
 }
 
 impl<const D: usize, U: Unknowns<D>> Work<D, U> {
-    /// Share of the guess's way that takes no node deeper than its radius into core or frozen wire: error
-    /// estimate and contact search
-    /// both know nothing of a surface that lies between the ends of a step.
+    /// Share of the guess's way that takes no node deeper than its radius into core or frozen wire. Error
+    /// estimate and contact search know nothing of a surface that lies between the ends of a step.
     pub(super) fn share_of_way(&self, sys: &System) -> f64 {
         let (Some(model), Some(line)) = (sys.model.contact.as_line(), sys.state.contact.as_line())
         else {

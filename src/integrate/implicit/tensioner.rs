@@ -1,7 +1,7 @@
 //! The edge at the nozzle together with line and tensioner, as one spring.
 //!
 //! How much wire passes the nozzle in a step follows from equal forces in the edge and in the
-//! line. Both schemes make the line's tension a straight line over the wire passed, so the length of
+//! line. Both schemes make the line's tension a straight line over the wire passed. So the length of
 //! the edge is the root of a quadratic and its tension has a closed potential: the feed costs no
 //! unknown.
 
@@ -12,8 +12,8 @@ use crate::system::Past;
 
 /// The edge at the nozzle during one solve.
 ///
-/// Friction at the exit holds back whichever way the wire moves: the tension is `grip` times the line's where
-/// wire comes out in this step, the line's over `grip` where it goes back, and between the two none passes.
+/// Friction at the exit holds back whichever way the wire moves. The tension is `grip` times the line's where
+/// wire comes out in this step, and the line's over `grip` where it goes back. Between the two none passes.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct NozzleEdge {
     /// the line's tension is `a + b * rest`, N and N/m

@@ -146,8 +146,8 @@ pub(super) trait Unknowns<const D: usize>: Debug + Default {
     /// Takes a torque from the right-hand side, at node `i`.
     fn relieve(_load: &mut [f64], _i: usize, _torque: f64) {}
 
-    /// Adds the stiffness of an angle between nodes `i` and `i + k`, where it goes with the places by the vectors in `a`
-    /// and `b` and with the rolls by the numbers.
+    /// Adds the stiffness of an angle between nodes `i` and `i + k`, as far as rolls have a share in it. `a` and `b` are
+    /// the derivatives of the angle by place and roll of either.
     fn add_stiffness(
         _matrix: &mut Banded<D>,
         _i: usize,

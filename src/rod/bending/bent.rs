@@ -27,9 +27,9 @@ pub struct Bent {
 
 /// Bending of a joint between two edges without twist.
 ///
-/// `t` are the unit directions of the edges and `il` their inverse lengths, 1/m; `set` is the
-/// plastic curvature as a vector, 1/m, in the frame of `t`; `rise` the rise of the yield moment,
-/// N m; `lv` the Voronoi length, m.
+/// `t` are the unit directions of the edges and `il` their inverse lengths, 1/m. `set` is the
+/// plastic curvature as a vector, 1/m, in the frame of `t`. `rise` is the rise of the yield moment,
+/// N m, `lv` the Voronoi length, m.
 #[inline]
 pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) -> Bent {
     let chi = (1.0 + t[0].dot(t[1])).max(FOLD);

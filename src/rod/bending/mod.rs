@@ -1,7 +1,7 @@
 //! The rod in vector form, for the implicit solver: energy, gradient and Gauss-Newton Hessian.
 //!
-//! The same energy as [`super::forces`] without twist, written in edge vectors instead of frames:
-//! the curvature of a joint is the turning angle between its edges about their common normal, over
+//! The same energy as [`super::forces`] without twist, written in edge vectors instead of frames.
+//! The curvature of a joint is the turning angle between its edges about their common normal, over
 //! the Voronoi length. Plastic curvature enters as a vector; the caller turns it along with the
 //! wire. The Hessian leaves out the second derivative of the angle (Gauss-Newton): what is left is
 //! positive semidefinite whatever the moment. Curvature binormal and its derivative after Bergou
