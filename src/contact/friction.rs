@@ -92,11 +92,8 @@ impl ContactResponse {
     ///
     /// A prediction that leaves the sliding branch for a slide the other way is evaluated on the sticking branch
     /// once; otherwise the update alternates between both slides.
-    ///
-    /// `UNIT_FIRST` chooses how the force of a sliding bristle b is rounded: limit times (b / |b|), or b times
-    /// (limit / |b|). The two agree but for rounding.
     #[inline(always)]
-    pub(super) fn add_touch<const UNIT_FIRST: bool>(&mut self, t: &Touching) -> (f64, V3) {
+    pub(super) fn add_touch(&mut self, t: &Touching) -> (f64, V3) {
         let n = t.normal;
         let force = t.stiffness * t.pressed.force;
         let pressed = t.stiffness * t.pressed.energy;
@@ -127,7 +124,7 @@ impl ContactResponse {
             } else {
                 slide = unit;
                 let h = limit / size;
-                self.gradient += if UNIT_FIRST { unit * limit } else { b * h };
+                self.gradient += unit * limit;
                 add_identity(&mut self.hessian, h);
                 add_outer(&mut self.hessian, &(unit * (-ALONG_SLIDE * h)), &unit);
                 along -= h;

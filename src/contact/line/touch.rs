@@ -65,7 +65,7 @@ impl TouchState {
         };
         let k_t = around.stiffness * TANGENTIAL_SHARE;
         let (bristle, bristle_stiffness) = self.bristle(p, around.last, k_t, around.damping);
-        sum.add_touch::<true>(&Touching {
+        sum.add_touch(&Touching {
             law: around.law,
             stiffness: around.stiffness,
             normal: self.normal,

@@ -38,7 +38,7 @@ impl Pair {
         slide: V3,
     ) -> (ContactResponse, f64, V3) {
         let mut sum = ContactResponse::default();
-        let (limit, slide) = sum.add_touch::<false>(&Touching {
+        let (limit, slide) = sum.add_touch(&Touching {
             law: around.law,
             stiffness,
             normal: self.normal,
