@@ -82,6 +82,7 @@ fn fast(
         law: &law(mu),
         onset: ONSET,
         diameter: DIAMETER,
+        prediction: 1e-7,
         step: STEP,
         hold_limits: false,
     };

@@ -1,16 +1,26 @@
 //! Error of contact forces that the linear system may promise.
 
-/// Error of a contact force that an update may promise, as a depth, m, for wire of 0.7 mm. Chosen.
-const PREDICTION_TOLERANCE: f64 = 1e-7;
-/// Diameter to which that belongs, m.
-const DIAMETER: f64 = 0.7e-3;
+use crate::geometry::Shape;
+use crate::math::scaled;
 
-/// Error of a contact force that an update may promise, as a depth, m, for wire of this `diameter`, m.
+/// Error of a contact force that an update may promise, as a depth, m, for wire of 0.7 mm that is drawn round [`BEND`].
+/// Chosen.
+const PREDICTION_TOLERANCE: f64 = 1e-7;
+/// Bending radius of the centreline to which that belongs, m.
+const BEND: f64 = 2e-3 + 0.35e-3;
+
+/// Error of a contact force that an update may promise, as a depth, m, for wire of this `radius`, m.
 ///
-/// The force that presses wire on its core scales with its cross-section, so the tolerance does too, up to 0.7 mm. With
-/// the same depth for all diameters an update could promise wire of 0.05 mm fifty times the force that there is; then
-/// Newton's method alternates and steps shrink to a microsecond.
-pub(super) fn prediction_tolerance(diameter: f64) -> f64 {
-    let size = diameter / DIAMETER;
-    PREDICTION_TOLERANCE * (size * size).min(1.0)
+/// The force that presses wire on its core goes with its cross-section over the radius that it is bent to, so the
+/// tolerance does too. With the same depth for all diameters an update could promise wire of 0.05 mm fifty times the
+/// force that there is; then Newton's method alternates and steps shrink to a microsecond.
+pub(super) fn prediction_tolerance(core: &Shape, radius: f64) -> f64 {
+    let most = scaled(PREDICTION_TOLERANCE, 2.0 * radius);
+    let bend = match core {
+        Shape::RoundedBox { corner_radius, .. } => corner_radius + radius,
+        Shape::Cylinder { radius: core, .. } => core + radius,
+        // its edges may be as sharp as any
+        Shape::Mesh(_) => radius,
+    };
+    scaled(most * BEND / bend, 2.0 * radius).min(most)
 }

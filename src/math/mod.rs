@@ -5,6 +5,7 @@ mod angle;
 mod block;
 mod frame;
 mod persistent_vec;
+mod scale;
 pub mod simd;
 mod vector;
 
@@ -12,4 +13,5 @@ pub use angle::{polar_angle, unwrap_angles, wrap_to_pi};
 pub use block::{Block, add_identity, add_outer, block_difference, block_times, scaled_block};
 pub use frame::{align, frame_along, relative, rotate, rotate_back, turn_about_y};
 pub use persistent_vec::PersistentVec;
+pub use scale::scaled;
 pub use vector::{M3, Quat, Spin, V3, spin_velocity};

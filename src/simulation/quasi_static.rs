@@ -9,9 +9,9 @@ use super::core_model::core_shape;
 use crate::contact::{ContactLaw, LineModel};
 use crate::geometry::Surface;
 use crate::integrate::{Implicit, Scheme};
-use crate::math::V3;
 use crate::math::frame_along;
 use crate::math::polar_angle;
+use crate::math::{V3, scaled};
 use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN};
 use crate::rod::Twist;
 use crate::rod::{Bend, Rod, Section};
@@ -19,10 +19,12 @@ use crate::scene::{Core, Scene};
 use crate::system::{Support, System};
 use std::sync::Arc;
 
-/// Node spacing of the loop, m; half of it moves the heights of the 0.7 mm wire by 4 um.
+/// Node spacing of the loop, m, for wire of 0.7 mm; half of it moves the heights by 4 um.
 const SPACING: f64 = 0.4e-3;
+/// Most edges of the loop: fine wire on a core a thousand times as wide has a coarser one.
+const MOST_EDGES: f64 = 2e4;
 
-/// The loop starts this far outside the core, m.
+/// The loop starts this far outside the core, m, for wire of 0.7 mm.
 const START_GAP: f64 = 2e-3;
 
 /// Axial softening of the loop; the strain at 15 N stays below half a percent.
@@ -32,7 +34,7 @@ const SOFTER: f64 = 10.0;
 const DRAW: f64 = 0.01;
 /// Draws after which there is no yardstick.
 const MOST_DRAWS: usize = 60;
-/// Error of the heights, m, and of the tension, as a share of it.
+/// Error of the heights, m, for wire of 0.7 mm, and of the tension, as a share of it.
 const TOLERANCE: f64 = 1e-7;
 const TENSION: f64 = 1e-2;
 
@@ -101,9 +103,11 @@ fn quarter_loop(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) 
         return None;
     }
     // start well outside: straight along the longer face, then a quarter circle
-    let (a, b) = (0.5 * width + r + START_GAP, 0.5 * height + r + START_GAP);
+    let gap = scaled(START_GAP, section.diameter);
+    let (a, b) = (0.5 * width + r + gap, 0.5 * height + r + gap);
     let (arc, flat) = (std::f64::consts::FRAC_PI_2 * a.min(b), (a - b).abs());
-    let count = ((arc + flat) / SPACING).ceil() as usize;
+    let edges = (arc + flat) / scaled(SPACING, section.diameter);
+    let count = edges.min(MOST_EDGES).ceil() as usize;
     let points: Vec<V3> = (0..=count)
         .map(|k| outline(a, b, (arc + flat) * k as f64 / count as f64))
         .collect();
@@ -128,7 +132,7 @@ fn quarter_loop(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) 
     let shape = core_shape(&scene.core, surface);
     sys.touch_along(LineModel::new(shape, law, r));
     sys.refresh();
-    let mut method = Implicit::new(Scheme::Bdf2, TOLERANCE, 1e-9, 1.0);
+    let mut method = Implicit::new(Scheme::Bdf2, scaled(TOLERANCE, section.diameter), 1e-9, 1.0);
     // the loop is drawn tight by taking wire out evenly; a loose one gives way, a tight one stretches
     let mut stiffness = section.ea;
     let mut before: Option<(f64, f64)> = None;

@@ -1,7 +1,7 @@
 //! Forces of the production method: joints of the whole wire at once, contact along its smooth centreline.
 
 use super::{Past, System, line_contact};
-use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
+use crate::contact::{ContactPoint, LineContact, own_wire};
 use crate::math::{Spin, V3};
 use crate::rod::Rod;
 
@@ -149,15 +149,7 @@ impl System {
                 arc += rest;
             }
             self.state.deepest = self.state.deepest.max(line.state.deepest);
-            moment += between_forces(
-                &mut line,
-                rod,
-                force,
-                &self.state.past,
-                spin,
-                (diameter, step),
-                commit,
-            );
+            moment += between_forces(&mut line, rod, force, &self.state.past, spin, step, commit);
             let pairs = line.state.self_contact.as_ref();
             let pairs = pairs.map(|pairs| pairs.loss).unwrap_or_default();
             self.state.balance.friction = line.state.loss.friction + pairs.friction;
@@ -179,16 +171,10 @@ fn between_forces(
     force: &mut [V3],
     past: &Past,
     spin: Spin,
-    (diameter, step): (f64, f64),
+    step: f64,
     commit: bool,
 ) -> f64 {
-    let conditions = PairConditions {
-        law: &line.model.law,
-        onset: line.model.onset,
-        diameter,
-        step,
-        hold_limits: false,
-    };
+    let conditions = line.model.of_pairs(step, false);
     let Some(pairs) = &mut line.state.self_contact else {
         return 0.0;
     };

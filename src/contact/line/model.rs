@@ -1,10 +1,13 @@
 //! What the scene gives of contact along the wire, and a run leaves as it is.
 
 use crate::contact::law::ContactLaw;
+use crate::contact::self_contact::PairConditions;
+use crate::contact::tolerance::prediction_tolerance;
 use crate::geometry::Shape;
+use crate::math::scaled;
 
-/// Depth over which the normal force sets in, m. Chosen: ten times as much takes a tenth off the evaluations and adds
-/// 4.5 um to the depth at rest.
+/// Depth over which the normal force sets in, m, for wire of 0.7 mm. Chosen: ten times as much takes a tenth off the
+/// evaluations and adds 4.5 um to the depth at rest.
 const ONSET: f64 = 1e-6;
 
 /// Core, law and wire of contact along the wire.
@@ -21,17 +24,33 @@ pub struct LineModel {
     pub damping: f64,
     /// wire radius, m
     pub radius: f64,
+    /// error of a contact force that an update of Newton's method may promise, as a depth, m
+    pub prediction: f64,
 }
 
 impl LineModel {
     /// Contact of a wire of this `radius` (m) without a dashpot.
     pub fn new(shape: Shape, law: ContactLaw, radius: f64) -> Self {
         Self {
+            prediction: prediction_tolerance(&shape, radius),
             shape,
             law,
-            onset: ONSET,
+            onset: scaled(ONSET, 2.0 * radius),
             damping: 0.0,
             radius,
+        }
+    }
+
+    /// What contact of live wire with live wire goes by, `step` (s) after the last accepted instant; it may take the friction
+    /// limits of the iterate before.
+    pub(crate) fn of_pairs(&self, step: f64, hold_limits: bool) -> PairConditions<'_> {
+        PairConditions {
+            law: &self.law,
+            onset: self.onset,
+            diameter: 2.0 * self.radius,
+            prediction: self.prediction,
+            step,
+            hold_limits,
         }
     }
 

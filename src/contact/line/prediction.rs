@@ -1,7 +1,6 @@
 //! Tangents of contact where an update of Newton's method leads.
 
 use super::line_contact::LineContact;
-use crate::contact::tolerance::prediction_tolerance;
 use crate::math::{Block, V3, block_difference, block_times};
 
 /// Change of an update that calls for no new look, as a share of the prediction tolerance. Chosen.
@@ -23,7 +22,7 @@ impl LineContact<'_> {
         mut correct: impl FnMut(usize, &Block, &V3),
     ) -> bool {
         let mut any = false;
-        let tolerance = prediction_tolerance(2.0 * self.model.radius);
+        let tolerance = self.model.prediction;
         let same = SAME_UPDATE * tolerance;
         let mut near = std::mem::take(&mut self.scratch.near);
         for n in &mut near {

@@ -6,7 +6,6 @@ use super::scratch::{NearPair, PairScratch};
 use crate::contact::friction::{ContactResponse, LimitFrom, Touching, across};
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE};
 use crate::contact::stencil::{ContactPoint, NodeWeights};
-use crate::contact::tolerance::prediction_tolerance;
 use crate::math::{Block, V3, block_difference, block_times};
 
 /// What the response of the pairs depends on besides the wire.
@@ -18,6 +17,8 @@ pub struct PairConditions<'a> {
     pub onset: f64,
     /// wire diameter, m
     pub diameter: f64,
+    /// error of a contact force that an update of Newton's method may promise, as a depth, m
+    pub prediction: f64,
     /// time since the last accepted instant, s
     pub step: f64,
     /// take the friction limits of the iterate before, see
@@ -143,7 +144,7 @@ impl SelfContact {
         } = scratch;
         let mut any = false;
         let curve = self.curve(there);
-        let tolerance = prediction_tolerance(around.diameter);
+        let tolerance = around.prediction;
         for near in all_near {
             let relative = |q: &[V3]| near.young.sum(q) + near.old.sum(q);
             let way = relative(there) - relative(q);

@@ -5,7 +5,7 @@ use super::scheme::StepFormula;
 use super::tensioner::NozzleEdge;
 use super::unknowns::Unknowns;
 use super::work::{Axial, Work};
-use crate::contact::{ContactPoint, LineContact, PairConditions, own_wire};
+use crate::contact::{ContactPoint, LineContact, own_wire};
 use crate::math::{Spin, V3};
 use crate::rod::batch::Joints;
 use crate::rod::{Block, Laws, Rod, stretched, turning};
@@ -345,13 +345,7 @@ impl Model<'_> {
         work: &mut Work<D, U>,
         value: &mut Value,
     ) {
-        let conditions = PairConditions {
-            law: &line.model.law,
-            onset: line.model.onset,
-            diameter: self.diameter,
-            step: self.elapsed,
-            hold_limits: line.state.hold_limits,
-        };
+        let conditions = line.model.of_pairs(self.elapsed, line.state.hold_limits);
         let Some(pairs) = &mut line.state.self_contact else {
             return;
         };

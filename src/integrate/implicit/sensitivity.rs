@@ -13,14 +13,14 @@ use super::tensioner::{NozzleEdge, advance};
 use super::unknowns::Unknowns;
 use super::work::Work;
 use super::{CLOSE, Implicit, StepError, conjugate, newton};
-use crate::math::V3;
+use crate::math::{V3, scaled};
 use crate::system::{Spindle, Support, System};
 
 /// Inputs by their place in a tangent: spindle speed, nozzle position, set tension.
 pub const INPUTS: usize = 3;
-/// Way of a node that differences are taken over, m: a hundredth of the depth over which contact sets in.
+/// Way of a node that differences are taken over, m, for wire of 0.7 mm: a hundredth of the depth over which contact sets in.
 const WAY: f64 = 1e-8;
-/// Set tension that differences are taken over, N.
+/// Set tension that differences are taken over, N, for wire of 0.7 mm.
 const PULL: f64 = 1e-3;
 /// Update that is nothing but rounding, m.
 const ROUNDING: f64 = 1e-12;
@@ -126,7 +126,12 @@ impl Implicit {
         let held = model.held;
         work.keep_start();
         let (nodes, expected) = (work.q.len(), work.expected.clone());
-        let reach = work.q[nodes - 1].norm().max(WAY);
+        let diameter = sys.model.section.diameter;
+        let (way, pull) = (
+            scaled(WAY, diameter),
+            scaled(scaled(PULL, diameter), diameter),
+        );
+        let reach = work.q[nodes - 1].norm().max(way);
         let seen = |work: &mut Work<D, U>, sys: &mut System, input: usize, by: f64, dq: &[f64]| {
             let setting = set(work, sys, &step, &base, input, by);
             work.update.clear();
@@ -147,7 +152,7 @@ impl Implicit {
             look(work, sys, &step, &setting, lift)
         };
         let there = seen(work, sys, 0, 0.0, &vec![0.0; D * nodes]);
-        let scale = [WAY / (reach * h), WAY, PULL];
+        let scale = [way / (reach * h), way, pull];
         let mut slopes = [OutputSensitivity::default(); INPUTS];
         for (input, by) in scale.into_iter().enumerate() {
             let mut dq = vec![0.0; D * nodes];
@@ -193,7 +198,7 @@ impl Implicit {
                 return Err(StepError {
                     step: h,
                     node: lift,
-                    update: WAY,
+                    update: way,
                     cause: "the tangent of the step does not settle",
                 });
             }
