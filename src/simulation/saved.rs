@@ -13,7 +13,7 @@ use crate::system::SavedSystem;
 use serde::{Deserialize, Serialize};
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]

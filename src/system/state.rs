@@ -4,7 +4,7 @@
 //! evaluation, history of the step formula. Work arrays do not.
 
 use super::{EnergyBalance, FrozenHistory, Past, Spindle, Support};
-use crate::feed::Feed;
+use crate::feed::{Feed, LineWire};
 use crate::rod::{Load, Rod};
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +23,8 @@ pub struct State {
     pub(crate) frozen_history: FrozenHistory,
     /// feed at the last node, if there is one
     pub feed: Option<Feed>,
+    /// plastic stretch of the wire behind the nozzle
+    pub line_wire: LineWire,
     /// set pull of the tensioner, N
     pub set_tension: f64,
     /// its rate, N/s
@@ -60,6 +62,7 @@ impl State {
             past: Past::default(),
             frozen_history: FrozenHistory::default(),
             feed: None,
+            line_wire: LineWire::default(),
             set_tension: 0.0,
             set_rate: 0.0,
             arc0: 0.0,
@@ -121,6 +124,9 @@ impl State {
         let rolls = rolls.all(|r| r.is_empty() || r.len() == edges);
         if !known || !rolls {
             return Err("the history does not go with the wire");
+        }
+        if !self.line_wire.is_sound() {
+            return Err("wire behind the nozzle is stretched beyond measure");
         }
         if !self.frozen_history.iter().all(|node| node.is_sound()) {
             return Err("frozen wire remembers what cannot be");

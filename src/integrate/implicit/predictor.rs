@@ -94,7 +94,10 @@ impl<const D: usize> Work<D> {
                 sys.set_tension_after(step.share * step.h),
                 sys.exit_grip(),
                 sys.model.laws.stretch.modulus,
-                rod.stretch[last].strain,
+                [
+                    rod.stretch[last].strain,
+                    sys.state.line_wire.next(feed.fed).strain,
+                ],
             ),
         ))
     }
