@@ -233,7 +233,9 @@ mod tests {
             let passing = if longer > 0.0 { 0.0 } else { 0.02 };
             let free = rest * 1.02 + step.grown * (1.0 + passing);
             let tension = l.modulus * (length - free) / (rest + step.grown);
-            assert!((tension - feed.line_tension).abs() < 1e-9, "{tension}");
+            let line = feed.line_tension;
+            // (the length that passes is solved for to 1e-15 m, and the edge is as stiff as 5e7 N/m)
+            assert!((tension - line).abs() < 5e-8, "{tension} {line}");
             assert!(step.grown * longer > 0.0);
         }
     }
