@@ -86,7 +86,7 @@ impl Implicit {
         if feeds {
             let last = sys.state.rod.edges() - 1;
             // a moment at the node before, spread over more or less wire: the grid's doing
-            sys.state.balance.numerical += 0.5 * sys.bent_at_nozzle() * grown;
+            sys.state.balance.remeshing += 0.5 * sys.bent_at_nozzle() * grown;
             sys.tighten_line_wire();
             let now = sys.state.load.tension[last];
             let tension = 0.5 * (now + before.3.unwrap_or(now));
