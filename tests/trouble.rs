@@ -321,6 +321,35 @@ fn tension_above_yield_stretches_the_wire_for_good() {
     assert!(m.sim.centreline().plastic_strain.last() > Some(fed));
 }
 
+/// Only the wire of the line has seen the peak; what the tensioner lets in later has not.
+#[test]
+fn a_peak_of_tension_stretches_the_line_and_no_wire_after_it() {
+    let mut m = Machine::new(&[("tensioner.line_length", "0.03")]);
+    let at_nozzle = |m: &Machine| *m.sim.centreline().plastic_strain.last().expect("wire");
+    let wind = |m: &mut Machine, length: f64| {
+        let end = m.out().fed_length + length;
+        while m.out().fed_length < end {
+            m.wait(1);
+        }
+    };
+    m.ramp(60.0, 0.01);
+    m.inputs.tension_setpoint = 60.0;
+    m.wait(8);
+    m.inputs.tension_setpoint = 15.0;
+    m.wait(4);
+    let stretched = at_nozzle(&m);
+    assert!(stretched > 5e-3, "{stretched}");
+    wind(&mut m, 0.015);
+    let line = at_nozzle(&m);
+    assert!((line / stretched - 1.0).abs() < 0.2, "{line}");
+    // the line is through, and the edge at the nozzle, of two free spacings, filled nine times over
+    wind(&mut m, 0.075);
+    let virgin = at_nozzle(&m);
+    assert!(virgin < 1e-3 * stretched, "{virgin}");
+    let energy = m.sim.energy();
+    assert!(energy.residual_over_dissipated.abs() < 0.01, "{energy:?}");
+}
+
 #[test]
 fn broken_wire_is_told_once_and_the_spindle_turns_on() {
     let mut m = Machine::new(&[]);

@@ -30,9 +30,7 @@ pub use nodal::{Body, LiveConditions, NodalContact, NodalModel, NodalScratch, No
 #[cfg(feature = "lab")]
 pub use nodal::{LiveContact, NodeContact, Wire};
 pub use own_wire::own_wire;
+pub use self_contact::{Coupling, add_couplings};
 #[cfg(feature = "lab")]
-pub use self_contact::PairScratch;
-#[cfg(feature = "lab")]
-pub use self_contact::SelfContact;
-pub use self_contact::{Coupling, PairConditions, add_couplings};
+pub use self_contact::{PairConditions, PairScratch, SelfContact};
 pub use stencil::{ContactPoint, NodeWeights};

@@ -13,7 +13,10 @@
 //!
 //! A slack line cannot push: below zero the last edge is free of tension and the wire waits.
 
+mod line_wire;
+
 use crate::rod::Law;
+pub use line_wire::LineWire;
 use serde::{Deserialize, Serialize};
 
 /// Constants of the feed.
@@ -27,6 +30,8 @@ pub struct FeedSpec {
     pub line_damping: f64,
     /// exit friction coefficient
     pub exit_friction: f64,
+    /// length of the line, m: that much wire is as tight as the line
+    pub line_length: f64,
 }
 
 /// State of the feed.
@@ -64,8 +69,8 @@ impl Feed {
     /// Advances by `dt` with the last edge of unstretched length `rest` now `length` long; returns the unstretched
     /// length added to it, m.
     ///
-    /// `plastic` is the edge's plastic stretch, `deflection` the angle at the exit, rad, `set` the
-    /// tensioner's pull, N.
+    /// `plastic` is the plastic stretch of the edge and of wire that comes out, `deflection` the angle
+    /// at the exit, rad, `set` the tensioner's pull, N.
     pub fn step(
         &mut self,
         spec: &FeedSpec,
@@ -74,7 +79,7 @@ impl Feed {
         dt: f64,
         rest: f64,
         length: f64,
-        plastic: f64,
+        plastic: [f64; 2],
         deflection: f64,
     ) -> f64 {
         // friction at the exit holds back whichever way the wire moves
@@ -106,7 +111,9 @@ impl Feed {
         let mut tension = 0.0;
         for _ in 0..8 {
             let l = rest + grown;
-            let wire = stretch.modulus * (length / l - 1.0 - plastic);
+            let passing = if grown > 0.0 { plastic[1] } else { plastic[0] };
+            let set = (rest * plastic[0] + grown * passing) / l;
+            let wire = stretch.modulus * (length / l - 1.0 - set);
             let (t, slope) = line(grown);
             tension = t;
             let residual = wire - grip * t;
@@ -145,6 +152,7 @@ mod tests {
             line_stiffness: k,
             line_damping: 0.2 * (k * m).sqrt(),
             exit_friction: 0.0,
+            line_length: 0.5,
         }
     }
 
@@ -158,7 +166,7 @@ mod tests {
         let mut t = 0.0;
         while t < end {
             length += speed(t) * dt;
-            rest += feed.step(spec, &l, 15.0, dt, rest, length, 0.0, 0.0);
+            rest += feed.step(spec, &l, 15.0, dt, rest, length, [0.0; 2], 0.0);
             // keep the edge short: drop whole wire behind it at the same strain
             let drop = rest - 1e-3;
             rest -= drop;
@@ -198,6 +206,25 @@ mod tests {
                 "{k}: {} {exact}",
                 seen[k] - 15.0
             );
+        }
+    }
+
+    /// Stretched wire of the edge and virgin wire that comes out pull as hard as the line.
+    #[test]
+    fn virgin_wire_comes_out_behind_stretched_wire() {
+        let (s, l) = (spec(), law());
+        let (rest, plastic) = (1e-3, [0.02, 0.0]);
+        for longer in [-1e-6, 1e-6] {
+            let mut feed = Feed::at_rest(&s, 15.0);
+            let length = rest * (1.02 + 15.0 / l.modulus) + longer;
+            let grown = feed.step(&s, &l, 15.0, 1e-6, rest, length, plastic, 0.0);
+            let passing = if longer > 0.0 { 0.0 } else { 0.02 };
+            let free = rest * 1.02 + grown * (1.0 + passing);
+            let tension = l.modulus * (length - free) / (rest + grown);
+            let line = feed.line_tension;
+            // (the length that passes is solved for to 1e-15 m, and the edge is as stiff as 5e7 N/m)
+            assert!((tension - line).abs() < 5e-8, "{tension} {line}");
+            assert!(grown * longer > 0.0);
         }
     }
 

@@ -47,28 +47,40 @@ impl Law {
         }
     }
 
+    /// Largest rise of the limit, where it has met its cap.
+    #[inline]
+    fn most(&self) -> f64 {
+        self.cap - self.limit
+    }
+
     /// Tangent of the loading branch once the limit has risen by `rise`: none at the cap.
     #[inline]
     pub fn tangent(&self, rise: f64) -> f64 {
-        if self.limit + rise >= self.cap {
+        if rise >= self.most() {
             0.0
         } else {
             self.modulus * self.hardening / (self.modulus + self.hardening)
         }
     }
 
-    /// Plastic multiplier and rise of the limit for a trial force of norm `trial` at rise `q`.
+    /// Plastic multiplier, rise of the limit afterwards and plastic work for a trial force of norm
+    /// `trial` at rise `q`.
     #[inline]
-    fn flow(&self, trial: f64, q: f64) -> (f64, f64) {
+    fn flow(&self, trial: f64, q: f64) -> (f64, f64, f64) {
         let over = trial - (self.limit + q);
         let dg = over / (self.modulus + self.hardening);
         let dq = self.hardening * dg;
-        let room = (self.cap - self.limit - q).max(0.0);
+        let most = self.most().max(q);
+        let room = most - q;
         if dq <= room {
-            return (dg, dq);
+            return (dg, q + dq, (self.limit + q + 0.5 * dq) * dg);
         }
         // the limit meets its cap on the way: from there on it is ideally plastic
-        ((trial - (self.limit + q + room)) / self.modulus, room)
+        let cap = self.limit + most;
+        let dg = (trial - cap) / self.modulus;
+        // on the first part of the way the limit was lower, by half the room on average
+        let hardened = room / self.hardening;
+        (dg, most, cap * dg - 0.5 * room * hardened)
     }
 }
 
@@ -89,12 +101,11 @@ pub fn respond_scalar(law: &Law, state: &Scalar, strain: f64) -> (f64, Scalar, f
     if trial.abs() <= law.limit + state.rise {
         return (trial, *state, 0.0);
     }
-    let (dg, dq) = law.flow(trial.abs(), state.rise);
+    let (dg, rise, work) = law.flow(trial.abs(), state.rise);
     let next = Scalar {
         strain: state.strain + dg.copysign(trial),
-        rise: state.rise + dq,
+        rise,
     };
-    let work = (law.limit + state.rise + 0.5 * dq) * dg;
     (law.modulus * (strain - next.strain), next, work)
 }
 
@@ -133,17 +144,16 @@ pub fn respond_bend(law: &Law, state: &Bend, curvature: [f64; 2]) -> ([f64; 2], 
         return (trial, *state, 0.0);
     }
     let n = n2.sqrt();
-    let (dg, dq) = law.flow(n, state.rise);
+    let (dg, rise, work) = law.flow(n, state.rise);
     let dir = [trial[0] / n, trial[1] / n];
     let next = Bend {
         curvature: [
             state.curvature[0] + dg * dir[0],
             state.curvature[1] + dg * dir[1],
         ],
-        rise: state.rise + dq,
+        rise,
     };
     let left = n - law.modulus * dg;
-    let work = (law.limit + state.rise + 0.5 * dq) * dg;
     ([left * dir[0], left * dir[1]], next, work)
 }
 
@@ -154,6 +164,10 @@ mod tests {
 
     fn law() -> Law {
         Law::new(3.06e-3, 1.13e-4, 5.72e-3, f64::INFINITY)
+    }
+
+    fn capped() -> Law {
+        Law::new(3.06e-3, 1.13e-4, 5.72e-3, 0.0126)
     }
 
     #[test]
@@ -232,6 +246,64 @@ mod tests {
             }
             let stored = 0.5 * last * last / l.modulus;
             prop_assert!((done - stored - plastic).abs() < 1e-3 * done);
+        }
+
+        /// One step that meets the cap on its way did the plastic work of all small steps on that way.
+        #[test]
+        fn work_of_a_step_to_the_cap_is_that_of_small_steps(k in 5.0..300.0f64, worn in 0.0..1.0f64, set in -30.0..30.0f64, a in 0.0..6.0f64) {
+            let l = capped();
+            let mut state = Bend { curvature: [set * a.cos(), set * a.sin()], rise: worn * (l.cap - l.limit) };
+            let start = Scalar { strain: set, rise: state.rise };
+            let (m, next, work) = respond_scalar(&l, &start, set + k);
+            let (mut scalar, mut sum, mut sum_bend) = (start, 0.0, 0.0);
+            let n = 4000;
+            for i in 1..=n {
+                let kk = set + k * f64::from(i) / f64::from(n);
+                let (_, after, w) = respond_scalar(&l, &scalar, kk);
+                let (_, bend, w_bend) = respond_bend(&l, &state, [kk * a.cos(), kk * a.sin()]);
+                sum += w;
+                sum_bend += w_bend;
+                scalar = after;
+                state = bend;
+            }
+            let scale = work + 0.5 * m * m / l.modulus;
+            prop_assert!((work - sum).abs() < 1e-9 * scale, "{work} in one step, {sum} in {n}");
+            prop_assert!((work - sum_bend).abs() < 1e-9 * scale);
+            prop_assert!((next.strain - scalar.strain).abs() < 1e-9 * k);
+        }
+
+        /// Stored energy and plastic work together are the potential of the moment, whatever the branch.
+        #[test]
+        fn moment_is_the_derivative_of_energy_and_work(
+            k in prop::array::uniform2(-300.0..300.0f64), set in prop::array::uniform2(-30.0..30.0f64), worn in 0.0..1.0f64,
+        ) {
+            let l = capped();
+            let state = Bend { curvature: set, rise: worn * (l.cap - l.limit) };
+            let potential = |k: [f64; 2]| {
+                let (m, _, work) = respond_bend(&l, &state, k);
+                0.5 * (m[0] * m[0] + m[1] * m[1]) / l.modulus + work
+            };
+            let (m, ..) = respond_bend(&l, &state, k);
+            let h = 1e-3;
+            for a in 0..2 {
+                let at = |by: f64| {
+                    let mut k = k;
+                    k[a] += by;
+                    potential(k)
+                };
+                let slope = (at(h) - at(-h)) / (2.0 * h);
+                // (a branch that changes within h bends the potential by E h)
+                prop_assert!((slope - m[a]).abs() < l.modulus * h, "{slope} {}", m[a]);
+            }
+        }
+
+        /// A limit that has met its cap rests there, whatever was rounded on its way.
+        #[test]
+        fn no_hardening_is_left_at_the_cap(rise in 0.0..1.0f64, limit in 1e-3..6e-3f64, over in 1.01..3.0f64) {
+            let l = Law::new(3.06e-3, 1.13e-4, limit, limit * over);
+            let start = Scalar { strain: 0.0, rise: rise * (l.cap - l.limit) };
+            let (m, next, _) = respond_scalar(&l, &start, 1e4);
+            prop_assert_eq!(l.tangent(next.rise), 0.0, "{} {:?}", m, next);
         }
     }
 }

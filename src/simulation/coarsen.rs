@@ -14,6 +14,8 @@ const LONGEST: f64 = 4.0;
 /// Height of an arc over the joined edge, in wire diameters: contact and frozen wire see a spline that
 /// cuts the polygon's corners by this much.
 const CUT: f64 = 0.005;
+/// The same for wire that touches, in m: a hundredth of the depth over which contact sets in.
+const CUT_TOUCHING: f64 = 1e-8;
 /// Wire this share of the keep length behind lift-off may be coarsened ...
 const BEHIND: f64 = 0.6;
 /// ... and is fine again when it comes nearer than this.
@@ -73,7 +75,13 @@ impl Simulation {
                     })
                     .sum();
                 let off = off.sqrt().max((here - spread).norm());
-                if here.norm() * length * length < 8.0 * CUT * wire.diameter
+                // a surface that the wire lies on would push the chord out again, and tighten it
+                let cut = if (i - 1..=i + 1).any(|k| self.sys.touches(k)) {
+                    CUT_TOUCHING
+                } else {
+                    CUT * wire.diameter
+                };
+                if here.norm() * length * length < 8.0 * cut
                     && off * length * bending < solver.tolerance
                 {
                     nodes.push(i);

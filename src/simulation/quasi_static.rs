@@ -159,3 +159,33 @@ fn quarter_loop(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) 
     }
     None
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::core_model::core_surface;
+    use super::*;
+    use crate::settings::SceneSettings;
+
+    /// Joints that meet their cap in one increment need a potential, or Newton's method cannot descend in it.
+    #[test]
+    fn a_loop_of_copper_is_drawn_tight() {
+        for (material, least) in [("table1", 0.5e-3), ("copper", 0.1e-3)] {
+            let mut settings = SceneSettings::packed("fig8")
+                .expect("a packed scene")
+                .expect("it is read");
+            settings
+                .set_text("wire.material", material)
+                .expect("there is one");
+            let scene = settings.build().expect("a scene");
+            let surface = Arc::new(core_surface(&scene.core).expect("a core"));
+            let profile = profile(&scene, &surface).expect("a loop at rest");
+            let highest = (0..STATIONS_PER_TURN)
+                .map(|k| profile.at(k as f64 * STATION_STEP))
+                .fold(0.0, f64::max);
+            assert!(
+                (least..2e-3).contains(&highest),
+                "{material} stands {highest} m off"
+            );
+        }
+    }
+}

@@ -72,9 +72,9 @@ impl Simulation {
         if freeze > 0 {
             self.freeze(freeze);
         }
-        // bring the forces in line with the new arrays; what the change itself cost is the method's
+        // bring the forces in line with the new arrays; what the change itself cost is a line of its own
         self.sys.refresh();
-        self.sys.state.balance.numerical += self.sys.energy_residual(None) - unexplained;
+        self.sys.state.balance.remeshing += self.sys.energy_residual(None) - unexplained;
         self.shift_velocities(-0.5 * dt);
         Ok(())
     }
@@ -247,7 +247,7 @@ impl Simulation {
             self.thaw(thaw);
         }
         self.sys.refresh();
-        self.sys.state.balance.numerical += self.sys.energy_residual(None) - unexplained;
+        self.sys.state.balance.remeshing += self.sys.energy_residual(None) - unexplained;
     }
 
     fn join(&mut self, node: usize) {

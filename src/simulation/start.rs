@@ -6,7 +6,7 @@ use super::freezing::{FreezePolicy, Watch};
 use super::run_state::{Instant, RunState};
 use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
-use crate::feed::{Feed, FeedSpec};
+use crate::feed::{Feed, FeedSpec, LineWire};
 use crate::geometry::Surface;
 use crate::integrate::{
     Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency, longest_step,
@@ -121,8 +121,10 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
             0.0
         },
         exit_friction: scene.nozzle.exit_friction,
+        line_length: t.line_length,
     };
     sys.set_feed(spec, Feed::at_rest(&spec, tension));
+    sys.state.line_wire = LineWire::at_rest(plastic);
     let law = ContactLaw {
         stiffness: scene.contact.stiffness,
         damping_ratio: damping_for_restitution(scene.contact.restitution),

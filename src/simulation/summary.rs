@@ -68,8 +68,10 @@ pub struct EnergySummary {
     pub friction_J: f64,
     /// contact dashpots
     pub damping_J: f64,
-    /// dissipation by the method itself
+    /// dissipation by the time steps
     pub numerical_J: f64,
+    /// dissipation where the mesh of the wire changes
+    pub remeshing_J: f64,
     /// what is unexplained
     pub residual_J: f64,
     /// unexplained over dissipated (plastic, friction, damping)
@@ -114,6 +116,7 @@ impl Simulation {
             friction_J: b.friction,
             damping_J: b.damping,
             numerical_J: b.numerical,
+            remeshing_J: b.remeshing,
             residual_J: self.run.outputs.energy_residual,
             residual_over_dissipated: self.run.outputs.energy_residual * scale,
             numerical_over_dissipated: b.numerical * scale,

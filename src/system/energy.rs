@@ -98,14 +98,15 @@ impl System {
     pub fn energy_residual(&self, staggered: Option<f64>) -> f64 {
         let b = self.state.balance;
         let supply = b.initial + b.spindle + b.nozzle + b.inflow;
-        let lost = b.plastic.iter().sum::<f64>() + b.friction + b.damping + b.numerical;
+        let lost = b.plastic.iter().sum::<f64>() + b.friction + b.damping;
+        let method = b.numerical + b.remeshing;
         // (the forces are those of this instant)
         let stored = self.stored_with(self.state.load.stored);
         let kinetic = match staggered {
             Some(dt) => self.staggered_kinetic(dt),
             None => self.kinetic(),
         };
-        supply - lost - b.frozen_stored - b.frozen_kinetic - stored - kinetic
+        supply - lost - method - b.frozen_stored - b.frozen_kinetic - stored - kinetic
     }
 
     fn staggered_kinetic(&self, dt: f64) -> f64 {

@@ -17,8 +17,10 @@ pub struct EnergyBalance {
     pub friction: f64,
     /// contact dashpots
     pub damping: f64,
-    /// losses of the method itself: splitting and freezing
+    /// losses of the time steps
     pub numerical: f64,
+    /// losses where the mesh changes: splits and joins, frozen and thawed wire, wire that comes out
+    pub remeshing: f64,
     /// elastic energy locked into frozen wire
     pub frozen_stored: f64,
     /// motion energy handed to the core with frozen wire

@@ -156,6 +156,7 @@ impl System {
 
     /// Lets the wire through the nozzle for `dt`; call after the nodes have moved.
     pub(crate) fn feed_step(&mut self, dt: f64) {
+        self.tighten_line_wire();
         let (Some(spec), Some(feed)) = (&self.model.feed, &mut self.state.feed) else {
             return;
         };
@@ -165,6 +166,7 @@ impl System {
         let length = d.norm();
         let rest = self.state.rod.rest[e];
         let plastic = self.state.rod.stretch[e].strain;
+        let coming = self.state.line_wire.next(feed.fed).strain;
         // the line comes from beyond the nozzle, radially
         let out = V3::new(self.state.rod.x[n].x, 0.0, self.state.rod.x[n].z).normalize();
         let deflection = libm::acos((d.dot(&out) / length).clamp(-1.0, 1.0));
@@ -176,18 +178,18 @@ impl System {
             dt,
             rest,
             length,
-            plastic,
+            [plastic, coming],
             deflection,
         );
-        let after = rest + grown;
+        let passing = self.pass_nozzle(grown);
+        let (after, plastic) = (self.state.rod.rest[e], self.state.rod.stretch[e].strain);
         // the edge stretches and grows in the same step: its tension runs from the old to the new value
         let tension =
             0.5 * (self.state.load.tension[e] + law.modulus * (length / after - 1.0 - plastic));
         // wire arrives stretched, so it brings its elastic energy along
         self.state.balance.nozzle -=
-            (tension * (1.0 + plastic) + 0.5 * tension * tension / law.modulus) * grown;
+            (tension * (1.0 + passing) + 0.5 * tension * tension / law.modulus) * grown;
         let gained = 0.5 * self.model.section.mass_per_length() * grown;
         self.state.balance.inflow += 0.5 * gained * self.state.rod.v[e].norm_squared();
-        self.state.rod.rest[e] = after;
     }
 }

@@ -1,9 +1,58 @@
-//! The set of the wire at the node before the nozzle, whose length changes as wire comes and goes.
+//! The edge at the nozzle and the node before it, whose length changes as wire comes and goes.
 
 use super::System;
-use crate::rod::Joint;
+use crate::rod::{Joint, Scalar};
 
 impl System {
+    /// Lets the edge at the nozzle grow by the unstretched length `grown` (m); returns the plastic
+    /// stretch of the wire that passed. Call with the feed already advanced.
+    ///
+    /// Within the edge wire is alike: it takes the mean of what it was and of what came.
+    pub(crate) fn pass_nozzle(&mut self, grown: f64) -> f64 {
+        let state = &mut self.state;
+        let last = state.rod.edges() - 1;
+        let before = state.feed.map_or(0.0, |feed| feed.fed) - grown;
+        let own = state.rod.stretch[last];
+        let rest = state.rod.rest[last];
+        state.rod.rest[last] = rest + grown;
+        if grown <= 0.0 {
+            state.line_wire.take_back(before, own);
+            return own.strain;
+        }
+        let coming = state.line_wire.next(before);
+        if coming != own {
+            let mean = |own: f64, coming: f64| (own * rest + coming * grown) / (rest + grown);
+            state.rod.stretch[last] = Scalar {
+                strain: mean(own.strain, coming.strain),
+                rise: mean(own.rise, coming.rise),
+            };
+        }
+        coming.strain
+    }
+
+    /// The wire in the line yields to the tension there at this instant.
+    ///
+    /// A step takes the edge at the nozzle as elastic, and so the line's tension where the edge then
+    /// yields: the line pulls no harder than the edge does, but for friction at the exit.
+    pub(crate) fn tighten_line_wire(&mut self) {
+        let grip = self.exit_grip();
+        let (Some(spec), Some(feed)) = (&self.model.feed, &self.state.feed) else {
+            return;
+        };
+        let last = self.state.rod.edges() - 1;
+        let edge = self.state.load.tension.get(last).copied().unwrap_or(0.0);
+        let behind = if feed.rate > 0.0 {
+            edge / grip
+        } else {
+            edge * grip
+        };
+        let tension = feed.line_tension.min(behind);
+        let law = &self.model.laws.stretch;
+        self.state
+            .line_wire
+            .pull(law, spec.line_length, feed.fed, tension);
+    }
+
     /// The edge at the nozzle has grown by `grown`: it is straight wire that came or went, so the set
     /// at the node before stays, spread over the node's new length.
     pub(crate) fn keep_set_at_nozzle(&mut self, grown: f64) {

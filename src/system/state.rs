@@ -4,7 +4,7 @@
 //! evaluation, history of the step formula. Work arrays do not, nor does what follows from the state.
 
 use super::{ContactState, EnergyBalance, FrozenHistory, Past, Spindle, Support};
-use crate::feed::Feed;
+use crate::feed::{Feed, LineWire};
 use crate::geometry::Tube;
 use crate::rod::{Load, Rod};
 use serde::{Deserialize, Serialize};
@@ -28,6 +28,8 @@ pub struct State {
     pub(crate) frozen_history: FrozenHistory,
     /// feed at the last node, if there is one
     pub feed: Option<Feed>,
+    /// plastic stretch of the wire behind the nozzle
+    pub line_wire: LineWire,
     /// set pull of the tensioner, N
     pub set_tension: f64,
     /// its rate, N/s
@@ -67,6 +69,7 @@ impl State {
             frozen: Tube::new(radius),
             frozen_history: FrozenHistory::default(),
             feed: None,
+            line_wire: LineWire::default(),
             set_tension: 0.0,
             set_rate: 0.0,
             arc0: 0.0,
@@ -128,6 +131,9 @@ impl State {
         let rolls = rolls.all(|r| r.is_empty() || r.len() == edges);
         if !known || !rolls {
             return Err("the history does not go with the wire");
+        }
+        if !self.line_wire.is_sound() {
+            return Err("wire behind the nozzle is stretched beyond measure");
         }
         if !self.frozen_history.iter().all(|node| node.is_sound()) {
             return Err("frozen wire remembers what cannot be");

@@ -59,10 +59,11 @@ impl Implicit {
         sys.place_supports();
         let inflow = grown * 0.5 * sys.model.section.mass_per_length();
         let feeds = sys.state.feed.is_some();
+        let mut passing = 0.0;
         if let (Some(f), Some(feed)) = (fed, &mut sys.state.feed) {
             *feed = f;
             let last = sys.state.rod.edges() - 1;
-            sys.state.rod.rest[last] += grown;
+            passing = sys.pass_nozzle(grown);
             sys.keep_set_at_nozzle(grown);
             // the node before the nozzle gains mass that moves as it does
             sys.state.balance.inflow += 0.5 * inflow * sys.state.rod.v[last].norm_squared();
@@ -83,13 +84,13 @@ impl Implicit {
         if feeds {
             let last = sys.state.rod.edges() - 1;
             // a moment at the node before, spread over more or less wire: the grid's doing
-            sys.state.balance.numerical += 0.5 * sys.bent_at_nozzle() * grown;
-            let plastic = sys.state.rod.stretch[last].strain;
+            sys.state.balance.remeshing += 0.5 * sys.bent_at_nozzle() * grown;
+            sys.tighten_line_wire();
             let now = sys.state.load.tension[last];
             let tension = 0.5 * (now + before.3.unwrap_or(now));
             let law = sys.model.laws.stretch;
             sys.state.balance.nozzle -=
-                (tension * (1.0 + plastic) + 0.5 * tension * tension / law.modulus) * grown;
+                (tension * (1.0 + passing) + 0.5 * tension * tension / law.modulus) * grown;
             let n = nodes - 1;
             let force = (sys.state.load.force[n] + w.force[n]) * 0.5;
             sys.state.balance.nozzle -= force.dot(&sys.state.support[1].velocity) * h;

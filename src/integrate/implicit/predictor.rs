@@ -84,7 +84,10 @@ impl<const D: usize, U: Unknowns<D>> Work<D, U> {
                 sys.set_tension_after(step.share * step.h),
                 sys.exit_grip(),
                 sys.model.laws.stretch.modulus,
-                rod.stretch[last].strain,
+                [
+                    rod.stretch[last].strain,
+                    sys.state.line_wire.next(feed.fed).strain,
+                ],
             ),
         ))
     }

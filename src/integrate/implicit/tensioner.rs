@@ -19,9 +19,14 @@ pub(super) struct NozzleEdge {
     /// the line's tension is `a + b * rest`, N and N/m
     a: f64,
     b: f64,
-    /// elastic modulus, N, and `1 + plastic stretch`
+    /// elastic modulus, N
     ea: f64,
+    /// `1 + plastic stretch` of the edge's wire
     set: f64,
+    /// the same of wire that comes out
+    coming: f64,
+    /// how much longer the wire at the start is for its plastic stretch than if it were such wire, m
+    longer: f64,
     /// rest length at which the line goes slack, m
     slack: f64,
     /// rest length at the start of the step, m
@@ -33,22 +38,24 @@ pub(super) struct NozzleEdge {
 /// Which way wire passes the nozzle in a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Way {
-    /// either way, and the tension is the line's times this
-    Free(f64),
+    /// out, and the tension is the line's times this
+    Out(f64),
+    /// back, and the tension is the line's times this
+    Back(f64),
     /// held by friction
     Held,
 }
 
 impl NozzleEdge {
     /// `rest` is the edge's unstretched length now, `pull` the tensioner's force, `grip` the ratio of
-    /// tension after to before the exit where wire comes out, `ea` the wire's modulus, `plastic` its plastic
-    /// stretch.
+    /// tension after to before the exit where wire comes out, `ea` the wire's modulus, `plastic` the plastic
+    /// stretch of the edge and of wire that comes out.
     pub(super) fn new(
         spec: &FeedSpec,
         feed: &Feed,
         past: &Past,
         step: &StepFormula,
-        (rest, pull, grip, ea, plastic): (f64, f64, f64, f64, f64),
+        (rest, pull, grip, ea, plastic): (f64, f64, f64, f64, [f64; 2]),
     ) -> Self {
         let (t0, slope) = line_over_fed(spec, feed, past, step, pull);
         // tension = t0 + slope * fed, fed = feed.fed + rest' - rest
@@ -57,7 +64,9 @@ impl NozzleEdge {
             a,
             b: slope,
             ea,
-            set: 1.0 + plastic,
+            set: 1.0 + plastic[0],
+            coming: 1.0 + plastic[1],
+            longer: rest * (plastic[0] - plastic[1]),
             slack: if slope > 0.0 {
                 -a / slope
             } else {
@@ -79,14 +88,11 @@ impl NozzleEdge {
     }
 
     fn way(&self, length: f64) -> Way {
-        if self.grip == 1.0 {
-            return Way::Free(1.0);
-        }
         let (held, line) = (self.held(length), self.line_at_start());
         if held > self.grip * line {
-            Way::Free(self.grip)
-        } else if held < line / self.grip {
-            Way::Free(1.0 / self.grip)
+            Way::Out(self.grip)
+        } else if self.grip == 1.0 || held < line / self.grip {
+            Way::Back(1.0 / self.grip)
         } else {
             Way::Held
         }
@@ -95,33 +101,35 @@ impl NozzleEdge {
     /// Unstretched length of the edge when it is `length` long.
     pub(super) fn rest(&self, length: f64) -> f64 {
         match self.way(length) {
-            Way::Free(grip) => self.balanced(length, grip),
             Way::Held => self.start,
+            way => self.balanced(length, way),
         }
     }
 
     /// The line's tension when the edge is `length` long, N.
     pub(super) fn line(&self, length: f64) -> f64 {
         match self.way(length) {
-            Way::Free(grip) => self.free(length, grip).tension / grip,
             Way::Held => self.line_at_start(),
+            way @ (Way::Out(grip) | Way::Back(grip)) => self.free(length, way).tension / grip,
         }
     }
 
     /// Tension, stiffness and potential at a length.
     pub(super) fn stretched(&self, length: f64) -> Stretched {
-        let grip = match self.way(length) {
-            Way::Free(grip) => grip,
+        let way = self.way(length);
+        let grip = match way {
+            Way::Out(grip) | Way::Back(grip) => grip,
             Way::Held => return self.stuck(length),
         };
-        let free = self.free(length, grip);
-        if self.grip == 1.0 {
+        let free = self.free(length, way);
+        if self.grip == 1.0 && self.longer == 0.0 {
+            // out and back are one law
             return free;
         }
-        // the potential goes on where friction let go
+        // the potential goes on where wire begins to pass
         let end = self.start * (self.set + grip * self.line_at_start() / self.ea);
         Stretched {
-            energy: free.energy - self.free(end, grip).energy + self.stuck(end).energy,
+            energy: free.energy - self.free(end, way).energy + self.stuck(end).energy,
             ..free
         }
     }
@@ -136,10 +144,21 @@ impl NozzleEdge {
         }
     }
 
-    /// Unstretched length at which the edge pulls `grip` times as hard as the line.
-    fn balanced(&self, length: f64, grip: f64) -> f64 {
+    /// Length of the edge less what makes its wire unlike that which passes, m; factor of the line's
+    /// tension; `1 + plastic stretch` of wire that passes.
+    fn alike(&self, length: f64, way: Way) -> (f64, f64, f64) {
+        match way {
+            Way::Out(grip) => (length - self.longer, grip, self.coming),
+            Way::Back(grip) => (length, grip, self.set),
+            Way::Held => (length, 1.0, self.set),
+        }
+    }
+
+    /// Unstretched length at which the edge pulls as hard as the line does through the exit.
+    fn balanced(&self, length: f64, way: Way) -> f64 {
+        let (length, grip, set) = self.alike(length, way);
         let (a, b) = (grip * self.a, grip * self.b);
-        let c = self.ea * self.set + a;
+        let c = self.ea * set + a;
         let y = if b > 0.0 {
             // b y^2 + c y = EA length, the positive root in the form without cancellation
             let d = (c * c + 4.0 * b * self.ea * length).sqrt();
@@ -153,21 +172,22 @@ impl NozzleEdge {
         };
         if y <= self.slack || a + b * y < 0.0 {
             // the line is slack: the edge is as long as it likes
-            length / self.set
+            length / set
         } else {
             y
         }
     }
 
     /// The edge where wire passes.
-    fn free(&self, length: f64, grip: f64) -> Stretched {
-        let y = self.balanced(length, grip);
+    fn free(&self, length: f64, way: Way) -> Stretched {
+        let y = self.balanced(length, way);
+        let (_, grip, set) = self.alike(length, way);
         let (a, b) = (grip * self.a, grip * self.b);
         let tension = a + b * y;
         if tension <= 0.0 {
             return Stretched::default();
         }
-        let c = self.ea * self.set + a;
+        let c = self.ea * set + a;
         let slope = self.ea / (2.0 * b * y + c);
         // integral of the tension over the length, with d length = (2 b y + c) / EA dy
         let primitive = |y: f64| {
@@ -256,6 +276,7 @@ mod tests {
             line_stiffness: 97_800.0,
             line_damping: 2.0,
             exit_friction: 0.0,
+            line_length: 0.5,
         };
         let feed = Feed {
             fed: 0.012,
@@ -280,7 +301,7 @@ mod tests {
     fn wire_and_line_pull_alike() {
         let (spec, feed, past, step) = setting();
         let ea = 48_900.0;
-        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.1, ea, 1e-4));
+        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.1, ea, [1e-4; 2]));
         // so long that wire comes out
         let length = 3.36e-3 * (1.0 + 3e-4);
         let y = edge.rest(length);
@@ -305,7 +326,13 @@ mod tests {
     #[test]
     fn a_slack_line_does_not_push() {
         let (spec, feed, past, step) = setting();
-        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.0, 48_900.0, 0.0));
+        let edge = NozzleEdge::new(
+            &spec,
+            &feed,
+            &past,
+            &step,
+            (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]),
+        );
         let s = edge.stretched(1e-3);
         assert_eq!(s.tension, 0.0);
         assert!((edge.rest(1e-3) - 1e-3).abs() < 1e-15);
@@ -320,7 +347,13 @@ mod tests {
         past.fed = [feed.fed; 2];
         (past.paid, past.paid_rate) = (feed.paid, 0.0);
         let (ea, grip) = (48_900.0, 1.4);
-        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, grip, ea, 1e-4));
+        let edge = NozzleEdge::new(
+            &spec,
+            &feed,
+            &past,
+            &step,
+            (3e-3, 15.0, grip, ea, [1e-4; 2]),
+        );
         let line = edge.line_at_start();
         assert!(line > 5.0, "the line pulls by {line} N");
         let at = |tension: f64| 3e-3 * (1.0 + 1e-4 + tension / ea);
@@ -354,11 +387,47 @@ mod tests {
         );
     }
 
+    /// Wire of the edge keeps its plastic stretch while virgin wire comes out.
+    #[test]
+    fn virgin_wire_comes_out_behind_stretched_wire() {
+        let (spec, mut feed, mut past, step) = setting();
+        (feed.rate, feed.paid_rate) = (0.0, 0.0);
+        past.fed = [feed.fed; 2];
+        (past.paid, past.paid_rate) = (feed.paid, 0.0);
+        let (ea, rest, plastic) = (48_900.0, 3e-3, [0.02, 0.001]);
+        for grip in [1.0, 1.3] {
+            let edge = NozzleEdge::new(&spec, &feed, &past, &step, (rest, 15.0, grip, ea, plastic));
+            let turn = rest * (1.02 + edge.line_at_start() / ea);
+            let mut before = edge.stretched(turn - 2e-5);
+            for k in -199..400 {
+                let length = turn + f64::from(k) * 1e-7;
+                let (y, s) = (edge.rest(length), edge.stretched(length));
+                let came = y - rest;
+                let passing = if came > 0.0 { plastic[1] } else { plastic[0] };
+                let free = rest * (1.0 + plastic[0]) + came * (1.0 + passing);
+                let tension = ea * (length - free) / y;
+                assert!((tension - s.tension).abs() < 1e-6, "{k}: {tension} {s:?}");
+                assert!((s.tension - before.tension).abs() < 2.5, "{k}: no jump");
+                let work = s.energy - before.energy;
+                let mean = 0.5 * (s.tension + before.tension) * 1e-7;
+                assert!((work - mean).abs() < 1e-7 * 1.5, "{k}: {work} {mean}");
+                before = s;
+            }
+            assert!(edge.rest(turn + 4e-5) > rest && edge.rest(turn - 2e-5) < rest);
+        }
+    }
+
     #[test]
     fn without_mass_the_set_force_acts() {
         let (mut spec, feed, past, step) = setting();
         spec.mass = 0.0;
-        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.0, 48_900.0, 0.0));
+        let edge = NozzleEdge::new(
+            &spec,
+            &feed,
+            &past,
+            &step,
+            (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]),
+        );
         for length in [2e-3, 3e-3, 4e-3] {
             let s = edge.stretched(length);
             assert!((s.tension - 15.0).abs() < 1e-12 && s.stiffness == 0.0);

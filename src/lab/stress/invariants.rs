@@ -203,7 +203,10 @@ impl Watch {
         let draw = sim.scene().tensioner.tension * sys.model.section.diameter;
         let scale = self.through + sys.stored() + sys.kinetic() + draw;
         m.energy = m.energy.max((residual / scale).abs());
-        m.added = m.added.max(-sys.state.balance.numerical / scale);
+        let balance = sys.state.balance;
+        m.added = m
+            .added
+            .max(-(balance.numerical + balance.remeshing) / scale);
         if residual.abs() > ENERGY * scale {
             let text = format!("{residual:.3e} J unexplained of {scale:.3e} J that went through");
             return Err((Invariant::Energy, text));

@@ -247,6 +247,7 @@ impl<'a> Wound<'a> {
             line_stiffness: f64::INFINITY,
             line_damping: 0.0,
             exit_friction: 0.0,
+            line_length: 0.0,
         };
         sys.set_feed(spec, Feed::at_rest(&spec, pull));
         sys.state.set_tension = pull;

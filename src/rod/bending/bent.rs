@@ -300,6 +300,19 @@ mod tests {
         assert!(folded.energy.is_finite() && all.copied().all(f64::is_finite));
     }
 
+    /// A bend from virgin wire to the cap in one step: elastic, hardening and ideally plastic part.
+    #[test]
+    fn forces_at_the_cap_are_the_derivative_of_the_energy() {
+        let l = 5e-4;
+        let capped = Law::new(3.06e-3, 1.13e-4, 5.72e-3, 0.0126);
+        for angle in [0.02, 0.05, 0.3] {
+            let (c, s) = (libm::cos(angle), libm::sin(angle));
+            let e = [V3::x() * l, V3::new(c, s * 0.8, s * 0.6) * l];
+            check(&capped, V3::zeros(), 0.0, e);
+            check(&capped, V3::new(0.0, 12.0, -9.0), 3e-3, e);
+        }
+    }
+
     #[test]
     fn stretch_is_the_derivative_of_its_energy() {
         let l = Law::new(48900.0, 1100.0, 38.5, f64::INFINITY);
