@@ -102,3 +102,21 @@ fn a_cylinder_too() {
         ("spindle.speed", "100"),
     ]);
 }
+
+/// The other way along the axis is the same coil in a mirror, to the bit.
+#[test]
+fn traverse_to_either_side() {
+    let scene = settings(&[("spindle.speed", "300")]);
+    let left = wound(&scene, 1.0);
+    let mut mirrored = scene.clone();
+    let per_turn = mirrored.traverse.per_turn;
+    let other = Value::Real(-per_turn);
+    mirrored
+        .set("traverse.per_turn", other)
+        .expect("a traverse");
+    let odd = ["layon_position", "nozzle_position"];
+    for (a, b) in left.iter().zip(wound(&mirrored, 1.0)) {
+        let sign = if odd.contains(&a.0) { -1.0 } else { 1.0 };
+        assert_eq!((a.0, sign * a.1), b);
+    }
+}

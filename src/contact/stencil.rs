@@ -9,11 +9,9 @@ use crate::rod::Rod;
 /// Both lie on the quadratic B-spline of the nodes, so that a coarse polygon neither cuts a corner nor catches
 /// on a kink. The end nodes have no point of their own.
 ///
-/// Points are numbered along the wire: node `i` has number `2 i`, edge `j` has `2 j + 1`. When edge `j` is
-/// split, [`LineContact`](super::LineContact) hands the state of point `2 j + 1` to the new node's point
-/// `2 j + 2` and gives both halves a new state. [`SelfContact`](super::SelfContact) leaves the pairs of that point
-/// at `2 j + 1`, the middle of the first half. When a node is taken out, both hand the state of its point
-/// to the middle of the joined edge.
+/// Points are numbered along the wire: node `i` has number `2 i`, edge `j` has `2 j + 1`. When edge `j` is split, the
+/// state of point `2 j + 1` goes to the new node's point `2 j + 2`, where the wire has been all along. Both halves get
+/// a new state. When a node is taken out, the state of its point goes to the middle of the joined edge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactPoint {
     /// at an inner node `i`: `p = x[i-1] / 8 + 3 x[i] / 4 + x[i+1] / 8`

@@ -50,7 +50,7 @@ impl LineState {
     }
 
     /// Follows the split of edge `j`: the state of its middle becomes that of the new node `j + 1`, and the middles
-    /// of both halves are new. The pairs of live wire are numbered otherwise, see [`ContactPoint`].
+    /// of both halves are new.
     pub fn split(&mut self, j: usize) {
         let middle = ContactPoint::Edge(j).number();
         self.points.insert(middle, Box::new(PointState::NEW));

@@ -39,12 +39,12 @@ pub struct SelfContact {
 }
 
 impl SelfContact {
-    /// Renumbers the pairs after edge `j` was split. Those of its middle stay with the middle of the first half, see
-    /// [`ContactPoint`].
+    /// Renumbers the pairs after edge `j` was split: those of its middle become those of the new node `j + 1`.
     pub fn split(&mut self, j: usize) {
         let middle = ContactPoint::Edge(j).number();
         for p in &mut self.pairs {
-            p.point += 2 * u32::from(p.point as usize > middle);
+            let point = p.point as usize;
+            p.point += u32::from(point >= middle) + u32::from(point > middle);
             p.segment += u32::from(p.segment as usize > j);
         }
     }
@@ -108,5 +108,45 @@ impl SelfContact {
     /// Depth of the deepest touch, m; 0: none.
     pub fn deepest(&self) -> f64 {
         self.pairs.iter().map(|p| p.depth).fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with_points(points: impl Iterator<Item = u32>) -> SelfContact {
+        let pair = |point| Pair {
+            point,
+            segment: 0,
+            touched: true,
+            bristle: V3::x() * f64::from(point),
+            limit: FrictionLimit::ZERO,
+            depth: 0.0,
+            share: 0.5,
+            normal: V3::y(),
+        };
+        SelfContact {
+            pairs: points.map(pair).collect(),
+            ..SelfContact::default()
+        }
+    }
+
+    /// The pairs of a split edge's middle went to the middle of its first half, where the wire had never been.
+    #[test]
+    fn pairs_stay_where_the_wire_is() {
+        let mut pairs = with_points(4..10);
+        pairs.split(3);
+        let numbers: Vec<u32> = pairs.pairs.iter().map(|p| p.point).collect();
+        // the middle of edge 3, number 7, is node 4 now, number 8
+        assert_eq!(numbers, [4, 5, 6, 8, 10, 11]);
+        pairs.merge(4);
+        let back: Vec<u32> = pairs.pairs.iter().map(|p| p.point).collect();
+        assert_eq!(back, [4, 5, 6, 7, 8, 9]);
+        let kept = pairs
+            .pairs
+            .iter()
+            .all(|p| p.bristle.x == f64::from(p.point));
+        assert!(kept, "each with its own bristle");
     }
 }
