@@ -1,8 +1,9 @@
-//! The frame round every exported call: checks that the call is allowed, catches panics and
-//! delivers messages.
+//! The frame round every exported call: checks that the call is allowed, rounds as the solver needs it,
+//! catches panics and delivers messages.
 
 use crate::error::Error;
 use crate::ffi::{Status, fmi2Component, fmi2Status};
+use crate::float_control::HostRounding;
 use crate::instance::Instance;
 use crate::lifecycle::Function;
 use crate::logger::Host;
@@ -43,7 +44,11 @@ pub(crate) fn instantiate(
     body: impl FnOnce() -> Result<Instance, Error>,
 ) -> fmi2Component {
     let name = "fmi2Instantiate";
-    let message = match catch_unwind(AssertUnwindSafe(body)) {
+    let made = {
+        let _host = HostRounding::set_aside();
+        catch_unwind(AssertUnwindSafe(body))
+    };
+    let message = match made {
         Ok(Ok(instance)) => return pointers::give(Component { instance, host }),
         Ok(Err(error)) => message_of(name, &error),
         Err(panic) => message_of_panic(name, panic),
@@ -63,10 +68,13 @@ pub(crate) unsafe fn free(c: fmi2Component) {
         return;
     };
     let Component { mut instance, host } = *component;
-    let closed = catch_unwind(AssertUnwindSafe(move || {
-        instance.close();
-        instance.end_call()
-    }));
+    let closed = {
+        let _host = HostRounding::set_aside();
+        catch_unwind(AssertUnwindSafe(move || {
+            instance.close();
+            instance.end_call()
+        }))
+    };
     let messages =
         closed.unwrap_or_else(|panic| vec![message_of_panic(Function::FreeInstance.name(), panic)]);
     host.deliver(&messages);
@@ -78,6 +86,7 @@ fn run(
     function: Function,
     body: impl FnOnce(&mut Instance) -> Result<(), Error>,
 ) -> (Status, Vec<Message>) {
+    let _host = HostRounding::set_aside();
     let state = instance.state();
     if !function.allowed_in(state) {
         let text = format!(

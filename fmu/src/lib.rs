@@ -6,6 +6,7 @@
 //! | [`exports`] | the C functions, a few lines each |
 //! | `pointers` | all work with the importer's pointers |
 //! | `guard` | the frame round every call: is it allowed, did it panic, deliver the messages |
+//! | `float_control` | rounding as the solver needs it, and as the host had it |
 //! | `lifecycle` | the table of calls that each state allows |
 //! | `message`, `logger` | messages, the importer's filter and its callback |
 //! | `error` | every reason why a call fails |
@@ -18,6 +19,7 @@
 //!
 //! * A refused call returns `fmi2Error`, says why, and leaves the instance as it was.
 //! * No panic crosses the boundary. After one the instance is fatal and can only be freed.
+//! * Results do not depend on how the host lets the processor round, and it gets its settings back.
 //! * A saved state continues to the bit. Its bytes carry magic, version, GUID and checksum.
 //! * The GUID is the only global. Instances share nothing and may live in different threads.
 //! * The importer's logger is called when no reference into the instance is alive, so that it may
@@ -33,6 +35,7 @@ mod contract;
 mod error;
 pub mod exports;
 pub mod ffi;
+mod float_control;
 mod guard;
 mod instance;
 mod lifecycle;

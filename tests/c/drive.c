@@ -2,7 +2,9 @@
  *
  *     drive LIBRARY GUID RESOURCES wind STEPS      prints every output after every step, bit by bit
  *     drive LIBRARY GUID RESOURCES cycles COUNT    instantiate, run, free, COUNT times over
+ *     drive LIBRARY GUID RESOURCES reload COUNT    load the library, run, free, unload it, COUNT times over
  *     drive LIBRARY GUID RESOURCES refusals        what must be refused is, and the run goes on
+ *     drive LIBRARY GUID RESOURCES rounding STEPS  however the host rounds: the same bits, and it still rounds so
  *     drive LIBRARY GUID RESOURCES states          saved and serialised states continue bit by bit
  *     drive LIBRARY GUID RESOURCES forget          never frees: shows that a leak checker sees it
  *
@@ -17,6 +19,10 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+
+#ifdef __x86_64__
+#include <xmmintrin.h>
+#endif
 
 #ifdef _WIN32
 #include <windows.h>
@@ -74,16 +80,18 @@ static void *symbol(void *library, const char *name) {
 #endif
 }
 
-/* Stays loaded to the end: the leak checkers want to see where memory came from. */
+static void *library;
+
+/* Stays loaded to the end but for one task: the leak checkers want to see where memory came from. */
 static void load(const char *path) {
 #ifdef _WIN32
-    void *library = (void *)LoadLibraryA(path);
+    library = (void *)LoadLibraryA(path);
     if (library == NULL) {
         fprintf(stderr, "cannot load %s: error %lu\n", path, GetLastError());
         exit(1);
     }
 #else
-    void *library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    library = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     if (library == NULL) {
         fprintf(stderr, "%s\n", dlerror());
         exit(1);
@@ -96,6 +104,14 @@ static void load(const char *path) {
         memcpy(&name, &found, sizeof found); \
     } while (0);
     FMI2_FUNCTIONS(BIND)
+}
+
+static void unload(void) {
+#ifdef _WIN32
+    CHECK(FreeLibrary((HMODULE)library));
+#else
+    CHECK(dlclose(library) == 0);
+#endif
 }
 
 static const char *guid;
@@ -178,6 +194,61 @@ static void wind(int steps) {
     fmi2FreeInstance(c);
 }
 
+#ifdef __x86_64__
+/* Bits of the control word that say what to do: the rest tells what has happened. */
+#define SET 0xffc0u
+#define STANDARD 0x1f80u
+static unsigned host_word;
+
+static void as_host(void) { _mm_setcsr(host_word); }
+static void as_standard(void) {
+    CHECK((_mm_getcsr() & SET) == host_word);
+    _mm_setcsr(STANDARD);
+}
+
+static void wind_into(uint64_t (*rows)[ROW], int steps) {
+    const fmi2ValueReference vr[] = {SPINDLE_SPEED, NOZZLE_POSITION};
+    fmi2Component c;
+    as_host();
+    c = instantiate();
+    start(c);
+    as_standard();
+    for (int k = 0; k < steps; k++) {
+        const double inputs[] = {30.0 * (k < 54 ? (k + 0.5) / 54.0 : 1.0), 1e-6 * k};
+        const double now = k * STEP;
+        fmi2Status set, done;
+        as_host();
+        set = fmi2SetReal(c, vr, 2, inputs);
+        done = fmi2DoStep(c, now, STEP, 1);
+        read(c, rows[k]);
+        as_standard();
+        CHECK(set == fmi2OK && done == fmi2OK);
+    }
+    as_host();
+    CHECK(fmi2DoStep(c, 0.0, -1.0, 1) == fmi2Error);
+    fmi2FreeInstance(c);
+    as_standard();
+}
+
+/* Tiny numbers as zero; upwards, downwards, to zero; traps on division by zero and invalid operations. */
+static void rounding(int steps) {
+    static const unsigned words[] = {STANDARD,          STANDARD | 0x8040, STANDARD | 0x4000,
+                                     STANDARD | 0x2000, STANDARD | 0x6000, STANDARD & ~0x280u};
+    uint64_t(*first)[ROW] = malloc((size_t)steps * sizeof *first);
+    uint64_t(*rows)[ROW] = malloc((size_t)steps * sizeof *rows);
+    CHECK(first != NULL && rows != NULL);
+    for (size_t w = 0; w < COUNT(words); w++) {
+        host_word = words[w];
+        wind_into(w == 0 ? first : rows, steps);
+        CHECK(w == 0 || memcmp(first, rows, (size_t)steps * sizeof *first) == 0);
+    }
+    free(first);
+    free(rows);
+}
+#else
+static void rounding(int steps) { (void)steps; }
+#endif
+
 /* Every way in which a run can end. */
 static void cycles(int count) {
     uint64_t row[ROW];
@@ -198,6 +269,21 @@ static void cycles(int count) {
         default: break;
         }
         fmi2FreeInstance(c);
+    }
+}
+
+/* A host that lets the library go between runs; every run is the first. */
+static void reload(const char *path, int count) {
+    uint64_t first[ROW], row[ROW];
+    for (int n = 0; n < count; n++) {
+        fmi2Component c = instantiate();
+        start(c);
+        step(c, 0);
+        read(c, n == 0 ? first : row);
+        fmi2FreeInstance(c);
+        CHECK(n == 0 || memcmp(first, row, sizeof row) == 0);
+        unload();
+        load(path);
     }
 }
 
@@ -431,6 +517,8 @@ int main(int count, char **arguments) {
     if (strcmp(task, "wind") == 0) wind(number);
     else if (strcmp(task, "cycles") == 0) cycles(number);
     else if (strcmp(task, "refusals") == 0) refusals();
+    else if (strcmp(task, "reload") == 0) reload(arguments[1], number);
+    else if (strcmp(task, "rounding") == 0) rounding(number);
     else if (strcmp(task, "states") == 0) states();
     else if (strcmp(task, "forget") == 0) forget();
     else {

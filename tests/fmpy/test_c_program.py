@@ -89,6 +89,15 @@ def test_refusals_and_states(plain, target, description):
         passes([plain, *target, task])
 
 
+def test_a_host_that_rounds_otherwise_gets_the_same_bits_and_keeps_its_ways(plain, target):
+    """Tiny numbers as zero, every direction of rounding, traps on invalid operations."""
+    passes([plain, *target, "rounding", WIND_STEPS])
+
+
+def test_the_library_is_loaded_and_unloaded_a_thousand_times(plain, target):
+    passes([plain, *target, "reload", CYCLES])
+
+
 def test_no_leak_and_no_invalid_access_over_a_thousand_instances(sanitized, target, description):
     for task in tasks(description):
         passes([sanitized, *target, task])
