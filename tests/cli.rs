@@ -326,6 +326,35 @@ fn an_interrupt_leaves_usable_files() {
     assert_eq!(summary["simulated_s"].as_f64(), time.last().copied());
 }
 
+/// A run heeded neither while it was in a communication step, however long.
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_a_long_communication_step() {
+    for signal in ["-INT", "-TERM"] {
+        let folder = tempfile::tempdir().unwrap();
+        let inputs = folder.path().join("inputs.csv");
+        std::fs::write(&inputs, "time,spindle_speed\n0,30\n1000,30\n").unwrap();
+        let mut run = coilwind(&["run", "fig8", "--step", "1000", "--quiet", "--inputs"])
+            .arg(&inputs)
+            .arg("--out")
+            .arg(folder.path())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_secs(1));
+        let kill = Command::new("kill")
+            .args([signal, &run.id().to_string()])
+            .status()
+            .unwrap();
+        assert!(kill.success());
+        assert_eq!(run.wait().unwrap().code(), Some(130), "{signal}");
+        let time = read_csv(&folder.path().join("history.csv"))["time"].clone();
+        let summary = json(&folder.path().join("summary.json"));
+        assert_eq!(summary["status"], "interrupted");
+        assert_eq!(summary["simulated_s"].as_f64(), time.last().copied());
+        assert!(time.last().copied() > Some(0.0) && time.last().copied() < Some(1000.0));
+    }
+}
+
 /// The line that a benchmark prints.
 fn benchmark(arguments: &[&str]) -> serde_json::Value {
     let mut command = coilwind(&["bench"]);

@@ -13,6 +13,7 @@ use coilwind::settings::SceneSettings;
 use coilwind::signals::{Inputs, Outputs};
 use coilwind::simulation::{SimError, Simulation};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -86,7 +87,9 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         snapshot: Snapshot::new(&simulation).map_err(start_failure)?,
         progress: Progress::new(end, args.quiet),
     };
-    let ended = record.wind(&mut simulation, &mut drive, &stop_flag());
+    let stop = stop_flag();
+    simulation.stop_on(Arc::clone(&stop));
+    let ended = record.wind(&mut simulation, &mut drive, &stop);
     record.progress.finish();
 
     // Results first: whatever ended the run, what it computed stays usable.
@@ -326,7 +329,13 @@ impl Record {
                 return Ok(Ending::Done);
             };
             self.progress.tell(&simulation.drain_events());
-            let time = advanced.map_err(Stop::Solver)?;
+            let time = match advanced {
+                Err(_) if stop.load(Ordering::SeqCst) => {
+                    self.history.row(simulation.time(), simulation)?;
+                    return Ok(Ending::Interrupted);
+                }
+                advanced => advanced.map_err(Stop::Solver)?,
+            };
             self.history.row(time, simulation)?;
             self.frames.update(simulation, &self.snapshot)?;
             self.progress.update(simulation);

@@ -36,6 +36,8 @@ use crate::scene::Scene;
 use crate::signals::{Event, EventKind, Inputs, Outputs};
 use crate::system::System;
 use run_state::RunState;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Speed below which wire on a standing core counts as quiet, m/s.
 ///
@@ -67,6 +69,8 @@ pub struct Simulation {
     behind: Vec<f64>,
     /// how much [`RunState::work`] may become; the caller's
     most_work: u64,
+    /// ends a step of the run early where it is up; the caller's
+    stop: Option<Arc<AtomicBool>>,
 }
 
 impl Simulation {
@@ -85,6 +89,12 @@ impl Simulation {
     /// Rejected steps count too. The bound does not depend on the clock.
     pub fn limit_work(&mut self, most: u64) {
         self.most_work = most;
+    }
+
+    /// Lets a step of the run end early, with an error, once `flag` is up, however long the step is. The run then stands at the
+    /// last good step of the method.
+    pub fn stop_on(&mut self, flag: Arc<AtomicBool>) {
+        self.stop = Some(flag);
     }
 
     /// What [`Self::limit_work`] counts.

@@ -268,6 +268,7 @@ impl Simulation {
             run,
             behind: Vec::new(),
             most_work: u64::MAX,
+            stop: None,
         };
         sim.sys.state.spindle.speed = inputs.spindle_speed;
         sim.sys.place_supports();

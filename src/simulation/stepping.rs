@@ -4,6 +4,7 @@ use super::motion_profile::ROUNDING;
 use super::{QUIET, SimError, Simulation, WORTH_A_STEP};
 use crate::integrate::Stepper;
 use crate::system::Drive;
+use std::sync::atomic::Ordering::Relaxed;
 
 impl Simulation {
     /// Goes through the interval of `drive` in steps that the method finds fit.
@@ -82,6 +83,13 @@ impl Simulation {
 
     /// Takes one step of at most `most`, s, and remeshes after it; returns its length, s.
     fn step(&mut self, most: f64) -> Result<f64, SimError> {
+        if self.stop.as_ref().is_some_and(|flag| flag.load(Relaxed)) {
+            return Err(SimError {
+                time: self.sys.state.time,
+                node: None,
+                reason: "interrupted".to_owned(),
+            });
+        }
         let tried = self.stepper.statistics().tried();
         let taken = self.stepper.step(&mut self.sys, most).map_err(|e| SimError {
             time: self.sys.state.time,
