@@ -40,7 +40,7 @@ NOTE
     echo
     if grep -qE 'gave up at|INVARIANT' "$out.log"; then
         echo '```text'
-        grep -E '^ *[0-9]+ .*(gave up at|INVARIANT)' "$out.log" | cut -c1-400
+        grep -E '^ *[0-9]+ .*(gave up at|INVARIANT)' "$out.log" | sed 's/; raise tension_setpoint.*//'
         echo '```'
     else
         echo "None."
