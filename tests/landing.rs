@@ -187,3 +187,54 @@ fn the_energy_balance_holds_through_a_landing() {
         );
     }
 }
+
+/// Speed at which wire of restitution `e` leaves the flat that it fell on, over its impact speed, in steps of `fixed`.
+fn rebound(scene: &Scene, e: f64, fixed: f64) -> f64 {
+    let mut sys = falling(scene, Onto::Flat, FALL);
+    let mut line = sys.model.contact.as_line().expect("contact").clone();
+    line.restitution = e;
+    sys.touch_along(line);
+    sys.refresh();
+    let mut method = Implicit::new(Scheme::Bdf2, scene.solver.tolerance, 1e-9, 0.1);
+    method.fixed = Some(fixed);
+    let mean = |sys: &System| sys.state.rod.v.iter().map(|v| v.x).sum::<f64>() / NODES as f64;
+    while sys.state.deepest == 0.0 {
+        method.step(&mut sys, 1.0).expect("a step");
+    }
+    // long enough for what the contact stores to come back
+    for _ in 0..(20e-6 / fixed).ceil().max(4.0) as usize {
+        method.step(&mut sys, 1.0).expect("a step");
+    }
+    mean(&sys) / SPEED
+}
+
+/// `contact.restitution` made no difference, and a landing lost what the length of its step happened to take.
+#[test]
+fn wire_gives_back_what_the_restitution_says_in_steps_of_any_length() {
+    let scene = scene();
+    for e in [0.0, 0.3, 0.6] {
+        for fixed in [0.1e-6, 1e-6, 7e-6, 30e-6, 100e-6] {
+            let got = rebound(&scene, e, fixed);
+            assert!((got - e).abs() < 0.02, "{e} in steps of {fixed} s: {got}");
+        }
+    }
+}
+
+/// A step far longer than a blow threw wire to and fro: its speed along the normal after a landing was up to half of that before.
+#[test]
+fn landed_wire_has_no_speed_into_or_out_of_what_it_touches() {
+    let scene = scene();
+    for fixed in [0.5e-6, 3e-6, 20e-6, 60e-6] {
+        let mut sys = falling(&scene, Onto::Flat, FALL);
+        let mut method = Implicit::new(Scheme::Bdf2, scene.solver.tolerance, 1e-9, 0.1);
+        method.fixed = Some(fixed);
+        while sys.state.deepest == 0.0 {
+            method.step(&mut sys, 1.0).expect("a step");
+        }
+        let fastest = sys.state.rod.v[1..NODES - 1]
+            .iter()
+            .map(|v| v.x.abs())
+            .fold(0.0, f64::max);
+        assert!(fastest < 0.01 * SPEED, "steps of {fixed} s: {fastest} m/s");
+    }
+}

@@ -69,7 +69,7 @@ pub(super) struct NormalLaw {
 }
 
 impl NormalLaw {
-    /// The law without a dashpot: the force is quadratic up to the depth `onset`, then linear.
+    /// The force is quadratic up to the depth `onset`, then linear.
     #[inline]
     pub(super) fn at(depth: f64, onset: f64) -> Self {
         if depth < onset {
@@ -85,45 +85,6 @@ impl NormalLaw {
                 force: depth - 0.5 * onset,
                 stiffness: 1.0,
             }
-        }
-    }
-
-    /// The law with a dashpot of `damping` times the stiffness against the way in from the depth `before`
-    /// of the last accepted instant (m; 0: no touch then).
-    ///
-    /// A dashpot alone would pull on what leaves faster than the spring can push. Here the law ends at the
-    /// depth where spring and dashpot cancel, so that the potential stays convex and without a kink.
-    #[inline]
-    pub(super) fn damped(depth: f64, onset: f64, damping: f64, before: f64) -> Self {
-        let sum = |depth: f64| {
-            let spring = Self::at(depth, onset);
-            let way = depth - before;
-            Self {
-                energy: spring.energy + 0.5 * damping * way * way,
-                force: spring.force + damping * way,
-                stiffness: spring.stiffness + damping,
-            }
-        };
-        if before == 0.0 || damping == 0.0 {
-            return sum(depth);
-        }
-        let linear = (damping * before + 0.5 * onset) / (1.0 + damping);
-        let end = if linear >= onset {
-            linear
-        } else {
-            2.0 * damping * before / (damping + (damping * (damping + 2.0 * before / onset)).sqrt())
-        };
-        if depth <= end {
-            return Self {
-                energy: 0.0,
-                force: 0.0,
-                stiffness: 0.0,
-            };
-        }
-        let there = sum(depth);
-        Self {
-            energy: (there.energy - sum(end).energy).max(0.0),
-            ..there
         }
     }
 }
@@ -145,25 +106,19 @@ mod tests {
     #[test]
     fn normal_law_is_a_family() {
         let onset = 1e-6;
-        for damping in [0.0, 0.3, 20.0] {
-            for before in [0.0, 4e-7, 2e-6, 1e-5] {
-                for i in 1..400 {
-                    let depth = 1.37e-8 * f64::from(i) * (1.0 + 0.01 * f64::from(i));
-                    let law = |d: f64| NormalLaw::damped(d, onset, damping, before);
-                    let h = 1e-12;
-                    let here = law(depth);
-                    let (a, b) = (law(depth - h), law(depth + h));
-                    assert!(here.energy >= 0.0 && here.force >= 0.0 && here.stiffness >= 0.0);
-                    let scale = onset * (1.0 + damping);
-                    let slope = (b.energy - a.energy) / (2.0 * h);
-                    assert!((slope - here.force).abs() < 1e-4 * scale);
-                    // the stiffness jumps where the push ends
-                    if a.force > 0.0 || b.force == 0.0 {
-                        let slope = (b.force - a.force) / (2.0 * h);
-                        assert!((slope - here.stiffness).abs() < 1e-4 * (1.0 + damping));
-                    }
-                }
-            }
+        for i in 1..400 {
+            let depth = 1.37e-8 * f64::from(i) * (1.0 + 0.01 * f64::from(i));
+            let h = 1e-12;
+            let here = NormalLaw::at(depth, onset);
+            let (a, b) = (
+                NormalLaw::at(depth - h, onset),
+                NormalLaw::at(depth + h, onset),
+            );
+            assert!(here.energy >= 0.0 && here.force >= 0.0 && here.stiffness >= 0.0);
+            let slope = (b.energy - a.energy) / (2.0 * h);
+            assert!((slope - here.force).abs() < 1e-4 * onset);
+            let slope = (b.force - a.force) / (2.0 * h);
+            assert!((slope - here.stiffness).abs() < 1e-4);
         }
     }
 }

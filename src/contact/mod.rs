@@ -8,6 +8,7 @@
 //! * [`SelfContact`]: live wire on live wire in the implicit method
 //! * [`nodal`]: contact of the explicit methods, the paper's, node by node with triangles and prisms
 
+mod accepted_touch;
 mod friction;
 mod law;
 pub mod line;
@@ -17,6 +18,7 @@ mod self_contact;
 mod stencil;
 mod tolerance;
 
+pub use accepted_touch::{AcceptedTouch, TouchOwner};
 #[cfg(feature = "lab")]
 pub use friction::ContactResponse;
 #[cfg(feature = "lab")]

@@ -121,7 +121,7 @@ pub struct SolverSettings {
     pub integrator: String,
     /// how the wire's twist is carried; auto: the least that matters; dynamic with the explicit methods (one of `auto`, `off`, `quasi-static`, `dynamic`)
     pub twist: String,
-    /// node spacing near the core, m; 0: 0.5 mm explicit, implicit 0.4 mm to a tolerance of 2 um and beyond as its cube root
+    /// node spacing near the core, m; 0: 0.5 mm explicit, implicit 0.3 mm to a tolerance of 2 um and beyond as its cube root
     pub spacing_near: f64,
     /// node spacing in the free span, m; 0: 1 mm explicit, eight times that near the core implicit
     pub spacing_free: f64,

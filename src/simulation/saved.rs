@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -52,8 +52,8 @@ struct Saved<'a> {
     core: u32,
     sys: Cow<'a, State>,
     coil: SavedCoil,
-    /// of the implicit method: next step, s, and what it took so far
-    implicit: Option<(f64, SolverStatistics)>,
+    /// of the implicit method: next step and the one that the error asks for, s, and what it took so far
+    implicit: Option<([f64; 2], SolverStatistics)>,
     run: Cow<'a, RunState>,
 }
 
@@ -65,7 +65,7 @@ impl Simulation {
             sys: Cow::Borrowed(&self.sys.state),
             coil: self.coil.saved(),
             implicit: match &self.stepper {
-                Stepper::Implicit(method) => Some((method.next, method.statistics)),
+                Stepper::Implicit(method) => Some(([method.next, method.wanted], method.statistics)),
                 Stepper::Explicit { .. } => None,
             },
             run: Cow::Borrowed(&self.run),
@@ -102,8 +102,9 @@ impl Simulation {
             return Err("the watch does not go with the nodes");
         }
         match (&mut self.stepper, saved.implicit) {
-            (Stepper::Implicit(method), Some((next, statistics))) => {
+            (Stepper::Implicit(method), Some(([next, wanted], statistics))) => {
                 method.next = next.clamp(method.shortest, method.longest);
+                method.wanted = wanted;
                 method.statistics = statistics;
             }
             (Stepper::Explicit { .. }, None) => {}

@@ -134,7 +134,10 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     };
     if scene.solver.integrator == Integrator::Implicit {
         let shape = core_shape(&scene.core, &surface);
-        sys.touch_along(LineModel::new(shape, law, radius));
+        sys.touch_along(LineModel {
+            restitution: scene.contact.restitution,
+            ..LineModel::new(shape, law, radius)
+        });
     } else {
         sys.touch_at_nodes(NodalModel {
             surface: surface.clone(),

@@ -67,6 +67,31 @@ impl System {
         }
     }
 
+    /// Share of the way to `guess` on which no touch turns its normal by more than `most` (rad) after it began; 1: all of it.
+    pub(crate) fn share_to_turn(&mut self, guess: &[V3], most: f64) -> f64 {
+        let Some(mut line) = line_contact(
+            &self.model.contact,
+            &mut self.state.contact,
+            &mut self.scratch.contact,
+        ) else {
+            return 1.0;
+        };
+        let diameter = self.model.section.diameter;
+        let rest = &self.state.rod.rest;
+        let (mut arc, mut share) = (self.state.arc0, 1.0_f64);
+        for (j, rest_of) in rest.iter().enumerate() {
+            for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {
+                if point != ContactPoint::Node(0) {
+                    let own = own_wire(point.arc(arc, rest), diameter);
+                    let to = point.place(guess);
+                    share = share.min(line.share_to_turn(point.number(), to, own, most));
+                }
+            }
+            arc += rest_of;
+        }
+        share
+    }
+
     /// Puts the present places of the contact points on record.
     fn place_points(&mut self) {
         let Some(line) = self.state.contact.as_line_mut() else {
@@ -123,6 +148,7 @@ impl System {
             let diameter = self.model.section.diameter;
             let mut arc = self.state.arc0;
             let step = if h > 0.0 { h } else { f64::INFINITY };
+            line.scratch.accepted.clear();
             for j in 0..rod.edges() {
                 let rest = rod.rest[j];
                 for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {
@@ -188,6 +214,8 @@ fn between_forces(
         &q
     };
     let length = |number| ContactPoint::of_number(number).length(rod);
+    let mut used = std::mem::take(&mut line.scratch.pairs.used);
+    pairs.limits(&mut used);
     let scratch = &mut line.scratch.pairs;
     pairs.evaluate(
         scratch,
@@ -206,9 +234,11 @@ fn between_forces(
         },
     );
     if commit {
-        pairs.commit((conditions.law, conditions.onset), (&q, last), length);
+        let accepted = &mut line.scratch.accepted;
+        let law = (conditions.law, conditions.onset);
+        pairs.commit(law, (&q, last), length, &used, accepted);
         line.state.deepest = line.state.deepest.max(pairs.deepest());
     }
-    line.scratch.pairs.wire = q;
+    (line.scratch.pairs.wire, line.scratch.pairs.used) = (q, used);
     moment
 }

@@ -4,8 +4,10 @@ use super::line_contact::LineContact;
 use super::model::LineModel;
 use super::point::PointState;
 use super::state::LineState;
+use crate::contact::accepted_touch::{AcceptedTouch, TouchOwner, friction_of};
 use crate::contact::friction::across;
 use crate::contact::law::{NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
+use crate::contact::stencil::ContactPoint;
 use crate::math::V3;
 
 /// Stretch of a bristle below which it is rounding of places, m.
@@ -40,52 +42,56 @@ impl LineContact<'_> {
     /// rest of the work that the balance ascribes to it is lost: the landing, and half of its slip. A touch that ends
     /// within the step acted at its beginning only.
     pub fn commit(&mut self, k: usize, p: V3, length: f64, own: f64, step: f64) -> V3 {
+        let used = self.state.points[k].touch.map(|t| t.limit.current);
         let force = self
             .push(k, p, length, own, step)
             .map_or(V3::zeros(), |s| -s.gradient);
-        let k_t = self.model.law.stiffness * length * TANGENTIAL_SHARE;
-        let damping = self.model.damping_over(step);
+        let stiffness = self.model.law.stiffness * length;
+        let k_t = stiffness * TANGENTIAL_SHARE;
+        let onset = self.model.onset;
         let point = &mut self.state.points[k];
         let last = point.last;
-        let stiffness = self.model.law.stiffness * length;
-        for t in point.touches_mut() {
+        for (slot, t) in point.touches_mut().iter_mut().enumerate() {
             t.limit.accept();
             let out = (p - last).dot(&t.normal);
             if t.depth <= 0.0 {
                 if t.anchored && out >= t.depth_before {
-                    let before = NormalLaw::at(t.depth_before, self.model.onset);
+                    let before = NormalLaw::at(t.depth_before, onset);
                     self.scratch.lifted +=
                         stiffness * work_beyond_stored(before.force, before.energy, out);
                 }
                 t.anchored = false;
-                t.depth_before = 0.0;
+                (t.depth_before, t.rebound) = (0.0, 0.0);
                 continue;
             }
-            let lands = !t.anchored && -out >= t.depth;
-            if lands || damping > 0.0 {
-                let spring = NormalLaw::at(t.depth, self.model.onset);
-                let all =
-                    NormalLaw::damped(t.depth, self.model.onset, damping, t.depth_before).force;
-                self.state.loss.damping += stiffness
-                    * if lands {
-                        work_beyond_stored(all, spring.energy, -out)
-                    } else {
-                        (all - spring.force) * (t.depth - t.depth_before)
-                    };
+            let began = !t.anchored;
+            let lands = began && -out >= t.depth;
+            let pressed = NormalLaw::at(t.depth, onset);
+            if lands {
+                self.state.loss.damping +=
+                    stiffness * work_beyond_stored(pressed.force, pressed.energy, -out);
             }
             t.depth_before = t.depth;
             self.state.deepest = self.state.deepest.max(t.depth);
-            let (b, _) = t.bristle(p, last, k_t, 0.0);
-            let (damped, k_damped) = t.bristle(p, last, k_t, damping);
-            let (size, pull) = (b.norm(), k_damped * damped.norm());
+            let b = t.bristle(p, last);
+            let (friction, surplus) = friction_of(&b, k_t, t.limit.current, used[slot]);
+            self.scratch.accepted.push(AcceptedTouch {
+                young: ContactPoint::of_number(k).weights(),
+                old: None,
+                normal: t.normal,
+                force: t.normal * (stiffness * pressed.force) + friction,
+                surplus,
+                began,
+                rebound: t.rebound,
+                owner: TouchOwner::Point { point: k, slot },
+            });
+            let size = b.norm();
             t.anchored = true;
             let share = if lands { 0.5 } else { 1.0 };
             t.anchor = p - b;
-            if pull > t.limit.current {
-                // the spring's part of the limit; a dashpot may have kept the bristle from stretching so far
-                let kept = (t.limit.current / k_t).min(size);
-                let dir = damped * (k_damped / pull);
-                t.anchor = p - dir * kept;
+            if k_t * size > t.limit.current {
+                let kept = t.limit.current / k_t;
+                t.anchor = p - b * (kept / size);
                 self.state.loss.friction += share * t.limit.current * (size - kept);
             }
         }
@@ -95,6 +101,18 @@ impl LineContact<'_> {
 }
 
 impl LineState {
+    /// Keeps the speed at which a touch may open, m/s.
+    pub(crate) fn keep_rebound(&mut self, owner: TouchOwner, speed: f64) {
+        match owner {
+            TouchOwner::Point { point, slot } => self.points[point].touch[slot].rebound = speed,
+            TouchOwner::Pair(pair) => {
+                if let Some(pairs) = &mut self.self_contact {
+                    pairs.keep_rebound(pair, speed);
+                }
+            }
+        }
+    }
+
     /// Normal force of each touch of point `k` at the last evaluation, which stands for `length` (m), core frame, N: the
     /// core's first, then those of frozen wire.
     #[cfg(feature = "lab")]

@@ -19,9 +19,8 @@ pub struct LineModel {
     pub law: ContactLaw,
     /// depth over which the normal force sets in, m
     pub onset: f64,
-    /// line load per rate of depth, N s/m^2, and as much of it along the surface as of the stiffness. The sum of
-    /// spring and dashpot never pulls. 0: a landing loses what the time scheme takes from it
-    pub damping: f64,
+    /// rebound over impact speed of a landing
+    pub restitution: f64,
     /// wire radius, m
     pub radius: f64,
     /// error of a contact force that an update of Newton's method may promise, as a depth, m
@@ -29,14 +28,14 @@ pub struct LineModel {
 }
 
 impl LineModel {
-    /// Contact of a wire of this `radius` (m) without a dashpot.
+    /// Contact of a wire of this `radius` (m) that does not rebound.
     pub fn new(shape: Shape, law: ContactLaw, radius: f64) -> Self {
         Self {
             prediction: prediction_tolerance(&shape, radius),
             shape,
             law,
             onset: scaled(ONSET, 2.0 * radius),
-            damping: 0.0,
+            restitution: 0.0,
             radius,
         }
     }
@@ -52,11 +51,5 @@ impl LineModel {
             step,
             hold_limits,
         }
-    }
-
-    /// The dashpot over stiffness and step.
-    #[inline(always)]
-    pub(super) fn damping_over(&self, step: f64) -> f64 {
-        self.damping / (self.law.stiffness * step)
     }
 }

@@ -51,7 +51,6 @@ impl LineContact<'_> {
 
     /// [`Self::push`] for a point that may touch.
     fn respond(&mut self, k: usize, p: V3, length: f64, step: f64) -> Option<ContactResponse> {
-        let damping = self.model.damping_over(step);
         let Self {
             model,
             state,
@@ -63,7 +62,6 @@ impl LineContact<'_> {
             law,
             onset: model.onset,
             stiffness: law.stiffness * length,
-            damping,
             step,
             last: point.last,
             limit_from: if state.hold_limits {
@@ -125,13 +123,11 @@ impl LineContact<'_> {
         length: f64,
         step: f64,
     ) -> ContactResponse {
-        let damping = self.model.damping_over(step);
         let point = &mut self.state.points[k];
         let around = Conditions {
             law: &self.model.law,
             onset: self.model.onset,
             stiffness: self.model.law.stiffness * length,
-            damping,
             step,
             last: point.last,
             limit_from: LimitFrom::Current,

@@ -2,6 +2,7 @@
 
 use super::near::NearPoint;
 use super::point::PointState;
+use crate::contact::accepted_touch::AcceptedTouch;
 use crate::contact::self_contact::PairScratch;
 use crate::geometry::SplineTube;
 
@@ -12,6 +13,8 @@ pub struct LineScratch {
     pub tube: SplineTube,
     /// work that the energy balance ascribes to touches which ended within the step, and that they did not do, J
     pub lifted: f64,
+    /// the touches at the end of the step
+    pub accepted: Vec<AcceptedTouch>,
     /// of the pairs of live wire
     pub pairs: PairScratch,
     /// the points with surfaces near them at the last evaluation
@@ -28,6 +31,7 @@ impl LineScratch {
         Self {
             tube: SplineTube::new(radius),
             lifted: 0.0,
+            accepted: Vec::with_capacity(256),
             pairs: PairScratch::default(),
             near: Vec::new(),
             undo: Vec::with_capacity(256),

@@ -41,6 +41,47 @@ impl LineContact<'_> {
         }
     }
 
+    /// Share of the way of point `k` to `to`, m, on which none of its touches turns its normal by more than `most` (rad) after it
+    /// began; 1: all of it. `own` as in [`Self::push`].
+    pub fn share_to_turn(&mut self, k: usize, to: V3, own: f64, most: f64) -> f64 {
+        let from = self.state.points[k].last;
+        let way = to - from;
+        // no surface that the centreline lies on is bent more sharply than the wire
+        if !self.state.points[k].placed || way.norm() < most * self.model.radius {
+            return 1.0;
+        }
+        self.look_up_if_moved(k, to, own);
+        let point = &self.state.points[k];
+        let touch_at = |slot: usize, p: V3| {
+            if slot == 0 {
+                let n = self.model.shape.nearness(p);
+                return (self.model.radius - n.distance, n.normal);
+            }
+            let tube = &self.scratch.tube;
+            let foot = tube.foot(p, point.touch[slot].start);
+            (foot.depth(self.model.radius + tube.radius()), foot.normal)
+        };
+        let mut share: f64 = 1.0;
+        for slot in usize::from(!point.core_near)..=point.passages {
+            let (depth, normal) = touch_at(slot, to);
+            if depth <= 0.0 {
+                continue;
+            }
+            let (before, first) = touch_at(slot, from);
+            let (began, first) = if before < 0.0 {
+                let began = before / (before - depth);
+                (began, touch_at(slot, from + way * began).1)
+            } else {
+                (0.0, first)
+            };
+            let turn = (normal - first).norm();
+            if turn > most {
+                share = share.min(began + (1.0 - began) * most / turn);
+            }
+        }
+        share
+    }
+
     /// Looks up the surroundings of point `k` at `p`, and how far they hold. Frozen wire beyond the unstretched length
     /// `own` from the clamp belongs to the point's own neighbourhood.
     fn look_up(&mut self, k: usize, p: V3, own: f64) {

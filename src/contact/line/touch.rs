@@ -24,6 +24,8 @@ pub(super) struct TouchState {
     pub(super) depth: f64,
     /// depth at the last accepted instant, m; 0: it did not touch
     pub(super) depth_before: f64,
+    /// speed at which it may open, m/s: what its landing gives back
+    pub(super) rebound: f64,
 }
 
 impl TouchState {
@@ -37,6 +39,7 @@ impl TouchState {
         normal: V3::new(0.0, 0.0, 0.0),
         depth: 0.0,
         depth_before: 0.0,
+        rebound: 0.0,
     };
 
     /// Whether the touch equals [`Self::UNUSED`] to the bit.
@@ -44,7 +47,7 @@ impl TouchState {
         let vectors = [self.anchor, self.slide, self.normal];
         let limit = self.limit;
         let limits = [limit.lagged, limit.accepted, limit.current];
-        let depths = [self.depth, self.depth_before];
+        let depths = [self.depth, self.depth_before, self.rebound];
         let mut all = vectors.iter().flatten().chain(&limits).chain(&depths);
         self.start == Self::UNUSED.start && !self.anchored && all.all(|x| x.to_bits() == 0)
     }
@@ -58,20 +61,14 @@ impl TouchState {
         around: &Conditions,
         sum: &mut ContactResponse,
     ) -> (f64, V3) {
-        let pressed = if around.damping > 0.0 {
-            NormalLaw::damped(self.depth, around.onset, around.damping, self.depth_before)
-        } else {
-            NormalLaw::at(self.depth, around.onset)
-        };
-        let k_t = around.stiffness * TANGENTIAL_SHARE;
-        let (bristle, bristle_stiffness) = self.bristle(p, around.last, k_t, around.damping);
+        let pressed = NormalLaw::at(self.depth, around.onset);
         sum.add_touch(&Touching {
             law: around.law,
             stiffness: around.stiffness,
             normal: self.normal,
             pressed,
-            bristle,
-            bristle_stiffness,
+            bristle: self.bristle(p, around.last),
+            bristle_stiffness: around.stiffness * TANGENTIAL_SHARE,
             way: p - around.last,
             step: around.step,
             limit: self.limit,
@@ -80,20 +77,11 @@ impl TouchState {
         })
     }
 
-    /// Stretch of the bristle (m) of a point at `p` and its stiffness (N/m), with a dashpot of `damping` times the
-    /// stiffness `k` against the way from `last`.
-    ///
-    /// Spring and dashpot together are a stiffer bristle from a place between the anchor and `last`. A touch that
-    /// begins has its anchor at `last`.
+    /// Stretch of the bristle of a point that went from `last` to `p`, m. A touch that begins has its anchor at `last`.
     #[inline]
-    pub(super) fn bristle(&self, p: V3, last: V3, k: f64, damping: f64) -> (V3, f64) {
+    pub(super) fn bristle(&self, p: V3, last: V3) -> V3 {
         let anchor = if self.anchored { self.anchor } else { last };
-        let anchor = if damping > 0.0 {
-            (anchor + last * damping) / (1.0 + damping)
-        } else {
-            anchor
-        };
-        (across(p - anchor, &self.normal), k * (1.0 + damping))
+        across(p - anchor, &self.normal)
     }
 }
 
@@ -105,8 +93,6 @@ pub(super) struct Conditions<'a> {
     pub(super) onset: f64,
     /// contact stiffness of the wire that the point stands for, N/m
     pub(super) stiffness: f64,
-    /// dashpot over stiffness and step
-    pub(super) damping: f64,
     /// time since the last accepted instant, s
     pub(super) step: f64,
     /// place of the point at the last accepted instant, m

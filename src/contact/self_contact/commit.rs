@@ -1,6 +1,7 @@
 //! An iterate becomes accepted: friction limits, bristles, losses; and the energy that pairs store.
 
 use super::pairs::SelfContact;
+use crate::contact::accepted_touch::{AcceptedTouch, TouchOwner, friction_of};
 use crate::contact::friction::across;
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
 use crate::contact::stencil::{ContactPoint, NodeWeights};
@@ -16,18 +17,22 @@ impl SelfContact {
 
     /// Makes the wire at `q` the accepted one: bristles follow, slip and landings are added to the losses. `last` is the
     /// wire at the last accepted instant. See [`LineContact::commit`](crate::contact::LineContact::commit).
+    ///
+    /// `used` are the friction limits that the solve went by, pair by pair, N. Adds the touches to `accepted`.
     pub fn commit(
         &mut self,
         (law, onset): (&ContactLaw, f64),
         (q, last): (&[V3], &[V3]),
         length: impl Fn(usize) -> f64,
+        used: &[f64],
+        accepted: &mut Vec<AcceptedTouch>,
     ) {
         let curve = self.curve(q);
-        for pair in &mut self.pairs {
+        for (number, pair) in self.pairs.iter_mut().enumerate() {
             pair.limit.accept();
             if pair.depth <= 0.0 {
                 pair.touched = false;
-                pair.bristle = V3::zeros();
+                (pair.bristle, pair.rebound) = (V3::zeros(), 0.0);
                 continue;
             }
             let young = ContactPoint::of_number(pair.point as usize).weights();
@@ -40,8 +45,19 @@ impl SelfContact {
             let size = b.norm();
             let deeper = -way.dot(&n);
             let lands = !pair.touched && deeper >= pair.depth;
+            let spring = NormalLaw::at(pair.depth, onset);
+            let (friction, surplus) = friction_of(&b, k_t, pair.limit.current, used[number]);
+            accepted.push(AcceptedTouch {
+                young,
+                old: Some(old.negative()),
+                normal: n,
+                force: n * (stiffness * spring.force) + friction,
+                surplus,
+                began: !pair.touched,
+                rebound: pair.rebound,
+                owner: TouchOwner::Pair(number),
+            });
             if lands {
-                let spring = NormalLaw::at(pair.depth, onset);
                 self.loss.damping +=
                     stiffness * work_beyond_stored(spring.force, spring.energy, deeper);
             }
@@ -54,6 +70,12 @@ impl SelfContact {
                 self.loss.friction += share * pair.limit.current * (size - kept);
             }
         }
+    }
+
+    /// The friction limits of the last evaluation, pair by pair, N, into `limits`.
+    pub fn limits(&self, limits: &mut Vec<f64>) {
+        limits.clear();
+        limits.extend(self.pairs.iter().map(|p| p.limit.current));
     }
 
     /// Energy stored in the touches, J; `length` tells what the point of a number stands for, m.

@@ -26,6 +26,8 @@ pub(super) struct Pair {
     pub(super) share: f64,
     /// unit normal from the foot to the point
     pub(super) normal: V3,
+    /// speed at which it may open, m/s: what its landing gives back
+    pub(super) rebound: f64,
 }
 
 /// Contact of live wire with live wire: the pairs with their friction state.
@@ -78,6 +80,11 @@ impl SelfContact {
         }
     }
 
+    /// Keeps the speed at which a pair may open, m/s.
+    pub(in crate::contact) fn keep_rebound(&mut self, pair: usize, speed: f64) {
+        self.pairs[pair].rebound = speed;
+    }
+
     /// The spline of the live wire with nodes at `q`.
     pub(super) fn curve<'a>(&self, q: &'a [V3]) -> Curve<'a> {
         Curve {
@@ -125,6 +132,7 @@ mod tests {
             depth: 0.0,
             share: 0.5,
             normal: V3::y(),
+            rebound: 0.0,
         };
         SelfContact {
             pairs: points.map(pair).collect(),

@@ -54,6 +54,8 @@ pub struct PairScratch {
     pub(super) unpaired: Vec<Unpaired>,
     /// by turns back along the wire, the node that the search has reached
     pub(super) reached: Vec<usize>,
+    /// friction limits by which the last solve went, pair by pair, N
+    pub used: Vec<f64>,
     /// room for the wire in the core frame
     pub wire: Vec<V3>,
     /// couplings of nodes on touching live wires, by the last evaluation

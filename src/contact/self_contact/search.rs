@@ -110,6 +110,7 @@ impl SelfContact {
                     depth: before.map_or(0.0, |o| o.depth),
                     share: foot.share,
                     normal: foot.normal,
+                    rebound: before.map_or(0.0, |o| o.rebound),
                 });
             }
         }

@@ -120,6 +120,9 @@ impl Implicit {
         past.q[0].extend(sys.state.rod.x.iter().map(|x| spin.to_core(*x)));
         past.h = [h, past.h[0]];
         past.known = (past.known + 1).min(2);
+        if self.scheme == Scheme::Bdf2 {
+            w.impacts.stop(sys, step, &w.mass, before.0, self.tolerance);
+        }
     }
 }
 

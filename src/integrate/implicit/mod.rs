@@ -9,6 +9,7 @@ mod commit;
 mod conjugate;
 mod dispatch;
 mod error;
+mod impact;
 mod lengths;
 mod model;
 mod newton;
@@ -39,7 +40,7 @@ use serde::{Deserialize, Serialize};
 use work::Work;
 
 /// Newton's update at which a solve is done, over the tolerance.
-const CLOSE: f64 = 0.1;
+const CLOSE: f64 = 0.01;
 
 /// Settings and step length of the production method.
 #[derive(Clone, Debug)]
@@ -52,6 +53,8 @@ pub struct Implicit {
     pub longest: f64,
     /// proposed next step, s
     pub next: f64,
+    /// length that the error of the last step asks for, within no bounds, s
+    pub(crate) wanted: f64,
     /// take this step and no other (convergence studies), s
     pub fixed: Option<f64>,
     /// which scheme
@@ -100,6 +103,7 @@ impl Implicit {
             shortest,
             longest,
             next: (1e-5f64).clamp(shortest, longest),
+            wanted: shortest,
             fixed: None,
             scheme,
             flat: false,

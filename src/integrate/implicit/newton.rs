@@ -15,6 +15,9 @@ const LIMIT_STEPS: usize = 5;
 const LOOKS_AHEAD: usize = 8;
 /// An update of more than so many times what is close is not the last but one.
 const CHORD: f64 = 100.0;
+/// Updates with old factors in a row, and the share of the one before below which another is tried.
+const CHORDS: usize = 3;
+const SHRINKS: f64 = 0.2;
 /// What a last update with old factors may leave, as a share of what is close. All of it saves another twentieth of the
 /// time and doubles the numerical dissipation (`fig8` at 30 and 300 rad/s over ten turns).
 const CHORD_LEFT: f64 = 0.3;
@@ -174,12 +177,20 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             return Ok(step);
         }
         let mut line_search_halvings = 0;
-        if share == 1.0
-            && fits
-            && limits.chord > 0.0
-            && end_by_chord(model, work, value, (update, close), limits.chord * close)
-        {
-            return Ok(step + 1);
+        if share == 1.0 && fits && limits.chord > 0.0 {
+            match end_by_chords(model, work, value, (update, close), limits.chord * close) {
+                Chord::Ends => return Ok(step + 1),
+                Chord::Nearer => {
+                    hold_limits(model, step > LIMIT_STEPS);
+                    value = model.evaluate(work).now;
+                    if let Some(line) = &mut model.line {
+                        line.state.renew_limits();
+                    }
+                    last_update = update;
+                    continue;
+                }
+                Chord::Vain => {}
+            }
         }
         loop {
             hold_limits(model, step > LIMIT_STEPS);
@@ -217,47 +228,69 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
     })
 }
 
+/// What updates with old factors did.
+enum Chord {
+    /// the solve is done
+    Ends,
+    /// the iterate is nearer, but not there
+    Nearer,
+    /// nothing
+    Vain,
+}
+
 /// Takes the whole update, of size `first`, and with the factors it came from the one after it, if that leaves no more
 /// than `left` (m).
 ///
 /// Most solves end with their second update, a thirtieth of the first, and old factors are good enough for it. What
 /// is then wrong is about its square over the first. It needs neither a new Hessian nor new factors with looks ahead, more
 /// than half the cost of an iteration. Where it is not the last (one in five), the work was in vain.
-fn end_by_chord<const D: usize, U: Unknowns<D>>(
+fn end_by_chords<const D: usize, U: Unknowns<D>>(
     model: &mut Model,
     work: &mut Work<D, U>,
     value: f64,
     (first, close): (f64, f64),
     left: f64,
-) -> bool {
+) -> Chord {
     let coupled = |model: &Model| {
         let line = model.line.as_ref();
         line.is_some_and(|l| !l.scratch.pairs.couplings.is_empty())
     };
     // pairs of live wire have their share of the matrix outside the band, and that is always of the present
     if first > CHORD * close || coupled(model) {
-        return false;
+        return Chord::Vain;
     }
     hold_limits(model, false);
     work.take(1.0);
     expect_tension(work, 1.0);
     let trial = model.evaluate_forces(work);
     if trial.merit > value + NOISE * value.abs() || coupled(model) {
-        return false;
+        return Chord::Vain;
     }
-    work.solves += 1;
     work.plain.clone_from(&work.update);
-    load_gradient(work);
-    std::mem::swap(&mut work.update, &mut work.load);
-    work.matrix.solve(&mut work.update);
-    let (second, ..) = largest_update(model, work);
-    if second >= left && second * second > first * left {
-        std::mem::swap(&mut work.update, &mut work.plain);
-        return false;
+    let mut before = first;
+    for chord in 0..CHORDS {
+        work.solves += 1;
+        load_gradient(work);
+        std::mem::swap(&mut work.update, &mut work.load);
+        work.matrix.solve(&mut work.update);
+        let (next, ..) = largest_update(model, work);
+        let ends = next < left || next * next <= before * left;
+        if !ends && (next > SHRINKS * before || chord + 1 == CHORDS) {
+            if chord == 0 {
+                std::mem::swap(&mut work.update, &mut work.plain);
+                return Chord::Vain;
+            }
+            return Chord::Nearer;
+        }
+        work.keep_start();
+        work.take(1.0);
+        if ends {
+            return Chord::Ends;
+        }
+        model.evaluate_forces(work);
+        before = next;
     }
-    work.keep_start();
-    work.take(1.0);
-    true
+    Chord::Nearer
 }
 
 fn load_gradient<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U>) {

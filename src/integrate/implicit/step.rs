@@ -2,7 +2,7 @@
 
 use super::model::Model;
 use super::predictor::{moved, step_of};
-use super::step_control::SHORT;
+use super::step_control::{MOST_TURN, SHORT};
 use super::unknowns::Unknowns;
 use super::work::Work;
 use super::{CLOSE, Implicit, Scheme, StepError, newton};
@@ -34,6 +34,14 @@ impl Implicit {
                 continue;
             }
             sys.begin_attempt(&work.guess);
+            let share = sys.share_to_turn(&work.guess, MOST_TURN);
+            if share < 1.0 && h > self.shortest && self.fixed.is_none() {
+                if let Some(mut line) = sys.line_contact() {
+                    line.undo_attempt();
+                }
+                h = (0.9 * share * h).max(self.shortest);
+                continue;
+            }
             let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
             let solved = newton::solve(
                 &mut model,
@@ -68,7 +76,7 @@ impl Implicit {
                     if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
                         self.commit(work, sys, &step, spindle, &support, nozzle);
                         self.statistics.steps += 1;
-                        self.next = self.length_after(h, factor);
+                        self.propose(h, factor);
                         return Ok(h);
                     }
                     self.statistics.rejects += 1;

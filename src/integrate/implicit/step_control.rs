@@ -16,6 +16,10 @@ pub(super) const SHORT: f64 = 1e3;
 /// forces at both ends of the step. If the edge swings further, these two forces have little to do with each other.
 const NOZZLE_TURN: f64 = 0.2;
 
+/// Angle by which the normal of a touch may turn in a step after it began, rad. A step takes touches by their normals at its
+/// end; of a shoulder that wire meets early and is past then, it would see nothing.
+pub(super) const MOST_TURN: f64 = 0.01;
+
 impl Implicit {
     /// Update, m, up to which the guess of a step of `h`, s, stands as it is.
     ///
@@ -27,7 +31,7 @@ impl Implicit {
         if self.scheme == Scheme::Midpoint || self.fixed.is_some() {
             return 0.0;
         }
-        let share = (h / self.next).min(1.0);
+        let share = (h / self.wanted).min(1.0);
         CLOSE * self.tolerance * share * share
     }
 
@@ -51,8 +55,13 @@ impl Implicit {
         libm::cbrt(AIM * self.tolerance / error)
     }
 
-    /// Length to propose after an accepted step of `h`, s, whose error asks for `factor` times its length.
-    pub(super) fn length_after(&self, h: f64, factor: f64) -> f64 {
+    /// Sets the length to propose after an accepted step of `h`, s, whose error asks for `factor` times its length.
+    pub(super) fn propose(&mut self, h: f64, factor: f64) {
+        self.wanted = h * factor;
+        self.next = self.length_after(h, factor);
+    }
+
+    fn length_after(&self, h: f64, factor: f64) -> f64 {
         // a step cut short by the end of the interval says nothing against a longer one
         let allowed = h * factor;
         if h < self.next && allowed > self.next {

@@ -2,6 +2,7 @@
 
 use super::assembly::Assembly;
 use super::conjugate;
+use super::impact::Impacts;
 use super::unknowns::Unknowns;
 use crate::linalg::Banded;
 use crate::math::V3;
@@ -65,6 +66,8 @@ pub(super) struct Work<const D: usize, U> {
     pub(super) unknowns: U,
     /// edges and nodes laid out for the assembly
     pub(super) assembly: Assembly,
+    /// impulses of landings
+    pub(super) impacts: Impacts,
     /// vectors of the conjugate gradients
     pub(super) conjugate: conjugate::Scratch,
     /// forces at the last accepted instant, lab frame, N; while solving, places after the update, m

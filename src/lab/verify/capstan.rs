@@ -4,7 +4,7 @@
 //! free across it. Both far-field directions are therefore exact whatever the legs do, and the wrap
 //! is the angle between them. Ends carry no moment; legs are several bending lengths long.
 
-use super::bench::{SmoothMean, Stepper, law, line_damping, mesh, stable_step};
+use super::bench::{SmoothMean, Stepper, law, mesh, stable_step};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::contact::{LineModel, NodalModel};
 use crate::geometry::Shape;
@@ -124,8 +124,7 @@ impl Capstan {
                 radius,
                 half_y: 10.0 * section.diameter,
             };
-            let mut line = LineModel::new(core, law, r);
-            line.damping = line_damping(&law, section);
+            let line = LineModel::new(core, law, r);
             sys.touch_along(line);
             step = Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave));
         } else {

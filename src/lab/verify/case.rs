@@ -18,6 +18,8 @@ pub struct Context<'a> {
     pub integrator: Integrator,
     /// node spacing where it is finest, m; `None`: what the kind finds fit
     pub spacing: Option<f64>,
+    /// local error that a step of the implicit method may have, m, where the kind winds as a scene does
+    pub tolerance: f64,
 }
 
 /// A computed quantity.

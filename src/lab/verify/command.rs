@@ -2,7 +2,7 @@
 
 use super::file::{CaseFile, Check};
 use super::report::{Outcome, Record, judge, unknown};
-use super::{Context, KINDS, VerifyError};
+use super::{Context, KINDS, Kind, VerifyError, WIND};
 use crate::scene::{Integrator, Preset};
 use crate::settings::SceneSettings;
 use std::path::PathBuf;
@@ -17,8 +17,8 @@ pub struct VerifyOptions {
     pub files: Vec<PathBuf>,
     /// method: the implicit one that winding uses, or the paper's explicit one (RK4)
     pub preset: Preset,
-    /// solver settings as `NAME=VALUE`: `solver.spacing_near` (finest node spacing, m) or
-    /// `solver.integrator`
+    /// solver settings as `NAME=VALUE`: `solver.spacing_near` (finest node spacing, m), `solver.tolerance` (m, of kinds
+    /// whose set-up is that of a wind) or `solver.integrator`
     pub set: Vec<String>,
     /// a line of JSON per number instead of a table
     pub json: bool,
@@ -45,6 +45,32 @@ pub struct Manner {
     pub integrator: Integrator,
     /// node spacing where it is finest, m; `None`: each kind's own
     pub spacing: Option<f64>,
+    /// local error that a step may have, m, for kinds whose set-up is that of a wind
+    pub tolerance: f64,
+}
+
+impl Manner {
+    /// The set-up of a kind's cases: "wind", or in what it differs from a wind's.
+    fn setup(&self, kind: &Kind) -> String {
+        let mut parts = Vec::new();
+        if self.integrator != Integrator::Implicit {
+            parts.push("explicit method".to_owned());
+        } else if kind.setup != WIND {
+            parts.push(kind.setup.to_owned());
+        }
+        if let Some(spacing) = self.spacing {
+            parts.push(format!("spacing {spacing} m"));
+        }
+        let default = SceneSettings::default().solver.tolerance;
+        if kind.setup == WIND && self.tolerance != default {
+            parts.push(format!("tolerance {:e} m", self.tolerance));
+        }
+        if parts.is_empty() {
+            WIND.to_owned()
+        } else {
+            parts.join("; ")
+        }
+    }
 }
 
 impl VerifyOptions {
@@ -70,9 +96,15 @@ impl VerifyOptions {
                     return Err(bad("a spacing above 0 is wanted".to_owned()));
                 }
                 spacing = Some(near);
+            } else if name == "solver.tolerance" {
+                let tolerance = settings.solver.tolerance;
+                if !(tolerance.is_finite() && tolerance > 0.0) {
+                    return Err(bad("a tolerance above 0 is wanted".to_owned()));
+                }
             } else if name != "solver.integrator" {
                 return Err(bad(
-                    "verify takes solver.spacing_near and solver.integrator".to_owned(),
+                    "verify takes solver.spacing_near, solver.tolerance and solver.integrator"
+                        .to_owned(),
                 ));
             }
         }
@@ -91,6 +123,7 @@ impl VerifyOptions {
             preset,
             integrator,
             spacing,
+            tolerance: settings.solver.tolerance,
         })
     }
 
@@ -127,7 +160,7 @@ pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, Ve
     };
     for kind in &args.kinds {
         if !files.iter().any(|f| f.kind == *kind) {
-            if KINDS.iter().any(|(known, _)| known == kind) {
+            if KINDS.iter().any(|known| known.name == *kind) {
                 return Err(VerifyError::NoCases { kind: kind.clone() });
             }
             count(&unknown(kind, None));
@@ -154,7 +187,7 @@ pub fn run_file(
     manner: &Manner,
     mut each: impl FnMut(&[Record], f64),
 ) -> Result<(), VerifyError> {
-    let solve = KINDS.iter().find(|(kind, _)| *kind == file.kind);
+    let solve = KINDS.iter().find(|kind| kind.name == file.kind);
     for case in &file.cases {
         let context = Context {
             section: &file.section,
@@ -162,9 +195,10 @@ pub fn run_file(
             folder: &file.folder,
             integrator: manner.integrator,
             spacing: manner.spacing,
+            tolerance: manner.tolerance,
         };
         let start = Instant::now();
-        let answers = solve.map(|(_, run)| run(&context));
+        let answers = solve.map(|kind| (kind.run)(&context));
         let cpu = start.elapsed().as_secs_f64();
         let outcome = match answers {
             None => Outcome::Unknown,
@@ -182,6 +216,10 @@ pub fn run_file(
         let mut records = judge(&file.kind, case, file.check.iter().filter(counts), &outcome);
         if solve.is_none() && records.is_empty() {
             records.push(unknown(&file.kind, Some(&case.id)));
+        }
+        let setup = solve.map(|kind| manner.setup(kind));
+        for record in &mut records {
+            record.setup.clone_from(&setup);
         }
         each(&records, cpu);
     }

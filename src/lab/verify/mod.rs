@@ -36,5 +36,5 @@ mod wire;
 pub use case::{Answer, Answers, Context, VerifyError};
 pub use command::{Manner, VerifyOptions, run, run_file};
 pub use file::{Case, CaseFile, Check};
-pub use kinds::{KINDS, Solve};
+pub use kinds::{KINDS, Kind, Solve, WIND};
 pub use report::Record;

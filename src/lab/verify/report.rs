@@ -26,6 +26,9 @@ pub struct Record {
     pub ok: Option<bool>,
     /// computing time of the whole case, s (one thread)
     pub cpu_s: Option<f64>,
+    /// "wind" where contact law, stiffness, spacing, tolerance, twist and formula of time are those of a wind of elastic wire, else
+    /// what differs; none for a kind that is not known
+    pub setup: Option<String>,
     /// why there is no number
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
@@ -115,6 +118,7 @@ fn compare(
         tolerance: Some(check.clone()),
         ok,
         cpu_s,
+        setup: None,
         error,
     }
 }
@@ -144,6 +148,7 @@ pub(super) fn unknown(kind: &str, id: Option<&str>) -> Record {
         tolerance: None,
         ok: None,
         cpu_s: None,
+        setup: None,
         error: Some(format!("kind {kind} is not known")),
     }
 }
@@ -175,8 +180,9 @@ impl Record {
             .rel_error
             .map_or_else(String::new, |e| format!("off by {e:.1e}"));
         let bound = self.tolerance.as_ref().map_or_else(String::new, bound);
+        let setup = self.setup.as_deref().unwrap_or("-");
         let mut line = format!(
-            "{verdict:<4}  {name:<72}  {:>14}  {:>14}  {error:<15} {bound}",
+            "{verdict:<4}  {name:<72}  {:>14}  {:>14}  {error:<15} {bound:<30}  [{setup}]",
             number(&self.expected),
             number(&self.got),
         );

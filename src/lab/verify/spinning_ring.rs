@@ -7,7 +7,7 @@
 //! Explicit steps are Runge-Kutta's: the velocities of the staggered step are half a step old, and in a
 //! turning frame the contact dashpot takes that for an approach at `omega^2 R dt / 2`.
 
-use super::bench::{SmoothMean, Stepper, law, line_damping, mesh, stable_step, touch_forces};
+use super::bench::{SmoothMean, Stepper, law, mesh, stable_step, touch_forces};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::contact::{LineModel, NodalModel};
 use crate::feed::{Feed, FeedSpec};
@@ -226,7 +226,6 @@ impl<'a> Wound<'a> {
                 half_y: 10.0 * r,
             };
             let mut line = LineModel::new(core, law, r);
-            line.damping = line_damping(&law, section);
             // the load falls to nothing here: let the depth fall with it
             line.onset = ONSET * pull / (radius * stiffness);
             sys.touch_along(line);

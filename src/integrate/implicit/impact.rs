@@ -1,0 +1,271 @@
+//! Landings as impulses: what touches neither sinks in nor opens faster than its landing gives back.
+//!
+//! A blow lasts one or two microseconds, a step ten times as long or longer. The solve holds the wire at the surface; how fast it goes on
+//! would be left to the formula of time. So the accepted velocities are set: of every touch, the speed along its
+//! normal is 0, or what the landing gives back. The impulses that do so act along the forces of the touches, friction
+//! included, and none of them pulls.
+//!
+//! A touch that began within the step also rewrites the history of its nodes. After it, the formula of time has to see a wire
+//! that moved all the time as it does now, or it would take the fall for part of the motion.
+
+use super::scheme::StepFormula;
+use crate::contact::AcceptedTouch;
+use crate::math::{Spin, V3, spin_velocity};
+use crate::system::{Spindle, System};
+
+/// Sweeps over the touches that are enough.
+const SWEEPS: usize = 50;
+/// Way in a step that no sweep has to mend, as a share of the tolerance.
+const UNSEEN: f64 = 0.01;
+
+/// The velocities now, those at the step's start, and the places there.
+const PARTS: usize = 3;
+
+/// Impulses of touches, and what they are computed with.
+#[derive(Debug, Default)]
+pub(super) struct Impacts {
+    /// node by node, core frame, see [`PARTS`]
+    motion: [Vec<V3>; PARTS],
+    /// the same before any impulse
+    start: [Vec<V3>; PARTS],
+    /// velocity that an impulse gives to a node, 1/kg
+    mobility: Vec<f64>,
+    impulses: Vec<Impulse>,
+}
+
+/// The impulse of one touch.
+#[derive(Clone, Copy, Debug)]
+struct Impulse {
+    touch: AcceptedTouch,
+    /// direction, whose part along the normal is 1
+    along: V3,
+    /// what the solve gave along the normal, N s
+    given: f64,
+    /// change of speed along the normal by an impulse there, 1/kg
+    inverse: f64,
+    /// least and largest speed, m/s, or place, m, along the normal
+    range: [[f64; 2]; PARTS],
+    /// the impulse added, N s, and N s^2 for the places
+    added: [f64; PARTS],
+}
+
+impl Impacts {
+    /// Takes the speed out of what touches, after a step from the motion `old` of the spindle with the lumped `mass` of each
+    /// node, kg.
+    pub(super) fn stop(
+        &mut self,
+        sys: &mut System,
+        step: &StepFormula,
+        mass: &[f64],
+        old: Spindle,
+        tolerance: f64,
+    ) {
+        let Some(line) = sys.line_contact() else {
+            return;
+        };
+        if line.scratch.accepted.is_empty() {
+            return;
+        }
+        let restitution = line.model.restitution;
+        let touches = std::mem::take(&mut line.scratch.accepted);
+        let parts = if touches.iter().any(|t| t.began) {
+            PARTS
+        } else {
+            1
+        };
+        self.look(sys, old, mass, parts);
+        self.list(&touches, &sys.state.past.q[0], step, restitution);
+        if let Some(line) = sys.line_contact() {
+            line.scratch.accepted = touches;
+        }
+        self.give_back_friction(sys, step, parts);
+        let kinetic = sys.kinetic();
+        let unseen = UNSEEN * tolerance;
+        let bounds = [unseen / step.h, unseen / step.h, unseen];
+        for (part, bound) in bounds.into_iter().enumerate().take(parts) {
+            for sweep in 0..SWEEPS {
+                if self.sweep(part, sweep % 2 == 1) < bound {
+                    break;
+                }
+            }
+        }
+        self.take_over(sys, step, old, parts);
+        let rubbed = self.rubbed();
+        let stopped = kinetic - sys.kinetic() - rubbed;
+        sys.state.balance.friction += rubbed;
+        sys.state.balance.damping += stopped;
+        if let Some(line) = sys.line_contact() {
+            line.state.loss.friction += rubbed;
+            line.state.loss.damping += stopped;
+            if restitution > 0.0 {
+                for impulse in &self.impulses {
+                    let speed = impulse.range[0][1];
+                    line.state.keep_rebound(impulse.touch.owner, speed);
+                }
+            }
+        }
+    }
+
+    /// Work of friction in the impulses, J: each acts on the mean of the motion before and after.
+    fn rubbed(&self) -> f64 {
+        let of_touch = |impulse: &Impulse| {
+            let rubs = impulse.along - impulse.touch.normal;
+            let mean = |(i, w): (usize, f64)| {
+                0.5 * w * (self.motion[0][i] + self.start[0][i]).dot(&rubs)
+            };
+            -impulse.added[0] * impulse.touch.nodes().map(mean).sum::<f64>()
+        };
+        self.impulses.iter().map(of_touch).sum()
+    }
+
+    /// Puts down how the wire moves, in `parts` of the [`PARTS`].
+    fn look(&mut self, sys: &System, old: Spindle, mass: &[f64], parts: usize) {
+        let (rod, past, now) = (&sys.state.rod, &sys.state.past, sys.state.spindle);
+        let free = sys.free_nodes();
+        self.mobility.clear();
+        let of_node = |(i, m): (usize, &f64)| if free.contains(&i) { 1.0 / m } else { 0.0 };
+        self.mobility.extend(mass.iter().enumerate().map(of_node));
+        for motion in &mut self.motion {
+            motion.clear();
+        }
+        let relative = |spindle: Spindle, v: &[V3], x: &[V3], to: &mut Vec<V3>| {
+            let spin = Spin::new(spindle.angle);
+            let carried = |x: &V3| spin_velocity(spindle.speed, *x);
+            to.extend(v.iter().zip(x).map(|(v, x)| spin.to_core(v - carried(x))));
+        };
+        relative(now, &rod.v, &rod.x, &mut self.motion[0]);
+        if parts > 1 {
+            relative(old, &past.v, &past.x, &mut self.motion[1]);
+            self.motion[2].extend_from_slice(&past.q[1]);
+        }
+        for (start, motion) in self.start.iter_mut().zip(&self.motion) {
+            start.clone_from(motion);
+        }
+    }
+
+    /// Lists the touches; `places` are those of the nodes now, core frame, m.
+    fn list(
+        &mut self,
+        touches: &[AcceptedTouch],
+        places: &[V3],
+        step: &StepFormula,
+        restitution: f64,
+    ) {
+        self.impulses.clear();
+        let began = !self.motion[1].is_empty();
+        for touch in touches {
+            let pressed = touch.force.dot(&touch.normal);
+            let mobile = |(i, w): (usize, f64)| w * w * self.mobility[i];
+            let inverse: f64 = touch.nodes().map(mobile).sum();
+            if pressed <= 0.0 || inverse == 0.0 {
+                continue;
+            }
+            let along_normal = |of: &[V3]| -> f64 {
+                let part = |(i, w): (usize, f64)| w * of[i].dot(&touch.normal);
+                touch.nodes().map(part).sum()
+            };
+            let mut range = [[0.0, touch.rebound], [0.0; 2], [0.0; 2]];
+            if touch.began {
+                let speed = restitution * (-along_normal(&self.motion[1])).max(0.0);
+                let there = along_normal(places) - step.h * speed;
+                range = [[speed; 2], [speed; 2], [there; 2]];
+            } else if began {
+                for (range, motion) in range.iter_mut().zip(&self.motion).skip(1) {
+                    *range = [along_normal(motion); 2];
+                }
+            }
+            self.impulses.push(Impulse {
+                touch: *touch,
+                along: touch.force / pressed,
+                given: step.gamma * pressed,
+                inverse,
+                range,
+                added: [0.0; PARTS],
+            });
+        }
+    }
+
+    /// Gives back what the solve took too much of friction.
+    fn give_back_friction(&mut self, sys: &mut System, step: &StepFormula, parts: usize) {
+        let before = sys.kinetic();
+        let spin = Spin::new(sys.state.spindle.angle);
+        for impulse in &self.impulses {
+            for (i, w) in impulse.touch.nodes() {
+                let speed = impulse.touch.surplus * (w * self.mobility[i] * step.gamma);
+                sys.state.rod.v[i] += spin.to_lab(speed);
+                self.motion[0][i] += speed;
+                self.start[0][i] += speed;
+                if parts > 1 {
+                    self.motion[2][i] -= speed * step.gamma;
+                }
+            }
+        }
+        sys.state.balance.numerical -= sys.kinetic() - before;
+    }
+
+    /// Mends the speed, or place, of each touch in turn; returns the largest change along a normal.
+    fn sweep(&mut self, part: usize, backwards: bool) -> f64 {
+        let (motion, mobility) = (&mut self.motion[part], &self.mobility);
+        let count = self.impulses.len();
+        let mut largest: f64 = 0.0;
+        for k in 0..count {
+            let k = if backwards { count - 1 - k } else { k };
+            let impulse = &mut self.impulses[k];
+            let normal = impulse.touch.normal;
+            let now: f64 = impulse
+                .touch
+                .nodes()
+                .map(|(i, w)| w * motion[i].dot(&normal))
+                .sum();
+            let alone = now - impulse.added[part] * impulse.inverse;
+            let [low, high] = impulse.range[part];
+            let wanted = (alone.clamp(low, high) - alone) / impulse.inverse;
+            // a touch pushes: all that it gives along the normal is at least 0, and what the wire would have fallen
+            // since it began lies behind its surface
+            let allowed = match part {
+                0 => wanted.max(-impulse.given),
+                1 => wanted.max(0.0),
+                _ => wanted.min(0.0),
+            };
+            let change = allowed - impulse.added[part];
+            impulse.added[part] = allowed;
+            for (i, w) in impulse.touch.nodes() {
+                motion[i] += impulse.along * (w * mobility[i] * change);
+            }
+            largest = largest.max((change * impulse.inverse).abs());
+        }
+        largest
+    }
+
+    /// Makes the motion that of the wire, now and at the step's start.
+    fn take_over(&mut self, sys: &mut System, step: &StepFormula, old: Spindle, parts: usize) {
+        let (now, before) = (Spin::new(sys.state.spindle.angle), Spin::new(old.angle));
+        for (i, (v, start)) in self.motion[0].iter().zip(&self.start[0]).enumerate() {
+            sys.state.rod.v[i] += now.to_lab(v - start);
+        }
+        let past = &mut sys.state.past;
+        if parts > 1 {
+            for i in 0..past.x.len() {
+                let way = before.to_lab(self.motion[2][i] - self.start[2][i]);
+                let faster = before.to_lab(self.motion[1][i] - self.start[1][i]);
+                past.x[i] += way;
+                past.v[i] += faster + spin_velocity(old.speed, way);
+            }
+        }
+        // the way of a touch that opened too fast stays; the speed that it would stand for does not
+        for impulse in self.impulses.iter().filter(|i| !i.touch.began) {
+            for (i, w) in impulse.touch.nodes() {
+                let speed = impulse.along * (w * self.mobility[i] * impulse.added[0]);
+                past.x[i] -= before.to_lab(speed * step.gamma);
+            }
+        }
+        if parts == 1 {
+            for impulse in &self.impulses {
+                for (i, w) in impulse.touch.nodes() {
+                    let speed = impulse.touch.surplus * (w * self.mobility[i] * step.gamma);
+                    past.x[i] -= before.to_lab(speed * step.gamma);
+                }
+            }
+        }
+    }
+}
