@@ -1,13 +1,13 @@
 //! A touch as the impulses of landings see it.
 
-use super::stencil::NodeWeights;
+use super::stencil::{ContactPoint, NodeWeights};
 use crate::math::V3;
 
 /// A touch at the accepted end of a step; core frame.
 #[derive(Clone, Copy, Debug)]
 pub struct AcceptedTouch {
-    /// nodes of the contact point
-    pub young: NodeWeights,
+    /// the contact point
+    pub point: ContactPoint,
     /// nodes of the live wire that it touches, with negative weights
     pub old: Option<NodeWeights>,
     /// unit normal towards the point
@@ -36,15 +36,6 @@ pub enum TouchOwner {
     },
     /// of a pair of live wire
     Pair(usize),
-}
-
-impl AcceptedTouch {
-    /// Nodes that the touch moves with, and their weights.
-    #[inline]
-    pub fn nodes(&self) -> impl Iterator<Item = (usize, f64)> {
-        let old = self.old.into_iter().flat_map(|old| old.into_parts());
-        self.young.into_parts().chain(old).filter(|(_, w)| *w != 0.0)
-    }
 }
 
 /// The bristle of a touch that was solved with the friction limit `used`, N, and holds `limit`: the force of the bristle of

@@ -112,12 +112,6 @@ impl NodeWeights {
         self.nodes.into_iter().zip(self.weights)
     }
 
-    /// Nodes and weights, by value.
-    #[inline]
-    pub fn into_parts(self) -> impl Iterator<Item = (usize, f64)> {
-        self.nodes.into_iter().zip(self.weights)
-    }
-
     /// The same nodes with the opposite weights.
     #[inline]
     pub fn negative(&self) -> Self {

@@ -76,7 +76,7 @@ impl LineContact<'_> {
             let b = t.bristle(p, last);
             let (friction, surplus) = friction_of(&b, k_t, t.limit.current, used[slot]);
             self.scratch.accepted.push(AcceptedTouch {
-                young: ContactPoint::of_number(k).weights(),
+                point: ContactPoint::of_number(k),
                 old: None,
                 normal: t.normal,
                 force: t.normal * (stiffness * pressed.force) + friction,

@@ -48,7 +48,7 @@ impl SelfContact {
             let spring = NormalLaw::at(pair.depth, onset);
             let (friction, surplus) = friction_of(&b, k_t, pair.limit.current, used[number]);
             accepted.push(AcceptedTouch {
-                young,
+                point: ContactPoint::of_number(pair.point as usize),
                 old: Some(old.negative()),
                 normal: n,
                 force: n * (stiffness * spring.force) + friction,

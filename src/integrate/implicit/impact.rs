@@ -37,6 +37,11 @@ pub(super) struct Impacts {
 #[derive(Clone, Copy, Debug)]
 struct Impulse {
     touch: AcceptedTouch,
+    /// nodes that it moves, and their weights; those of an older live wire have negative ones
+    nodes: [usize; 6],
+    weights: [f64; 6],
+    /// how many they are
+    count: usize,
     /// direction, whose part along the normal is 1
     along: V3,
     /// what the solve gave along the normal, N s
@@ -47,6 +52,48 @@ struct Impulse {
     range: [[f64; 2]; PARTS],
     /// the impulse added, N s, and N s^2 for the places
     added: [f64; PARTS],
+}
+
+impl Impulse {
+    /// None yet, of a touch in a step that ends with forces acting over `gamma` (s); `None` where nothing pushes or can move.
+    fn of(touch: &AcceptedTouch, gamma: f64, mobility: &[f64]) -> Option<Self> {
+        let pressed = touch.force.dot(&touch.normal);
+        let (mut nodes, mut weights, mut count) = ([0; 6], [0.0; 6], 0);
+        for place in [Some(touch.point.weights()), touch.old].into_iter().flatten() {
+            for (i, w) in place.iter().filter(|(_, w)| *w != 0.0) {
+                (nodes[count], weights[count]) = (i, w);
+                count += 1;
+            }
+        }
+        let mobile = |(i, w): (usize, f64)| w * w * mobility[i];
+        let parts = nodes.into_iter().zip(weights).take(count);
+        let inverse: f64 = parts.map(mobile).sum();
+        (pressed > 0.0 && inverse > 0.0).then(|| Self {
+            touch: *touch,
+            nodes,
+            weights,
+            count,
+            along: touch.force / pressed,
+            given: gamma * pressed,
+            inverse,
+            range: [[0.0; 2]; PARTS],
+            added: [0.0; PARTS],
+        })
+    }
+
+    /// Nodes that the touch moves with, and their weights.
+    #[inline]
+    fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
+        self.nodes.into_iter().zip(self.weights).take(self.count)
+    }
+
+    /// What the touch sees of a motion of the nodes, along its normal.
+    #[inline]
+    fn along_normal(&self, motion: &[V3]) -> f64 {
+        let normal = self.touch.normal;
+        let part = |(i, w): (usize, f64)| w * motion[i].dot(&normal);
+        self.nodes().map(part).sum()
+    }
 }
 
 impl Impacts {
@@ -113,7 +160,7 @@ impl Impacts {
             let mean = |(i, w): (usize, f64)| {
                 0.5 * w * (self.motion[0][i] + self.start[0][i]).dot(&rubs)
             };
-            -impulse.added[0] * impulse.touch.nodes().map(mean).sum::<f64>()
+            -impulse.added[0] * impulse.nodes().map(mean).sum::<f64>()
         };
         self.impulses.iter().map(of_touch).sum()
     }
@@ -154,34 +201,21 @@ impl Impacts {
         self.impulses.clear();
         let began = !self.motion[1].is_empty();
         for touch in touches {
-            let pressed = touch.force.dot(&touch.normal);
-            let mobile = |(i, w): (usize, f64)| w * w * self.mobility[i];
-            let inverse: f64 = touch.nodes().map(mobile).sum();
-            if pressed <= 0.0 || inverse == 0.0 {
+            let Some(mut impulse) = Impulse::of(touch, step.gamma, &self.mobility) else {
                 continue;
-            }
-            let along_normal = |of: &[V3]| -> f64 {
-                let part = |(i, w): (usize, f64)| w * of[i].dot(&touch.normal);
-                touch.nodes().map(part).sum()
             };
-            let mut range = [[0.0, touch.rebound], [0.0; 2], [0.0; 2]];
+            impulse.range[0] = [0.0, touch.rebound];
             if touch.began {
-                let speed = restitution * (-along_normal(&self.motion[1])).max(0.0);
-                let there = along_normal(places) - step.h * speed;
-                range = [[speed; 2], [speed; 2], [there; 2]];
+                let approach = -impulse.along_normal(&self.motion[1]);
+                let speed = restitution * approach.max(0.0);
+                let there = impulse.along_normal(places) - step.h * speed;
+                impulse.range = [[speed; 2], [speed; 2], [there; 2]];
             } else if began {
-                for (range, motion) in range.iter_mut().zip(&self.motion).skip(1) {
-                    *range = [along_normal(motion); 2];
+                for (part, motion) in self.motion.iter().enumerate().skip(1) {
+                    impulse.range[part] = [impulse.along_normal(motion); 2];
                 }
             }
-            self.impulses.push(Impulse {
-                touch: *touch,
-                along: touch.force / pressed,
-                given: step.gamma * pressed,
-                inverse,
-                range,
-                added: [0.0; PARTS],
-            });
+            self.impulses.push(impulse);
         }
     }
 
@@ -190,7 +224,7 @@ impl Impacts {
         let before = sys.kinetic();
         let spin = Spin::new(sys.state.spindle.angle);
         for impulse in &self.impulses {
-            for (i, w) in impulse.touch.nodes() {
+            for (i, w) in impulse.nodes() {
                 let speed = impulse.touch.surplus * (w * self.mobility[i] * step.gamma);
                 sys.state.rod.v[i] += spin.to_lab(speed);
                 self.motion[0][i] += speed;
@@ -211,12 +245,7 @@ impl Impacts {
         for k in 0..count {
             let k = if backwards { count - 1 - k } else { k };
             let impulse = &mut self.impulses[k];
-            let normal = impulse.touch.normal;
-            let now: f64 = impulse
-                .touch
-                .nodes()
-                .map(|(i, w)| w * motion[i].dot(&normal))
-                .sum();
+            let now = impulse.along_normal(motion);
             let alone = now - impulse.added[part] * impulse.inverse;
             let [low, high] = impulse.range[part];
             let wanted = (alone.clamp(low, high) - alone) / impulse.inverse;
@@ -229,7 +258,7 @@ impl Impacts {
             };
             let change = allowed - impulse.added[part];
             impulse.added[part] = allowed;
-            for (i, w) in impulse.touch.nodes() {
+            for (i, w) in impulse.nodes() {
                 motion[i] += impulse.along * (w * mobility[i] * change);
             }
             largest = largest.max((change * impulse.inverse).abs());
@@ -254,14 +283,14 @@ impl Impacts {
         }
         // the way of a touch that opened too fast stays; the speed that it would stand for does not
         for impulse in self.impulses.iter().filter(|i| !i.touch.began) {
-            for (i, w) in impulse.touch.nodes() {
+            for (i, w) in impulse.nodes() {
                 let speed = impulse.along * (w * self.mobility[i] * impulse.added[0]);
                 past.x[i] -= before.to_lab(speed * step.gamma);
             }
         }
         if parts == 1 {
             for impulse in &self.impulses {
-                for (i, w) in impulse.touch.nodes() {
+                for (i, w) in impulse.nodes() {
                     let speed = impulse.touch.surplus * (w * self.mobility[i] * step.gamma);
                     past.x[i] -= before.to_lab(speed * step.gamma);
                 }
