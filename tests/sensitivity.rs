@@ -25,7 +25,7 @@ fn wound(turns: f64, speed: f64, others: &[(&str, &str)]) -> (Simulation, Inputs
         inputs.nozzle_position += 0.7e-3 * inputs.spindle_speed * STEP / std::f64::consts::TAU;
         sim.advance(inputs, STEP).unwrap();
     }
-    let tight = scene(&[("solver.step", "1e-5"), ("solver.tolerance", "1e-9")]);
+    let tight = scene(&[("solver.step", "1e-5"), ("solver.tolerance", "1e-8")]);
     let mut sim = Simulation::from_bytes(&tight, &sim.to_bytes().unwrap()).unwrap();
     sim.advance(inputs, STEP).unwrap();
     (sim, inputs)
