@@ -434,7 +434,7 @@ impl Coil {
             record.axial_sum = last.axial_sum;
             record.axial_count = last.axial_count;
         }
-        for kind in DefectKind::ALL {
+        for kind in DefectKind::MEASURED {
             let (value, limit, least) = self.criterion(kind, &station);
             let k = kind as usize;
             record.runs[k] = runs_before[k].next(value, limit);
@@ -469,6 +469,7 @@ impl Coil {
                 (1.0 - limits.overlap_axial) * d,
                 SHORT_RUN,
             ),
+            DefectKind::Slack | DefectKind::Break => (None, f64::INFINITY, 0.0),
         };
         (
             value.filter(|_| station.measured),

@@ -19,7 +19,7 @@ mod turn;
 
 pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode};
-pub use defect::{DefectFlags, DefectLimits, DefectPlace};
+pub use defect::{Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
 pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};

@@ -25,12 +25,16 @@ pub enum Verdict {
     Aligned,
     /// anything between
     Marginal,
+    /// the wire went slack on the way
+    Slack,
     /// stands off further than allowed
     Bulge,
     /// lies beside its place over a run of stations
     Gap,
     /// rides on its neighbour, or has changed places with it, at any station
     Overlap,
+    /// the wire broke
+    Break,
 }
 
 impl Verdict {
@@ -43,6 +47,25 @@ impl Verdict {
             Self::Bulge => "bulge",
             Self::Gap => "gap",
             Self::Overlap => "overlap",
+            Self::Slack => "slack",
+            Self::Break => "break",
+        }
+    }
+
+    /// Whether it names a defect.
+    pub fn is_defect(self) -> bool {
+        self >= Self::Slack
+    }
+}
+
+impl From<DefectKind> for Verdict {
+    fn from(kind: DefectKind) -> Self {
+        match kind {
+            DefectKind::Bulge => Self::Bulge,
+            DefectKind::Gap => Self::Gap,
+            DefectKind::Overlap => Self::Overlap,
+            DefectKind::Slack => Self::Slack,
+            DefectKind::Break => Self::Break,
         }
     }
 }
@@ -112,7 +135,7 @@ impl Coil {
         let mut has = [false; 3];
         for record in records {
             let station = &record.station;
-            for kind in DefectKind::ALL {
+            for kind in DefectKind::MEASURED {
                 let (value, limit, least) = self.criterion(kind, station);
                 let run = &mut runs[kind as usize];
                 *run = run.next(value, limit);

@@ -1,8 +1,8 @@
 //! The files that describe a run where it stands: at its end, or on the way.
 
 use super::{
-    CoreMesh, OutputError, Picture, render_png, write_core_vtp, write_stations, write_summary,
-    write_turns, write_vtp,
+    CoreMesh, OutputError, Picture, render_png, write_core_vtp, write_defects, write_stations,
+    write_summary, write_turns, write_vtp,
 };
 use crate::geometry::Surface;
 use crate::simulation::{Centreline, SimError, Simulation, Summary, core_surface};
@@ -81,8 +81,8 @@ impl Snapshot {
     }
 }
 
-/// Writes the results of a run into an existing folder: `summary.json`, and `turns.csv` and
-/// `stations.csv` of wire at rest.
+/// Writes the results of a run into an existing folder: `summary.json`, `defects.csv`, and
+/// `turns.csv` and `stations.csv` of wire at rest.
 ///
 /// With a `snapshot` also `coil.vtp`, `core.vtp` and `coil.png` of all wire. `wall_s` is the time
 /// computed so far, s.
@@ -98,6 +98,7 @@ pub fn write_results(
 ) -> Result<(), OutputError> {
     let summary = simulation.summary();
     let turns = write_turns(&directory.join("turns.csv"), &summary.turns);
+    let defects = write_defects(&directory.join("defects.csv"), &summary.defects);
     let real_time_factor = if wall_s > 0.0 {
         simulation.time() / wall_s
     } else {
@@ -118,6 +119,7 @@ pub fn write_results(
     });
     [
         turns,
+        defects,
         write_summary(&directory.join("summary.json"), &report),
         write_stations(
             &directory.join("stations.csv"),

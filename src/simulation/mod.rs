@@ -7,6 +7,7 @@ mod broken;
 mod coarsen;
 mod core_model;
 mod door;
+mod faults;
 mod freezing;
 mod io;
 mod motion_profile;

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -100,6 +100,9 @@ impl Simulation {
         self.coil.restore(saved.coil, far)?;
         if !saved.run.watch.fits(self.sys.state.rod.nodes()) {
             return Err("the watch does not go with the nodes");
+        }
+        if saved.run.faults.iter().any(|fault| fault.turn == 0) {
+            return Err("the wire failed before its first turn");
         }
         match (&mut self.stepper, saved.implicit) {
             (Stepper::Implicit(method), Some((next, statistics))) => {

@@ -255,6 +255,8 @@ impl Simulation {
             rest_depth: 0.0,
             broken: false,
             was_slack: false,
+            faults: Vec::new(),
+            slack_at: None,
             quiet: 0.0,
             farthest: 0.0,
             pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
