@@ -22,6 +22,7 @@ mod elements;
 mod error;
 mod feature;
 mod grid;
+mod level;
 mod mesh;
 mod shape;
 mod spline;

@@ -11,10 +11,12 @@
 
 mod coil;
 mod defect;
+mod passes;
 mod profile;
 mod runs;
 mod state;
 mod station;
+mod support;
 mod turn;
 
 pub(crate) use coil::SavedCoil;

@@ -178,11 +178,10 @@ impl Coil {
             .fold(0.0, |most, node| node.settled.plastic_strain.max(most))
     }
 
-    /// The worst verdict of the turns that have a neighbour, from the second on, each judged once
-    /// half of it has settled; [`Verdict::Unsettled`] before that.
+    /// The worst verdict of the turns, each judged once half of it has settled; [`Verdict::Unsettled`] before that.
     pub fn verdict(&self) -> Verdict {
         let turns = self.turns();
-        let judged = turns.iter().skip(1).filter(|turn| turn.settled >= 0.5);
+        let judged = turns.iter().filter(|turn| turn.settled >= 0.5);
         judged
             .map(|turn| turn.verdict)
             .max()

@@ -21,6 +21,8 @@ pub enum Verdict {
     /// nothing has come to rest where it could be measured
     #[default]
     Unsettled,
+    /// no defect, and no neighbour to judge most of the turn by
+    Single,
     /// gap within 0.10 d at 95 % of the stations, root mean square below 0.05 d, no defect
     Aligned,
     /// anything between
@@ -42,6 +44,7 @@ impl Verdict {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Unsettled => "unsettled",
+            Self::Single => "single",
             Self::Aligned => "aligned",
             Self::Marginal => "marginal",
             Self::Bulge => "bulge",
@@ -229,6 +232,8 @@ impl GapSums {
             Verdict::Gap
         } else if has[DefectKind::Bulge as usize] {
             Verdict::Bulge
+        } else if 2 * self.count < turn.stations {
+            Verdict::Single
         } else if aligned {
             Verdict::Aligned
         } else {

@@ -5,6 +5,7 @@ use super::{
     write_summary, write_turns, write_vtp,
 };
 use crate::geometry::Surface;
+use crate::scene::Core;
 use crate::simulation::{Centreline, SimError, Simulation, Summary, core_surface};
 use serde::Serialize;
 use std::path::Path;
@@ -55,7 +56,8 @@ impl Snapshot {
     pub fn write(&self, stem: &Path, simulation: &Simulation) -> Result<(), OutputError> {
         let wire = simulation.centreline();
         let radius = simulation.scene().wire.radius();
-        let geometry = self.write_geometry(&stem.with_extension("vtp"), &wire, radius);
+        let flanges = matches!(simulation.scene().core, Core::Mesh { .. });
+        let geometry = self.write_geometry(&stem.with_extension("vtp"), &wire, radius, flanges);
         let picture = Picture::new(Some(self.mesh()), &wire, radius);
         let picture = render_png(&stem.with_extension("png"), &picture);
         geometry.and(picture)
@@ -66,8 +68,12 @@ impl Snapshot {
         path: &Path,
         wire: &Centreline,
         radius: f64,
+        flanges: bool,
     ) -> Result<(), OutputError> {
-        let height = |p| self.core.nearest(p).distance - radius;
+        let height = |p| match flanges {
+            true => self.core.height_over_flank(p) - radius,
+            false => self.core.nearest(p).distance - radius,
+        };
         let heights: Vec<f64> = wire.points.iter().map(|&p| height(p)).collect();
         write_vtp(path, wire, radius, Some(&heights))
     }

@@ -21,6 +21,7 @@ mod sensitivity;
 mod start;
 mod stepping;
 mod summary;
+mod traverse;
 
 pub use crate::geometry::{Surface, TriMesh};
 pub use crate::integrate::SolverStatistics;

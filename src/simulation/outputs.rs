@@ -3,6 +3,7 @@
 use super::{Centreline, Simulation};
 use crate::math::{Spin, V3, turn_about_y};
 use crate::measure::{Coil, SettledNode};
+use crate::scene::Core;
 
 impl Simulation {
     pub(super) fn wire_tension(&self) -> f64 {
@@ -21,19 +22,6 @@ impl Simulation {
         let t = self.wire_tension();
         self.run.outputs.wire_tension_min = t;
         self.run.outputs.wire_tension_max = t;
-    }
-
-    /// A new pass begins once the nozzle has come back by half a diameter; less is jitter.
-    pub(super) fn follow_traverse(&mut self) {
-        let y = self.sys.state.support[1].point.y;
-        let (extreme, sign) = self.run.pass;
-        let advance = (y - extreme) * sign;
-        if advance > 0.0 {
-            self.run.pass.0 = y;
-        } else if advance < -0.5 * self.scene.wire.diameter {
-            self.run.pass = (y, -sign);
-            self.coil.set_traverse(-sign);
-        }
     }
 
     /// The settled wire and, taken as if it were settled, the live wire up to lift-off.
@@ -55,9 +43,15 @@ impl Simulation {
     }
 
     pub(super) fn settled(&self, position: V3, arc: f64, plastic_strain: f64) -> SettledNode {
-        let height = match self.sys.distance_to_core(position) {
-            d if d.is_finite() => d - self.scene.wire.radius(),
-            _ => 0.0,
+        let height = match (&self.scene.core, &self.sys.model.core) {
+            // Only a mesh can have flanges.
+            (Core::Mesh { .. }, Some(core)) => core.height_over_flank(position),
+            _ => self.sys.distance_to_core(position),
+        };
+        let height = if height.is_finite() {
+            height - self.scene.wire.radius()
+        } else {
+            0.0
         };
         SettledNode {
             position,

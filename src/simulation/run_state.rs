@@ -1,6 +1,7 @@
 //! What a run remembers besides wire, coil and method.
 
 use super::freezing::{FreezePolicy, Watch};
+use super::traverse::Traverse;
 use crate::measure::Defect;
 use crate::signals::{Event, Outputs};
 use serde::{Deserialize, Serialize};
@@ -58,6 +59,5 @@ pub(super) struct RunState {
     pub(super) quiet: f64,
     /// farthest that the spindle has been from where it started, rad
     pub(super) farthest: f64,
-    /// farthest nozzle position of this pass, m, and its direction along y
-    pub(super) pass: (f64, f64),
+    pub(super) traverse: Traverse,
 }

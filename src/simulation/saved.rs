@@ -101,6 +101,9 @@ impl Simulation {
         if !saved.run.watch.fits(self.sys.state.rod.nodes()) {
             return Err("the watch does not go with the nodes");
         }
+        if !saved.run.traverse.fits(self.coil.passes()) {
+            return Err("the way of the nozzle does not go with the passes");
+        }
         if saved.run.faults.iter().any(|fault| fault.turn == 0) {
             return Err("the wire failed before its first turn");
         }

@@ -4,6 +4,7 @@ use super::core_model::{core_shape, core_surface};
 use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
 use super::run_state::{Instant, RunState};
+use super::traverse::Traverse;
 use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec, LineWire};
@@ -259,7 +260,7 @@ impl Simulation {
             slack_at: None,
             quiet: 0.0,
             farthest: 0.0,
-            pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
+            traverse: Traverse::new(inputs.nozzle_position),
         };
         let mut sim = Self {
             scene: scene.clone(),
