@@ -1,8 +1,9 @@
 //! The settled wire, node by node, and what is measured on it.
 
 use super::defect::{DefectKind, DefectLimits};
-use super::passes::{Pass, Passes};
+use super::passes::Passes;
 use super::profile::Profile;
+use super::row::Row;
 use super::runs::{Run, stations_for};
 use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
@@ -73,7 +74,6 @@ pub(crate) struct Node {
     pub(crate) angle: f64,
     /// largest winding angle up to here, rad
     pub(crate) reach: f64,
-    pass: u32,
     pub(crate) y_min: f64,
     pub(crate) y_max: f64,
     pub(crate) height_max: f64,
@@ -84,6 +84,7 @@ pub(crate) struct Node {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Record {
     pub(crate) station: Station,
+    pub(crate) row: Row,
     pub(crate) runs: [Run; 3],
     /// defects so far, by kind
     pub(crate) raised: [u32; 3],
@@ -249,7 +250,6 @@ impl Coil {
             polar,
             angle,
             reach: from_reach.max(angle),
-            pass: self.passes.at(angle).0,
             y_min,
             y_max,
             height_max,
@@ -351,7 +351,7 @@ impl Coil {
             (position.y / self.spec.diameter).floor() as i64,
         );
         let (number, pass) = self.passes.at(angle);
-        let support = self.support(bucket, position.y, height, number);
+        let (row, support) = self.row_and_support(pass, angle, bucket, position.y, height);
         let bulge = height - support.level;
         // A drawn loop lies close on wire that itself stands off the core as it would alone.
         let at_rest = |profile: &Profile| match support.is_wire {
@@ -359,7 +359,11 @@ impl Coil {
             false => profile.at(angle),
         };
         let (layer, other_layer) = self.layer_after(support.layer);
-        let (neighbour, window) = self.neighbour(angle, position, number, pass);
+        let (neighbour, window) = self.neighbour(angle, position, row);
+        // The nozzle turns here, and the wire leaves its row.
+        let lifts =
+            row.is_over_in(pass) && bulge > self.spec.limits.overlap_height * self.spec.diameter;
+        let steps_up = lifts || self.passes.ends_within(angle, STEP_UP);
         let mut station = Station {
             angle,
             position,
@@ -376,11 +380,11 @@ impl Coil {
             overlap_depth: 0.0,
             layer,
             pass: number,
-            measured: self.is_free_of_clamp(angle) && !self.passes.ends_within(angle, STEP_UP),
+            measured: self.is_free_of_clamp(angle) && !steps_up,
         };
         station.overlap_depth = self.overlap_depth(&station);
         let beneath = self.buckets.insert(bucket, index);
-        let mut record = self.judge(station, window, bucket, beneath);
+        let mut record = self.judge(station, row, window, bucket, beneath);
         record.other_layer = other_layer;
         self.records.push(record);
     }
@@ -404,10 +408,10 @@ impl Coil {
         }
     }
 
-    /// Nearest centreline point of the same pass one turn back, and where its search began.
+    /// Nearest centreline point of the same row one turn back, and where its search began.
     ///
-    /// There is none where the wire one turn back belongs to another pass, even where the beginning of this one is near.
-    fn neighbour(&self, angle: f64, p: V3, number: u32, pass: Pass) -> (Option<Neighbour>, usize) {
+    /// There is none where the wire one turn back belongs to another row, even where the beginning of this one is near.
+    fn neighbour(&self, angle: f64, p: V3, row: Row) -> (Option<Neighbour>, usize) {
         let target = angle - TAU;
         // The window only moves on; what is behind it need not be looked at again.
         let mut first = self.records.last().map_or(0, |record| record.window);
@@ -419,7 +423,7 @@ impl Coil {
         {
             first += 1;
         }
-        if target < pass.from {
+        if target < row.from {
             return (None, first);
         }
         let mut nearest: Option<(f64, V3)> = None;
@@ -428,7 +432,7 @@ impl Coil {
             if pair[0].reach > target + NEIGHBOUR_WINDOW {
                 break;
             }
-            if pair[1].pass != number {
+            if pair[1].angle < row.from {
                 continue;
             }
             let q = closest_point_segment(p, pair[0].settled.position, pair[1].settled.position);
@@ -439,7 +443,7 @@ impl Coil {
         }
         let neighbour = nearest.map(|(distance2, q)| Neighbour {
             gap: distance2.sqrt() - self.spec.diameter,
-            axial: pass.sense * (p.y - q.y),
+            axial: row.sense * (p.y - q.y),
         });
         (neighbour, first)
     }
@@ -464,6 +468,7 @@ impl Coil {
     fn judge(
         &self,
         station: Station,
+        row: Row,
         window: usize,
         bucket: (usize, i64),
         beneath: Option<usize>,
@@ -471,6 +476,7 @@ impl Coil {
         let index = self.records.len();
         let mut record = Record {
             station,
+            row,
             runs: [Run::default(); 3],
             raised: [0; 3],
             last_defect: None,

@@ -13,6 +13,7 @@ mod coil;
 mod defect;
 mod passes;
 mod profile;
+mod row;
 mod runs;
 mod state;
 mod station;

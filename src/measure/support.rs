@@ -1,12 +1,14 @@
-//! What a wire was laid over: the core, or wire of earlier passes below it.
+//! What a wire was laid over: the core, or wire of earlier rows below it.
 
 use super::coil::{Coil, Record};
+use super::passes::Pass;
+use super::row::Row;
 
-/// Axial distance up to which wire of an earlier pass lies below a wire, diameters: cos 30 degrees, the largest at
+/// Axial distance up to which wire of an earlier row lies below a wire, diameters: cos 30 degrees, the largest at
 /// which wire that rests on it stands half a diameter above it.
 const BELOW: f64 = 0.866_025_403_784_438_6;
 
-/// The same for wire of the same pass, which a wire can only have climbed on, diameters.
+/// The same for wire of the same row, which a wire can only have climbed on, diameters.
 const CLIMBED: f64 = 0.5;
 
 /// Rise over a wire from which on another lies in the layer above it, diameters: half of a wire on a wire. In the
@@ -25,11 +27,32 @@ pub(crate) struct Support {
 }
 
 impl Coil {
-    /// What lies below wire at `y` (m) and `height` over the core (m), of this pass, among the stations of one
-    /// polar angle. `bucket` is that of the wire.
+    /// Row of the next station, and what lies below it: wire at `angle` (rad), `y` (m) and `height` over the core
+    /// (m) in this pass. `bucket` is that of the wire.
+    pub(crate) fn row_and_support(
+        &self,
+        pass: Pass,
+        angle: f64,
+        bucket: (usize, i64),
+        y: f64,
+        height: f64,
+    ) -> (Row, Support) {
+        let last = self.records.last();
+        let row = last.map_or_else(|| Row::first(pass, y), |last| last.row);
+        // Once the nozzle has turned, wire of the row itself may be what the next one lies on.
+        let least = row.number + u32::from(row.is_over_in(pass));
+        let climbed = row.is_over_in(pass)
+            && self.support(least, bucket, y, height).layer
+                > last.map_or(1, |last| last.station.layer);
+        let row = row.next(pass, angle, y, climbed, self.spec.diameter);
+        (row, self.support(row.number, bucket, y, height))
+    }
+
+    /// What lies below wire at `y` (m) and `height` over the core (m) among the stations of one polar angle. Only
+    /// rows before number `row` carry it; on others it has climbed.
     ///
     /// Down is the direction of the wire's height: what lies beside the wire does not carry it.
-    pub(crate) fn support(&self, bucket: (usize, i64), y: f64, height: f64, pass: u32) -> Support {
+    fn support(&self, row: u32, bucket: (usize, i64), y: f64, height: f64) -> Support {
         let d = self.spec.diameter;
         let mut support = Support {
             level: 0.0,
@@ -41,12 +64,13 @@ impl Coil {
             while let Some(index) = next {
                 let Record {
                     station: lower,
+                    row: of,
                     beneath,
                     ..
                 } = &self.records[index];
                 next = *beneath;
                 let (aside, rise) = ((y - lower.position.y).abs() / d, height - lower.height);
-                let earlier = lower.pass < pass;
+                let earlier = of.number < row;
                 if aside > if earlier { BELOW } else { CLIMBED } {
                     continue;
                 }

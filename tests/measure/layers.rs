@@ -91,10 +91,11 @@ fn going_back_by_a_pitch_once_is_no_gap() {
     coil.begin_pass(4.0 * TAU, 1.0);
     assert!(!coil.flags().gap, "{:?}", coil.defects());
     let without = |s: &&coilwind::measure::Station| s.neighbour.is_none();
-    // The first turn of each of three passes.
-    assert_eq!(
-        coil.stations().filter(without).count(),
-        3 * STATIONS_PER_TURN
+    // The first turn of each of three rows, which begin up to half a wire's way after the nozzle has turned.
+    let count = coil.stations().filter(without).count();
+    assert!(
+        (3 * STATIONS_PER_TURN - 50..=3 * STATIONS_PER_TURN).contains(&count),
+        "{count}"
     );
 }
 
