@@ -117,6 +117,8 @@ pub enum EventKind {
     Slack,
     /// tension rose above the wire's strength
     Break,
+    /// the coil is judged otherwise than perhaps meant
+    Judgement,
     /// the solver had to go back and take shorter steps
     Solver,
 }

@@ -19,7 +19,7 @@ impl Message {
         let (status, category) = match event.kind {
             EventKind::Turn | EventKind::Defect => (Status::Ok, Category::Events),
             // The wire is still computed, but a machine would have stopped.
-            EventKind::Slack | EventKind::Break | EventKind::Solver => {
+            EventKind::Slack | EventKind::Break | EventKind::Solver | EventKind::Judgement => {
                 (Status::Warning, Category::Warning)
             }
         };

@@ -19,10 +19,13 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
     for warning in &warnings {
         eprintln!("warning: {warning}");
     }
-    let simulation = Simulation::new(&scene).map_err(|reason| Failure::Start {
+    let mut simulation = Simulation::new(&scene).map_err(|reason| Failure::Start {
         scene: args.scene.scene.clone(),
         reason,
     })?;
+    for event in simulation.drain_events() {
+        eprintln!("warning: {}", event.text);
+    }
     let seconds = simulation.motion_profile().end();
     print(&format!(
         "{}: valid; {} wire of {} mm at {} N, {} turns at {} rad/s in {seconds:.4} s\n",

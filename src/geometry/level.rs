@@ -19,20 +19,7 @@ pub(crate) struct LevelNearest {
 impl TriMesh {
     /// The nearest point of a triangle at the level of `p`, core frame, m; none where it lies wholly above or below.
     pub(crate) fn closest_at_level(&self, triangle: u32, p: V3) -> Option<LevelNearest> {
-        let corner = self.triangles[triangle as usize].map(|v| self.vertices[v as usize]);
-        let mut ends = [V3::zeros(); 2];
-        let mut found = 0;
-        for k in 0..3 {
-            let (a, b) = (corner[k], corner[(k + 1) % 3]);
-            // A corner right at the level counts as above it, so that every triangle has two ends or none.
-            if (a.y < p.y) != (b.y < p.y) {
-                ends[found.min(1)] = a + (b - a) * ((p.y - a.y) / (b.y - a.y));
-                found += 1;
-            }
-        }
-        if found != 2 {
-            return None;
-        }
+        let ends = self.section_of(triangle, p.y)?;
         let level = |v: V3| V3::new(v.x, 0.0, v.z);
         let (start, along, from) = (level(ends[0]), level(ends[1] - ends[0]), level(p - ends[0]));
         let length_sq = along.norm_squared();
@@ -46,6 +33,30 @@ impl TriMesh {
             distance_sq: away.norm_squared(),
             away,
         })
+    }
+
+    /// Both ends of the section of a triangle at `y`, m; none where it lies wholly above or below.
+    fn section_of(&self, triangle: u32, y: f64) -> Option<[V3; 2]> {
+        let corner = self.triangles[triangle as usize].map(|v| self.vertices[v as usize]);
+        let mut ends = [V3::zeros(); 2];
+        let mut found = 0;
+        for k in 0..3 {
+            let (a, b) = (corner[k], corner[(k + 1) % 3]);
+            // A corner right at the level counts as above it, so that every triangle has two ends or none.
+            if (a.y < y) != (b.y < y) {
+                ends[found] = a + (b - a) * ((y - a.y) / (b.y - a.y));
+                found += 1;
+            }
+        }
+        (found == 2).then_some(ends)
+    }
+
+    /// Corners of the section of the mesh at `y`, m, each as often as triangles meet there.
+    pub(crate) fn section_points(&self, y: f64) -> Vec<V3> {
+        let all = 0..self.len() as u32;
+        all.filter_map(|t| self.section_of(t, y))
+            .flatten()
+            .collect()
     }
 
     /// By asking every triangle, the nearest at the level of `p`: the slow twin of the search.

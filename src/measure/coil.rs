@@ -1,6 +1,6 @@
 //! The settled wire, node by node, and what is measured on it.
 
-use super::defect::{DefectKind, DefectLimits};
+use super::defect::{BulgeLimit, DefectKind, DefectLimits};
 use super::passes::Passes;
 use super::profile::Profile;
 use super::row::Row;
@@ -27,6 +27,9 @@ const STEP_UP: f64 = 0.25 * TAU;
 /// A station is taken this far before its angle, rad: rounding may leave the clamp's own node a hair before its own angle.
 const HAIR: f64 = 1e-9;
 
+/// Height that is a bulge where no quasi-static height is known, diameters: it takes the room of another wire.
+const FALLBACK_BULGE: f64 = 1.0;
+
 /// What the measures need to know of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoilSpec {
@@ -34,8 +37,8 @@ pub struct CoilSpec {
     pub diameter: f64,
     /// limits of the defect flags
     pub limits: DefectLimits,
-    /// quasi-static height of this wire at this tension; without one the bulge is reported but
-    /// only judged against `limits.bulge_absolute`
+    /// quasi-static height of this wire at this tension; without one the bulge is judged against
+    /// `limits.bulge_absolute`, or a diameter where that is 0
     pub profile: Option<Profile>,
     /// polar angle of the clamp, rad
     pub start_angle: f64,
@@ -151,6 +154,31 @@ impl Coil {
         }
         self.spec.limits = limits;
         self.measure_again(0);
+    }
+
+    /// Replaces the quasi-static height and measures all settled wire again (linear in the wire).
+    pub fn set_profile(&mut self, profile: Option<Profile>) {
+        if self.spec.profile != profile {
+            self.spec.profile = profile;
+            self.measure_again(0);
+        }
+    }
+
+    /// What bulges are judged by.
+    pub fn bulge_limit(&self) -> BulgeLimit {
+        let (d, limits) = (self.spec.diameter, &self.spec.limits);
+        match &self.spec.profile {
+            _ if limits.bulge_absolute > 0.0 => BulgeLimit::Absolute {
+                limit_m: limits.bulge_absolute,
+            },
+            Some(profile) => BulgeLimit::OverRest {
+                limit_m: limits.bulge_excess * d,
+                highest_m: profile.heights().iter().copied().fold(0.0, f64::max),
+            },
+            None => BulgeLimit::Fallback {
+                limit_m: FALLBACK_BULGE * d,
+            },
+        }
     }
 
     /// Replaces the direction of winding, +1 or -1 as in [`CoilSpec::direction`], and measures all settled wire
@@ -518,6 +546,9 @@ impl Coil {
         let (value, limit, least) = match kind {
             DefectKind::Bulge if limits.bulge_absolute > 0.0 => {
                 (Some(station.bulge), limits.bulge_absolute, SHORT_RUN)
+            }
+            DefectKind::Bulge if self.spec.profile.is_none() => {
+                (Some(station.bulge), FALLBACK_BULGE * d, SHORT_RUN)
             }
             DefectKind::Bulge => (station.bulge_excess, limits.bulge_excess * d, SHORT_RUN),
             DefectKind::Gap => (

@@ -21,6 +21,29 @@ pub struct DefectLimits {
     pub skip_angle: f64,
 }
 
+/// What a bulge is judged by.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "by", rename_all = "snake_case")]
+pub enum BulgeLimit {
+    /// height over the quasi-static height
+    OverRest {
+        /// allowed over it, m
+        limit_m: f64,
+        /// largest quasi-static height, m
+        highest_m: f64,
+    },
+    /// the absolute limit of the scene
+    Absolute {
+        /// allowed height, m
+        limit_m: f64,
+    },
+    /// an absolute limit of one diameter, since there is no quasi-static height
+    Fallback {
+        /// allowed height, m
+        limit_m: f64,
+    },
+}
+
 /// Kinds of defect: the first three are measured on settled wire, the others are faults of the wire itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

@@ -22,7 +22,7 @@ mod turn;
 
 pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode};
-pub use defect::{Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
+pub use defect::{BulgeLimit, Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
 pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};

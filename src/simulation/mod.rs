@@ -10,6 +10,7 @@ mod door;
 mod faults;
 mod freezing;
 mod io;
+mod judgement;
 mod motion_profile;
 mod outputs;
 mod quasi_static;

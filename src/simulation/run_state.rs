@@ -60,4 +60,6 @@ pub(super) struct RunState {
     /// farthest that the spindle has been from where it started, rad
     pub(super) farthest: f64,
     pub(super) traverse: Traverse,
+    /// tension that the quasi-static height is for, N
+    pub(super) yardstick_tension: f64,
 }

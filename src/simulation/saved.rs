@@ -97,6 +97,7 @@ impl Simulation {
     fn take_over(&mut self, saved: Saved) -> Result<(), &'static str> {
         self.sys.restore(saved.sys.into_owned())?;
         let far = self.sys.far().ok_or("there is no core")?;
+        self.take_yardstick_for(saved.run.yardstick_tension)?;
         self.coil.restore(saved.coil, far)?;
         if !saved.run.watch.fits(self.sys.state.rod.nodes()) {
             return Err("the watch does not go with the nodes");

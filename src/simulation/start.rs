@@ -19,7 +19,7 @@ use crate::math::{Spin, V3, scaled};
 use crate::measure::{Coil, CoilSpec};
 use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene};
-use crate::signals::{Inputs, Outputs};
+use crate::signals::{EventKind, Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
 use std::sync::Arc;
 
@@ -150,7 +150,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,
         limits: scene.defects,
-        profile: super::quasi_static::profile(scene, &surface),
+        profile: super::quasi_static::profile(scene, &surface, yardstick_tension(scene, inputs)),
         start_angle: polar_angle(clamp_core),
         direction,
         traverse: scene.traverse.per_turn * direction,
@@ -158,6 +158,15 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         corner_angle: corner_angle(&scene.core),
     });
     Ok((sys, coil, angle0))
+}
+
+/// Tension that the quasi-static height is for, N: that at the start, or that of the scene where none is given yet.
+fn yardstick_tension(scene: &Scene, inputs: &Inputs) -> f64 {
+    if inputs.tension_setpoint > 0.0 {
+        inputs.tension_setpoint
+    } else {
+        scene.tensioner.tension
+    }
 }
 
 /// Polar angle of the corner between the faces on +x and +z, rad.
@@ -261,6 +270,7 @@ impl Simulation {
             quiet: 0.0,
             farthest: 0.0,
             traverse: Traverse::new(inputs.nozzle_position),
+            yardstick_tension: yardstick_tension(scene, &inputs),
         };
         let mut sim = Self {
             scene: scene.clone(),
@@ -277,6 +287,9 @@ impl Simulation {
         sim.sys.place_supports();
         sim.reset_extremes();
         sim.update_outputs();
+        if let Some(text) = sim.doubt_about_bulge() {
+            sim.report(EventKind::Judgement, text);
+        }
         Ok(sim)
     }
 

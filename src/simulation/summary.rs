@@ -1,7 +1,7 @@
 //! The numbers that describe a whole run.
 
 use super::Simulation;
-use crate::measure::{Defect, TurnMeasures};
+use crate::measure::{BulgeLimit, Defect, TurnMeasures};
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
 
@@ -36,6 +36,8 @@ pub struct Summary {
     pub fed_length_m: f64,
     /// verdict over all settled turns, and over what the wire met
     pub verdict: String,
+    /// what bulges were judged by
+    pub bulge_judged: BulgeLimit,
     /// every defect found, in the order of their times
     pub defects: Vec<Defect>,
     /// energy balance
@@ -153,6 +155,7 @@ impl Simulation {
             turns_settled: self.run.outputs.turns_settled,
             fed_length_m: self.run.outputs.fed_length,
             verdict: self.verdict().as_str().to_owned(),
+            bulge_judged: self.bulge_limit(),
             defects: self.defects(),
             energy: self.energy(),
             penetration: PenetrationSummary {

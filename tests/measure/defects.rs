@@ -2,7 +2,8 @@
 
 use crate::coils::{D, limits, on_cylinder, spec, wound};
 use coilwind::measure::{
-    CoilSpec, DefectFlags, DefectLimits, Profile, STATION_STEP, STATIONS_PER_TURN, Verdict,
+    BulgeLimit, CoilSpec, DefectFlags, DefectLimits, Profile, STATION_STEP, STATIONS_PER_TURN,
+    Verdict,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -170,8 +171,22 @@ fn bulge_is_judged_against_the_quasi_static_height() {
         },
         &nodes(1.5),
     );
-    assert!(!no_yardstick.flags().bulge);
     assert_eq!(no_yardstick.turns()[1].bulge_excess_max, None);
+    let diameter = BulgeLimit::Fallback { limit_m: D };
+    assert_eq!(no_yardstick.bulge_limit(), diameter);
+    assert!(
+        no_yardstick.flags().bulge,
+        "2.25 d of clear air were aligned for want of a yardstick"
+    );
+    assert_eq!(no_yardstick.turns()[0].verdict, Verdict::Bulge);
+    let low = wound(
+        CoilSpec {
+            profile: None,
+            ..spec()
+        },
+        &nodes(0.6),
+    );
+    assert!(!low.flags().bulge, "0.9 d are within the fallback limit");
     let absolute = DefectLimits {
         bulge_absolute: 1e-3,
         ..limits()
