@@ -15,7 +15,7 @@ pub(super) struct CheckArgs {
 
 /// Builds the scene and the wire at rest; warnings go to standard error.
 pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
-    let (scene, warnings) = args.scene.settings()?.build_with_warnings()?;
+    let (_, scene, warnings) = args.scene.build()?;
     for warning in &warnings {
         eprintln!("warning: {warning}");
     }

@@ -62,8 +62,7 @@ fn positive(text: &str) -> Result<f64, String> {
 
 /// Runs a scene.
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
-    let settings = args.scene.settings()?;
-    let (scene, warnings) = settings.build_with_warnings()?;
+    let (settings, scene, warnings) = args.scene.build()?;
     if !args.quiet {
         warnings
             .iter()

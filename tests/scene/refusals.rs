@@ -171,9 +171,8 @@ fn impossible_scenes_say_what_would_do() {
         (
             "[spindle]\nturns = 0.1",
             &[
-                "default scene",
-                "spindle.ramp_turns",
-                "at most spindle.turns, 0.1",
+                "test.toml:2: spindle.turns",
+                "at least spindle.ramp_turns, 0.25",
             ],
         ),
         (
