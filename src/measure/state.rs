@@ -178,12 +178,14 @@ impl Coil {
             .fold(0.0, |most, node| node.settled.plastic_strain.max(most))
     }
 
-    /// The worst verdict of the turns, each judged once half of it has settled; [`Verdict::Unsettled`] before that.
+    /// The worst verdict of the turns of which half has settled, and of every defect; [`Verdict::Unsettled`] before that.
     pub fn verdict(&self) -> Verdict {
         let turns = self.turns();
         let judged = turns.iter().filter(|turn| turn.settled >= 0.5);
+        let defects = self.defects();
         judged
             .map(|turn| turn.verdict)
+            .chain(defects.iter().map(|defect| defect.kind.into()))
             .max()
             .unwrap_or(Verdict::Unsettled)
     }

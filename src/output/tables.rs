@@ -9,6 +9,8 @@ use std::path::Path;
 #[derive(Serialize)]
 struct TurnRow {
     turn: u32,
+    layer: u32,
+    turn_in_layer: u32,
     verdict: Verdict,
     settled: f64,
     stations: u32,
@@ -106,6 +108,8 @@ impl From<&TurnMeasures> for TurnRow {
         let [px, pz, nx, nz] = turn.bulge_faces;
         Self {
             turn: turn.turn,
+            layer: turn.layer,
+            turn_in_layer: turn.turn_in_layer,
             verdict: turn.verdict,
             settled: turn.settled,
             stations: turn.stations,
@@ -155,7 +159,7 @@ impl From<(usize, &Station)> for StationRow {
 }
 
 /// Headers, for a table without rows; with rows they come from the fields (a test compares).
-const TURN_HEADER: &str = "turn,verdict,settled,stations,gap_mean,gap_rms,gap_max,gap_over,\
+const TURN_HEADER: &str = "turn,layer,turn_in_layer,verdict,settled,stations,gap_mean,gap_rms,gap_max,gap_over,\
     gap_run,axial_mean,bulge_max,bulge_excess_max,bulge_face_px,bulge_face_pz,bulge_face_nx,\
     bulge_face_nz,overlap_max,layer_max";
 const DEFECT_HEADER: &str = "kind,turn,layer,angle_deg,time_s,size_m,size_d";

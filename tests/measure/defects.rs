@@ -42,6 +42,35 @@ fn a_made_gap_is_found_where_it_is() {
     assert!((coil.worst().gap_width - 0.4 * D).abs() < 2e-3 * D);
 }
 
+/// A run over the border of two turns raised the flag, and neither turn had the verdict.
+#[test]
+fn a_defect_over_the_border_of_two_turns_belongs_to_one() {
+    let aside = |angle: f64| {
+        let off = (2.0 * TAU - 0.4..2.0 * TAU + 0.4).contains(&angle);
+        D * angle / TAU + if off { 0.4 * D } else { 0.0 }
+    };
+    let all = DefectLimits {
+        skip_angle: 0.0,
+        ..limits()
+    };
+    let spec = CoilSpec {
+        limits: all,
+        ..spec()
+    };
+    let coil = wound(spec, &on_cylinder(2.8, 1.0, |angle| (aside(angle), 0.0)));
+    let [gap] = &coil.defects()[..] else {
+        panic!("one gap: {:?}", coil.defects());
+    };
+    assert_eq!(coil.defect_count(), 1);
+    let verdicts: Vec<_> = coil.turns().iter().map(|turn| turn.verdict).collect();
+    assert_eq!(
+        verdicts[gap.turn as usize - 1],
+        Verdict::Gap,
+        "{verdicts:?}"
+    );
+    assert_eq!(coil.verdict(), Verdict::Gap);
+}
+
 #[test]
 fn a_gap_shorter_than_its_fraction_is_no_defect() {
     let aside = |angle: f64| {

@@ -74,6 +74,8 @@ fn layers_in_grooves_have_neither_gaps_nor_flicker() {
             Verdict::Aligned
         };
         assert_eq!(turn.verdict, expected, "{turn:?}");
+        let place = (k as u32 / TURNS as u32 + 1, k as u32 % TURNS as u32 + 1);
+        assert_eq!((turn.layer, turn.turn_in_layer), place, "{turn:?}");
     }
 }
 

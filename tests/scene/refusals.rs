@@ -202,7 +202,11 @@ fn impossible_scenes_say_what_would_do() {
         ),
         (
             "[wire]\nyield_stress_MPa = 300",
-            &["wire.flow_stress", "moment cap", "at least 3e8 Pa"],
+            &[
+                "wire.flow_stress",
+                "moment cap",
+                "at most wire.flow_stress, 2.2e8 Pa",
+            ],
         ),
         (
             "[wire]\nmoment_cap = 1e-3",
