@@ -208,7 +208,10 @@ fn run_leaves_its_files() {
         "{stations}"
     );
     let turns = std::fs::read_to_string(out.join("turns.csv")).unwrap();
-    assert!(turns.starts_with("turn,verdict,settled,"), "{turns}");
+    assert!(
+        turns.starts_with("turn,layer,turn_in_layer,verdict,"),
+        "{turns}"
+    );
 
     // The scene it left runs to the same history.
     let again = folder.path().join("again");
