@@ -119,6 +119,8 @@ pub enum EventKind {
     Break,
     /// the coil is judged otherwise than perhaps meant
     Judgement,
+    /// what a reader of the verdict should know
+    Note,
     /// the solver had to go back and take shorter steps
     Solver,
 }

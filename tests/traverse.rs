@@ -131,3 +131,28 @@ fn unwinding_and_winding_again_is_one_pass() {
     assert_eq!(sim.coil().passes(), 1);
     assert_eq!(without_neighbour(sim.coil()), STATIONS_PER_TURN);
 }
+
+/// Wire wound at 1 N where the scene has 15 N stood off by several diameters and was aligned.
+#[test]
+fn wire_wound_looser_than_the_scene_has_it_bulges() {
+    let mut sim = copper();
+    let loose = Inputs {
+        tension_setpoint: 1.0,
+        ..sim.inputs()
+    };
+    sim.set_start(loose).expect("a start");
+    let mut turned = 0.0;
+    while turned < 2.5 {
+        let speed = 30.0;
+        turned += speed * STEP / TAU;
+        let inputs = Inputs {
+            spindle_speed: speed,
+            nozzle_position: PITCH * turned,
+            tension_setpoint: 1.0,
+        };
+        sim.advance(inputs, STEP).expect("the run goes on");
+    }
+    assert_eq!(sim.verdict(), Verdict::Bulge, "{:?}", sim.defects());
+    let most = sim.turns().iter().map(|t| t.bulge_max).fold(0.0, f64::max);
+    assert!(most > 1.4e-3, "{most}");
+}

@@ -2,6 +2,7 @@
 
 use super::{Simulation, quasi_static};
 use crate::measure::BulgeLimit;
+use crate::signals::EventKind;
 
 /// Largest tension of a yardstick that a saved state may ask for, N: that of the input.
 const MOST_TENSION: f64 = 1e4;
@@ -28,18 +29,24 @@ impl Simulation {
     }
 
     /// What the reader of a verdict has to know about bulges, if anything.
-    pub(super) fn doubt_about_bulge(&self) -> Option<String> {
+    pub(super) fn doubt_about_bulge(&self) -> Option<(EventKind, String)> {
         let (d, tension) = (self.scene.wire.diameter, self.run.yardstick_tension);
         let limit = self.coil.bulge_limit();
         match limit {
-            BulgeLimit::Fallback { limit_m } => Some(format!(
-                "the height of this wire at rest on this core is not known, so wire bulges that stands more than {:.3} mm (one diameter) off; set defects.bulge_absolute to judge by another height",
-                1e3 * limit_m
+            BulgeLimit::Fallback { limit_m } => Some((
+                EventKind::Judgement,
+                format!(
+                    "the height of this wire at rest on this core is not known, so wire bulges that stands more than {:.3} mm (one diameter) off; set defects.bulge_absolute to judge by another height",
+                    1e3 * limit_m
+                ),
             )),
-            BulgeLimit::OverRest { highest_m, .. } if highest_m > d => Some(format!(
-                "this wire stands up to {:.3} mm ({:.1} d) off this core at rest under {tension} N, which is no bulge to the verdict; raise the tension, or set defects.bulge_absolute",
-                1e3 * highest_m,
-                highest_m / d
+            BulgeLimit::OverRest { highest_m, .. } if highest_m > d => Some((
+                EventKind::Note,
+                format!(
+                    "this wire stands up to {:.3} mm ({:.1} d) off this core at rest under {tension} N, which is no bulge to the verdict; raise the tension, or set defects.bulge_absolute",
+                    1e3 * highest_m,
+                    highest_m / d
+                ),
             )),
             _ => None,
         }

@@ -19,7 +19,7 @@ use crate::math::{Spin, V3, scaled};
 use crate::measure::{Coil, CoilSpec};
 use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene};
-use crate::signals::{EventKind, Inputs, Outputs};
+use crate::signals::{Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
 use std::sync::Arc;
 
@@ -160,13 +160,10 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     Ok((sys, coil, angle0))
 }
 
-/// Tension that the quasi-static height is for, N: that at the start, or that of the scene where none is given yet.
+/// Tension that the quasi-static height is for, N: that of the scene, or that at the start where it is more. Wire that is
+/// wound looser than the scene has it stands off more than it should.
 fn yardstick_tension(scene: &Scene, inputs: &Inputs) -> f64 {
-    if inputs.tension_setpoint > 0.0 {
-        inputs.tension_setpoint
-    } else {
-        scene.tensioner.tension
-    }
+    inputs.tension_setpoint.max(scene.tensioner.tension)
 }
 
 /// Polar angle of the corner between the faces on +x and +z, rad.
@@ -287,8 +284,8 @@ impl Simulation {
         sim.sys.place_supports();
         sim.reset_extremes();
         sim.update_outputs();
-        if let Some(text) = sim.doubt_about_bulge() {
-            sim.report(EventKind::Judgement, text);
+        if let Some((kind, text)) = sim.doubt_about_bulge() {
+            sim.report(kind, text);
         }
         Ok(sim)
     }
