@@ -418,11 +418,9 @@ mod tests {
         };
         let drawn = highest(draw_tight(one, 15.0).expect("drawn"));
         let stiffened = highest(stiffened(other, &section, 15.0).expect("stiffened"));
-        // A hundredth of the tension, which is how well it is met, is as much of the height.
-        assert!(
-            (drawn / stiffened - 1.0).abs() < 0.02,
-            "{drawn} {stiffened}"
-        );
+        // A tenth of the excess that is a bulge: corners have few nodes, which lie elsewhere.
+        let apart = (drawn - stiffened).abs();
+        assert!(apart < 0.05 * section.diameter, "{drawn} {stiffened}");
     }
 
     #[test]
