@@ -21,6 +21,7 @@ mod bvh;
 mod elements;
 mod error;
 mod feature;
+mod flank;
 mod grid;
 mod level;
 mod mesh;

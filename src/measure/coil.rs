@@ -228,7 +228,7 @@ impl Coil {
         self.nodes.len() - count
     }
 
-    /// Takes the nodes from this one on back and settles them anew.
+    /// Takes the nodes from this one on back and settles them again.
     fn measure_again(&mut self, first: usize) {
         let nodes: Vec<SettledNode> = (first..self.nodes.len())
             .map(|node| self.nodes[node].settled)

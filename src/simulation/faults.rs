@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// Turn of the core within which wire that is slack again is still slack, rad.
 ///
 /// A free span that goes slack swings, and every swing lets the tension fall to zero again. A quarter of a turn
-/// lies between the corners of a core, each of which may jerk the wire anew.
+/// lies between the corners of a core, each of which may jerk the wire again.
 const SAME_SLACK: f64 = FRAC_PI_2;
 
 impl Simulation {

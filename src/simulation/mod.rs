@@ -12,6 +12,7 @@ mod freezing;
 mod io;
 mod judgement;
 mod motion_profile;
+mod nozzle_way;
 mod outputs;
 mod quasi_static;
 mod rates;

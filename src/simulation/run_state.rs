@@ -1,7 +1,7 @@
 //! What a run remembers besides wire, coil and method.
 
 use super::freezing::{FreezePolicy, Watch};
-use super::traverse::Traverse;
+use super::nozzle_way::Traverse;
 use crate::measure::Defect;
 use crate::signals::{Event, Outputs};
 use serde::{Deserialize, Serialize};

@@ -3,8 +3,8 @@
 use super::core_model::{core_shape, core_surface};
 use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
+use super::nozzle_way::Traverse;
 use super::run_state::{Instant, RunState};
-use super::traverse::Traverse;
 use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec, LineWire};
