@@ -117,6 +117,10 @@ pub enum EventKind {
     Slack,
     /// tension rose above the wire's strength
     Break,
+    /// the coil is judged otherwise than perhaps meant
+    Judgement,
+    /// what a reader of the verdict should know
+    Note,
     /// the solver had to go back and take shorter steps
     Solver,
 }

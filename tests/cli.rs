@@ -208,7 +208,10 @@ fn run_leaves_its_files() {
         "{stations}"
     );
     let turns = std::fs::read_to_string(out.join("turns.csv")).unwrap();
-    assert!(turns.starts_with("turn,verdict,settled,"), "{turns}");
+    assert!(
+        turns.starts_with("turn,layer,turn_in_layer,verdict,"),
+        "{turns}"
+    );
 
     // The scene it left runs to the same history.
     let again = folder.path().join("again");
@@ -299,6 +302,62 @@ fn defects_fail_only_where_asked() {
     let output = finished(strict.arg("--fail-on-defect"), 1);
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("break"), "{said}");
+}
+
+/// A broken wire ended with status done, verdict aligned and no word.
+#[test]
+fn a_broken_wire_is_no_success() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("in.csv");
+    std::fs::write(&csv, "time,tension_setpoint\n0,60\n0.001,300\n").unwrap();
+    let out = folder.path().join("out");
+    let csv = csv.to_str().unwrap();
+    let inputs = [
+        "--inputs",
+        csv,
+        "--step",
+        "1e-4",
+        "--set",
+        "tensioner.mass=0",
+    ];
+    let output = finished(&mut short_run(&out, &inputs), 0);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains(": break;"), "{said}");
+    assert!(said.contains("the wire broke in turn 1"), "{said}");
+    let summary = json(&out.join("summary.json"));
+    assert_eq!(summary["verdict"], "break");
+    let defect = &summary["defects"][0];
+    assert_eq!(
+        (&defect["kind"], &defect["turn"]),
+        (&"break".into(), &1.into())
+    );
+    assert!(defect["time_s"].as_f64().unwrap() > 0.0 && defect["angle_deg"].is_number());
+    assert_eq!(defect["place_m"].as_array().unwrap().len(), 3);
+    let table = std::fs::read_to_string(out.join("defects.csv")).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines[0], "kind,turn,layer,angle_deg,time_s,size_m,size_d");
+    assert!(
+        lines.len() == 2 && lines[1].starts_with("break,1,1,"),
+        "{table}"
+    );
+}
+
+/// Slack that had passed by the end of the run let `--fail-on-defect` exit with 0.
+#[test]
+fn slack_that_has_passed_fails_where_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("in.csv");
+    let rows = "0,15\n0.001,15\n0.002,0\n0.004,0\n0.005,15\n0.02,15\n";
+    std::fs::write(&csv, format!("time,tension_setpoint\n{rows}")).unwrap();
+    let out = folder.path().join("out");
+    let csv = csv.to_str().unwrap();
+    let inputs = ["--inputs", csv, "--step", "1e-4", "--fail-on-defect"];
+    let output = finished(&mut short_run(&out, &inputs), 1);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("slack 1; verdict: slack"), "{said}");
+    let history = read_csv(&out.join("history.csv"));
+    assert_eq!(history["defect_slack"].last(), Some(&0.0), "it has passed");
+    assert_eq!(history["defect_count"].last(), Some(&1.0));
 }
 
 #[cfg(unix)]

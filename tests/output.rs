@@ -410,7 +410,7 @@ fn tables_without_rows_still_have_their_header() {
     assert!(
         std::fs::read_to_string(&path)
             .unwrap()
-            .starts_with("turn,verdict,settled,")
+            .starts_with("turn,layer,turn_in_layer,verdict,")
     );
     write_stations(&path, [].iter()).unwrap();
     assert!(

@@ -3,6 +3,7 @@
 mod common;
 
 use coilwind::math::V3;
+use coilwind::measure::{DefectKind, Verdict};
 use coilwind::settings::SceneSettings;
 use coilwind::signals::{Event, EventKind, Inputs, Outputs};
 use coilwind::simulation::Simulation;
@@ -265,6 +266,49 @@ fn slack_wire_is_told_and_taken_up_again() {
     m.ramp(100.0, 0.02);
     m.turn(0.5, 100.0);
     assert!(m.out().turns_wound > 1.0);
+}
+
+/// Slack that had passed left neither a defect nor a trace in the summary.
+#[test]
+fn slack_that_has_passed_stays_a_defect() {
+    let mut m = Machine::new(&[]);
+    m.ramp(100.0, 0.02);
+    m.turn(0.5, 100.0);
+    assert_eq!((m.out().defect_count, m.sim.defects().len()), (0, 0));
+    let before = m.sim.time();
+    m.inputs.tension_setpoint = 0.5;
+    m.ramp(0.0, 5e-4);
+    m.wait(40);
+    m.inputs.tension_setpoint = 15.0;
+    m.wait(200);
+    m.ramp(100.0, 0.02);
+    m.turn(1.0, 100.0);
+    assert!(!m.out().defect_slack, "it has passed");
+    let [slack] = &m.sim.defects()[..] else {
+        panic!("one spell of slack: {:?}", m.sim.defects());
+    };
+    assert_eq!(
+        (slack.kind, slack.turn, slack.layer),
+        (DefectKind::Slack, 1, 1)
+    );
+    assert_eq!(m.count(EventKind::Slack), 1);
+    assert!(slack.time_s > before && slack.until_s > Some(slack.time_s));
+    // Wire last lay on the corner between +x and +z, at 68 degrees.
+    assert!((60.0..75.0).contains(&slack.angle_deg), "{slack:?}");
+    let radius = libm::hypot(slack.place_m[0], slack.place_m[2]);
+    assert!((6e-3..20e-3).contains(&radius), "on the core: {slack:?}");
+    assert_eq!(m.out().defect_count, 1);
+    assert_eq!(m.out().defect_turn, 1.0);
+    assert!((m.out().defect_angle - slack.angle_deg.to_radians()).abs() < 1e-12);
+    let summary = m.sim.summary();
+    assert_eq!(
+        (summary.verdict.as_str(), &summary.defects[0]),
+        ("slack", slack)
+    );
+    assert_eq!(m.sim.turns()[0].verdict, Verdict::Slack);
+    let bytes = m.sim.to_bytes().expect("a state");
+    let again = Simulation::from_bytes(m.sim.scene(), &bytes).expect("the state is read");
+    assert_eq!(again.defects(), m.sim.defects());
 }
 
 #[test]

@@ -17,9 +17,9 @@ impl Message {
     /// Returns the message about an event of the simulation.
     pub(crate) fn of_event(event: &Event) -> Self {
         let (status, category) = match event.kind {
-            EventKind::Turn | EventKind::Defect => (Status::Ok, Category::Events),
+            EventKind::Turn | EventKind::Defect | EventKind::Note => (Status::Ok, Category::Events),
             // The wire is still computed, but a machine would have stopped.
-            EventKind::Slack | EventKind::Break | EventKind::Solver => {
+            EventKind::Slack | EventKind::Break | EventKind::Solver | EventKind::Judgement => {
                 (Status::Warning, Category::Warning)
             }
         };

@@ -15,14 +15,17 @@ pub(super) struct CheckArgs {
 
 /// Builds the scene and the wire at rest; warnings go to standard error.
 pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
-    let (scene, warnings) = args.scene.settings()?.build_with_warnings()?;
+    let (_, scene, warnings) = args.scene.build()?;
     for warning in &warnings {
         eprintln!("warning: {warning}");
     }
-    let simulation = Simulation::new(&scene).map_err(|reason| Failure::Start {
+    let mut simulation = Simulation::new(&scene).map_err(|reason| Failure::Start {
         scene: args.scene.scene.clone(),
         reason,
     })?;
+    for event in simulation.drain_events() {
+        eprintln!("warning: {}", event.text);
+    }
     let seconds = simulation.motion_profile().end();
     print(&format!(
         "{}: valid; {} wire of {} mm at {} N, {} turns at {} rad/s in {seconds:.4} s\n",

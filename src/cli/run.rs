@@ -7,10 +7,11 @@ use super::scene::SceneArgs;
 use super::signals::{Grid, Signals};
 use super::terminal::{print, stop_flag};
 use clap::Args;
+use coilwind::measure::{Defect, DefectKind, Verdict};
 use coilwind::output::{Ending, History, OutputError, Snapshot, write_results};
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
-use coilwind::signals::{Inputs, Outputs};
+use coilwind::signals::Inputs;
 use coilwind::simulation::{SimError, Simulation};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -61,8 +62,7 @@ fn positive(text: &str) -> Result<f64, String> {
 
 /// Runs a scene.
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
-    let settings = args.scene.settings()?;
-    let (scene, warnings) = settings.build_with_warnings()?;
+    let (settings, scene, warnings) = args.scene.build()?;
     if !args.quiet {
         warnings
             .iter()
@@ -145,17 +145,27 @@ fn prepare(args: &RunArgs, settings: &SceneSettings) -> Result<PathBuf, Failure>
     Ok(directory)
 }
 
+/// Defects that the closing words name one by one; the others stand in `defects.csv`.
+const NAMED: usize = 5;
+
 /// The verdict, and exit code 1 where defects were asked to fail.
 fn report(args: &RunArgs, simulation: &Simulation, directory: &str) -> Result<(), Failure> {
     let outputs = simulation.outputs();
+    let (verdict, defects) = (simulation.verdict(), simulation.defects());
     if !args.quiet {
-        let verdict = simulation.summary().verdict;
         print(&format!(
             "{:.2} turns wound, {:.2} settled in {:.6} s: {verdict}; results in {directory}\n",
             outputs.turns_wound,
             outputs.turns_settled,
             simulation.time(),
         ))?;
+        for defect in defects.iter().take(NAMED) {
+            print(&format!("{}\n", in_words(defect)))?;
+        }
+        if defects.len() > NAMED {
+            let more = defects.len() - NAMED;
+            print(&format!("and {more} more: see {directory}/defects.csv\n"))?;
+        }
         for d in &simulation.scene().skipped {
             print(&format!(
                 "{} = {} ({}): {}\n",
@@ -163,30 +173,41 @@ fn report(args: &RunArgs, simulation: &Simulation, directory: &str) -> Result<()
             ))?;
         }
     }
-    let found = flags(outputs);
-    if args.fail_on_defect && (outputs.defect_count > 0 || !found.is_empty()) {
-        let what = format!(
-            "{} found, flags now: {}",
-            outputs.defect_count,
-            found.join(", ")
-        );
-        return Err(Failure::Defect { what });
+    if args.fail_on_defect && (!defects.is_empty() || verdict.is_defect()) {
+        return Err(Failure::Defect {
+            what: counted(verdict, &defects),
+        });
     }
     Ok(())
 }
 
-/// Names of the flags that are up.
-fn flags(outputs: &Outputs) -> Vec<&'static str> {
-    [
-        (outputs.defect_bulge, "bulge"),
-        (outputs.defect_gap, "gap"),
-        (outputs.defect_overlap, "overlap"),
-        (outputs.defect_break, "break"),
-        (outputs.defect_slack, "slack"),
-    ]
-    .into_iter()
-    .filter_map(|(up, name)| up.then_some(name))
-    .collect()
+/// A defect as the closing words have it.
+fn in_words(defect: &Defect) -> String {
+    let place = format!(
+        "in turn {} (layer {}) at {:.0} deg, t = {:.6} s",
+        defect.turn, defect.layer, defect.angle_deg, defect.time_s
+    );
+    match (defect.kind, defect.size_m, defect.size_d) {
+        (DefectKind::Break, ..) => format!("the wire broke {place}; nothing was wound after that"),
+        (DefectKind::Slack, ..) => format!("the wire went slack {place}"),
+        (kind, Some(m), Some(d)) => format!("{kind} of {:.3} mm ({d:.2} d) {place}", 1e3 * m),
+        (kind, ..) => format!("{kind} {place}"),
+    }
+}
+
+/// How many defects of each kind there are, in words.
+fn counted(verdict: Verdict, defects: &[Defect]) -> String {
+    let kinds = DefectKind::ALL.into_iter().filter_map(|kind| {
+        let count = defects.iter().filter(|d| d.kind == kind).count();
+        (count > 0).then(|| format!("{kind} {count}"))
+    });
+    let kinds: Vec<String> = kinds.collect();
+    let found = if kinds.is_empty() {
+        "none over a whole run of stations".to_owned()
+    } else {
+        kinds.join(", ")
+    };
+    format!("{found}; verdict: {verdict}")
 }
 
 /// What moves the machine.

@@ -1,7 +1,7 @@
 //! The scene that a command takes.
 
 use clap::Args;
-use coilwind::scene::{SceneError, assignment};
+use coilwind::scene::{Scene, SceneError, Warning, assignment};
 use coilwind::settings::SceneSettings;
 
 /// A scene and what to change in it.
@@ -15,12 +15,8 @@ pub(super) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// Defaults, then the scene, then every `--set` in its order.
-    pub(super) fn settings(&self) -> Result<SceneSettings, SceneError> {
-        let mut settings = SceneSettings::load(&self.scene)?;
-        for (name, value) in &self.set {
-            settings.set_text(name, value)?;
-        }
-        Ok(settings)
+    /// Defaults, then the scene, then every `--set` in its order; and the scene that this makes.
+    pub(super) fn build(&self) -> Result<(SceneSettings, Scene, Vec<Warning>), SceneError> {
+        SceneSettings::load_and_build(&self.scene, &self.set)
     }
 }

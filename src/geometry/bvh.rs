@@ -5,6 +5,7 @@
 //! vector types stay inside this file.
 
 use super::feature::Nearest;
+use super::level::LevelNearest;
 use super::mesh::TriMesh;
 use crate::math::V3;
 use bvh::aabb::{Aabb, Bounded};
@@ -88,6 +89,14 @@ impl Bvh {
         nearest_walk(&self.nodes, mesh, p, 0, &mut best);
         mesh.nearest_on(p, best.1)
     }
+
+    /// The triangle whose section at the level of `p` (core frame, m) is nearest, the first of several; none above and
+    /// below the mesh.
+    pub(crate) fn nearest_at_level(&self, mesh: &TriMesh, p: V3) -> Option<(LevelNearest, u32)> {
+        let mut best = None;
+        level_walk(&self.nodes, mesh, p, 0, &mut best);
+        best
+    }
 }
 
 impl TriMesh {
@@ -163,6 +172,43 @@ fn nearest_walk(nodes: &[Node], mesh: &TriMesh, p: V3, node: usize, best: &mut (
             for (distance_sq, child) in order {
                 if distance_sq <= best.0 {
                     nearest_walk(nodes, mesh, p, child, best);
+                }
+            }
+        }
+    }
+}
+
+/// Branch and bound as in [`nearest_walk`], among what crosses the level of `p`.
+fn level_walk(
+    nodes: &[Node],
+    mesh: &TriMesh,
+    p: V3,
+    node: usize,
+    best: &mut Option<(LevelNearest, u32)>,
+) {
+    match &nodes[node] {
+        Node::Leaf { shape_index, .. } => {
+            let triangle = *shape_index as u32;
+            let nearer = |found: &LevelNearest| match best {
+                Some((least, first)) => (found.distance_sq, triangle) < (least.distance_sq, *first),
+                None => true,
+            };
+            if let Some(found) = mesh.closest_at_level(triangle, p).filter(nearer) {
+                *best = Some((found, triangle));
+            }
+        }
+        Node::Node {
+            child_l_index,
+            child_l_aabb,
+            child_r_index,
+            child_r_aabb,
+            ..
+        } => {
+            for (bounds, child) in [(child_l_aabb, child_l_index), (child_r_aabb, child_r_index)] {
+                let crosses = bounds.min.y <= p.y && p.y <= bounds.max.y;
+                let least = best.map_or(f64::INFINITY, |(found, _)| found.distance_sq);
+                if crosses && box_distance_sq(bounds, p) <= least {
+                    level_walk(nodes, mesh, p, *child, best);
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use super::bvh::Bvh;
 use super::feature::Nearest;
+use super::level::LevelNearest;
 use super::mesh::{self, TriMesh};
 use super::touch::Touch;
 use crate::math::V3;
@@ -72,5 +73,10 @@ impl Surface {
     /// Signed distance, closest point and normal of a point `p`, core frame, m.
     pub fn nearest(&self, p: V3) -> Nearest {
         self.bvh.nearest(&self.mesh, p)
+    }
+
+    /// The section at the level of `p` (core frame, m) that is nearest, and its triangle.
+    pub(crate) fn nearest_at_level(&self, p: V3) -> Option<(LevelNearest, u32)> {
+        self.bvh.nearest_at_level(&self.mesh, p)
     }
 }

@@ -1,7 +1,9 @@
 //! The settled wire, node by node, and what is measured on it.
 
-use super::defect::{DefectKind, DefectLimits};
+use super::defect::{BulgeLimit, DefectKind, DefectLimits};
+use super::passes::Passes;
 use super::profile::Profile;
+use super::row::Row;
 use super::runs::{Run, stations_for};
 use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
@@ -18,6 +20,16 @@ use std::f64::consts::TAU;
 /// 2 mm corner of the 12 x 30 mm core, the shortest place for a wire to ride up, over 11.
 const SHORT_RUN: f64 = 8.0 / STATIONS_PER_TURN as f64;
 
+/// Last part of a pass, in which its wire may climb to the next layer, rad: a quarter of a turn. Crossovers take a
+/// twelfth to a sixth of a turn, and wire lands face by face.
+const STEP_UP: f64 = 0.25 * TAU;
+
+/// A station is taken this far before its angle, rad: rounding may leave the clamp's own node a hair before its own angle.
+const HAIR: f64 = 1e-9;
+
+/// Height that is a bulge where no quasi-static height is known, diameters: it takes the room of another wire.
+const FALLBACK_BULGE: f64 = 1.0;
+
 /// What the measures need to know of the scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CoilSpec {
@@ -25,14 +37,15 @@ pub struct CoilSpec {
     pub diameter: f64,
     /// limits of the defect flags
     pub limits: DefectLimits,
-    /// quasi-static height of this wire at this tension; without one the bulge is reported but
-    /// only judged against `limits.bulge_absolute`
+    /// quasi-static height of this wire at this tension; without one the bulge is judged against
+    /// `limits.bulge_absolute`, or a diameter where that is 0
     pub profile: Option<Profile>,
     /// polar angle of the clamp, rad
     pub start_angle: f64,
-    /// +1 where wire runs towards growing polar angle (positive spindle speed), else -1
+    /// +1 where wire runs towards growing polar angle (positive spindle speed), else -1; see
+    /// [`Coil::set_direction`]
     pub direction: f64,
-    /// sign of the wire's advance along y at the start; 0 counts as +1
+    /// direction of the first pass along y, see [`Coil::set_first_sense`]; 0 counts as +1
     pub traverse: f64,
     /// unstretched length at the clamp, m
     pub clamp_arc: f64,
@@ -47,7 +60,7 @@ pub struct SettledNode {
     pub position: V3,
     /// unstretched length from the clamp, m
     pub arc: f64,
-    /// signed distance of the centreline from the core, minus the radius, m
+    /// signed distance of the centreline from the flank of the core (not from a flange), minus the radius, m
     pub height: f64,
     /// plastic stretch
     pub plastic_strain: f64,
@@ -64,8 +77,6 @@ pub(crate) struct Node {
     pub(crate) angle: f64,
     /// largest winding angle up to here, rad
     pub(crate) reach: f64,
-    sense: f64,
-    pass: u32,
     pub(crate) y_min: f64,
     pub(crate) y_max: f64,
     pub(crate) height_max: f64,
@@ -76,6 +87,7 @@ pub(crate) struct Node {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Record {
     pub(crate) station: Station,
+    pub(crate) row: Row,
     pub(crate) runs: [Run; 3],
     /// defects so far, by kind
     pub(crate) raised: [u32; 3],
@@ -89,7 +101,9 @@ pub(crate) struct Record {
     /// bucket of wire at this polar angle and place along y
     bucket: (usize, i64),
     /// the station that was in the bucket before
-    beneath: Option<usize>,
+    pub(crate) beneath: Option<usize>,
+    /// for how many stations what lies below has said another layer than the station's
+    other_layer: u32,
 }
 
 /// Measures of the settled wire, kept up to date node by node.
@@ -103,27 +117,28 @@ pub struct Coil {
     /// a turn to the chunk
     pub(crate) records: PersistentVec<Record, STATIONS_PER_TURN>,
     /// latest station by polar station and `floor(y / d)`
-    buckets: BTreeMap<(usize, i64), usize>,
-    traverse: f64,
+    pub(crate) buckets: BTreeMap<(usize, i64), usize>,
+    passes: Passes,
 }
 
-/// Settled nodes in a saved state, each with the direction of the traverse at its time.
+/// Settled nodes in a saved state, and what they were laid by.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct SavedCoil {
-    nodes: Vec<(SettledNode, f64)>,
-    traverse: f64,
+    nodes: Vec<SettledNode>,
+    passes: Passes,
+    direction: f64,
 }
 
 impl Coil {
     /// A coil without wire.
     pub fn new(spec: CoilSpec) -> Self {
-        let traverse = if spec.traverse < 0.0 { -1.0 } else { 1.0 };
+        let passes = Passes::new(spec.traverse);
         Self {
             spec,
             nodes: PersistentVec::default(),
             records: PersistentVec::default(),
             buckets: BTreeMap::new(),
-            traverse,
+            passes,
         }
     }
 
@@ -137,25 +152,90 @@ impl Coil {
         if self.spec.limits == limits {
             return;
         }
-        let nodes = std::mem::take(&mut self.nodes);
-        let traverse = self.traverse;
         self.spec.limits = limits;
-        self.records.truncate(0);
-        self.buckets.clear();
-        for node in nodes.iter() {
-            self.traverse = node.sense;
-            self.settle(node.settled);
-        }
-        self.traverse = traverse;
+        self.measure_again(0);
     }
 
-    /// Direction in which wire settled from now on advances along y; 0 changes nothing.
+    /// Replaces the quasi-static height and measures all settled wire again (linear in the wire).
+    pub fn set_profile(&mut self, profile: Option<Profile>) {
+        if self.spec.profile != profile {
+            self.spec.profile = profile;
+            self.measure_again(0);
+        }
+    }
+
+    /// What bulges are judged by.
+    pub fn bulge_limit(&self) -> BulgeLimit {
+        let (d, limits) = (self.spec.diameter, &self.spec.limits);
+        match &self.spec.profile {
+            _ if limits.bulge_absolute > 0.0 => BulgeLimit::Absolute {
+                limit_m: limits.bulge_absolute,
+            },
+            Some(profile) => BulgeLimit::OverRest {
+                limit_m: limits.bulge_excess * d,
+                highest_m: profile.heights().iter().copied().fold(0.0, f64::max),
+            },
+            None => BulgeLimit::Fallback {
+                limit_m: FALLBACK_BULGE * d,
+            },
+        }
+    }
+
+    /// Replaces the direction of winding, +1 or -1 as in [`CoilSpec::direction`], and measures all settled wire
+    /// again (linear in the wire).
+    pub fn set_direction(&mut self, direction: f64) {
+        if self.spec.direction != direction {
+            self.spec.direction = direction;
+            self.measure_again(0);
+        }
+    }
+
+    /// Replaces the direction of the first pass along y, +1 or -1, while there is no other pass.
+    pub fn set_first_sense(&mut self, sense: f64) {
+        if self.passes.count() == 1 && self.passes.last().sense != sense {
+            self.passes = Passes::new(sense);
+            self.measure_again(0);
+        }
+    }
+
+    /// From this winding angle (rad) on, wire was laid while the nozzle went this way along y, +1 or -1.
     ///
-    /// A change of sign starts a new pass: its wire is meant to lie on that of the pass before and
-    /// has no neighbour in it.
-    pub fn set_traverse(&mut self, sign: f64) {
-        if sign != 0.0 {
-            self.traverse = sign.signum();
+    /// Such wire is meant to lie on that of the passes before, and its first turn has no neighbour. The last quarter of a
+    /// turn before it may climb and is not judged. Settled wire from there on is measured again.
+    pub fn begin_pass(&mut self, from: f64, sense: f64) {
+        self.passes.push(from, sense);
+        self.measure_again(self.first_node_from(self.passes.last().from - STEP_UP));
+    }
+
+    /// Takes the last pass back, unless it is the first: its wire belongs to the pass before.
+    pub fn take_back_pass(&mut self) {
+        if let Some(pass) = self.passes.pop() {
+            self.measure_again(self.first_node_from(pass.from - STEP_UP));
+        }
+    }
+
+    /// How many passes there are.
+    pub fn passes(&self) -> usize {
+        self.passes.count()
+    }
+
+    /// First node by which wire has reached a winding angle, rad; a hair before it, as a station may be taken there.
+    fn first_node_from(&self, angle: f64) -> usize {
+        let beyond = self.nodes.iter().rev();
+        let count = beyond
+            .take_while(|node| node.reach >= angle - 2.0 * HAIR)
+            .count();
+        self.nodes.len() - count
+    }
+
+    /// Takes the nodes from this one on back and settles them again.
+    fn measure_again(&mut self, first: usize) {
+        let nodes: Vec<SettledNode> = (first..self.nodes.len())
+            .map(|node| self.nodes[node].settled)
+            .collect();
+        self.unsettle(nodes.len());
+        for node in nodes {
+            self.settle(node);
         }
     }
 
@@ -187,27 +267,23 @@ impl Coil {
             });
         let angle = from_angle + self.spec.direction * wrap_to_pi(polar - from_polar);
         let (mut y_min, mut y_max) = (settled.position.y, settled.position.y);
-        let (mut height_max, mut pass) = (settled.height, 1);
+        let mut height_max = settled.height;
         if let Some(last) = self.nodes.last() {
             y_min = y_min.min(last.y_min);
             y_max = y_max.max(last.y_max);
             height_max = height_max.max(last.height_max);
-            pass = last.pass + u32::from(last.sense != self.traverse);
         }
         self.nodes.push(Node {
             settled,
             polar,
             angle,
             reach: from_reach.max(angle),
-            sense: self.traverse,
-            pass,
             y_min,
             y_max,
             height_max,
             stations_before: self.records.len(),
         });
-        // Rounding may leave the clamp's own node a hair before its own angle.
-        while self.records.len() as f64 * STATION_STEP <= angle + 1e-9 {
+        while self.records.len() as f64 * STATION_STEP <= angle + HAIR {
             self.add_station();
         }
     }
@@ -215,8 +291,9 @@ impl Coil {
     /// The part of this coil that a saved state holds; everything else is computed from it.
     pub(crate) fn saved(&self) -> SavedCoil {
         SavedCoil {
-            nodes: self.nodes.iter().map(|n| (n.settled, n.sense)).collect(),
-            traverse: self.traverse,
+            nodes: self.nodes.iter().map(|n| n.settled).collect(),
+            passes: self.passes.clone(),
+            direction: self.spec.direction,
         }
     }
 
@@ -227,14 +304,17 @@ impl Coil {
     /// origin.
     pub(crate) fn restore(&mut self, saved: SavedCoil, far: f64) -> Result<(), &'static str> {
         let mut fresh = Self::new(self.spec.clone());
-        for (node, sense) in saved.nodes {
+        if saved.direction.abs() != 1.0 || !saved.passes.is_sound() {
+            return Err("wire was laid in no direction");
+        }
+        fresh.spec.direction = saved.direction;
+        fresh.passes = saved.passes;
+        for node in saved.nodes {
             if !node.position.iter().all(|x| x.abs() < far) {
                 return Err("settled wire is nowhere near the core");
             }
-            fresh.traverse = sense;
             fresh.settle(node);
         }
-        fresh.traverse = saved.traverse;
         *self = fresh;
         Ok(())
     }
@@ -298,8 +378,20 @@ impl Coil {
             index % STATIONS_PER_TURN,
             (position.y / self.spec.diameter).floor() as i64,
         );
-        let (layer, bulge) = self.layer_and_bulge(bucket, position.y, height, end.pass);
-        let (neighbour, window) = self.neighbour(angle, position, end.sense, end.pass);
+        let (number, pass) = self.passes.at(angle);
+        let (row, support) = self.row_and_support(pass, angle, bucket, position.y, height);
+        let bulge = height - support.level;
+        // A drawn loop lies close on wire that itself stands off the core as it would alone.
+        let at_rest = |profile: &Profile| match support.is_wire {
+            true => 0.0,
+            false => profile.at(angle),
+        };
+        let (layer, other_layer) = self.layer_after(support.layer);
+        let (neighbour, window) = self.neighbour(angle, position, row);
+        // The nozzle turns here, and the wire leaves its row.
+        let lifts =
+            row.is_over_in(pass) && bulge > self.spec.limits.overlap_height * self.spec.diameter;
+        let steps_up = lifts || self.passes.ends_within(angle, STEP_UP);
         let mut station = Station {
             angle,
             position,
@@ -311,16 +403,17 @@ impl Coil {
                 .spec
                 .profile
                 .as_ref()
-                .map(|profile| bulge - profile.at(angle)),
+                .map(|profile| bulge - at_rest(profile)),
             neighbour,
             overlap_depth: 0.0,
             layer,
-            pass: end.pass,
-            measured: self.is_free_of_clamp(angle),
+            pass: number,
+            measured: self.is_free_of_clamp(angle) && !steps_up,
         };
         station.overlap_depth = self.overlap_depth(&station);
         let beneath = self.buckets.insert(bucket, index);
-        let record = self.judge(station, window, bucket, beneath);
+        let mut record = self.judge(station, row, window, bucket, beneath);
+        record.other_layer = other_layer;
         self.records.push(record);
     }
 
@@ -331,33 +424,22 @@ impl Coil {
         within >= self.spec.limits.skip_angle || angle >= 2.0 * TAU - 1e-9
     }
 
-    /// Geometric layer, and clear distance to what this pass should lie on.
-    fn layer_and_bulge(&self, bucket: (usize, i64), y: f64, height: f64, pass: u32) -> (u32, f64) {
-        let d = self.spec.diameter;
-        let (mut layer, mut bulge) = (1, height);
-        for bin in bucket.1 - 2..=bucket.1 + 2 {
-            let mut next = self.buckets.get(&(bucket.0, bin)).copied();
-            while let Some(index) = next {
-                let Record {
-                    station: lower,
-                    beneath,
-                    ..
-                } = &self.records[index];
-                let (dy, rise) = (y - lower.position.y, height - lower.height);
-                if dy.abs() <= 0.5 * d && rise >= 0.5 * d {
-                    layer = layer.max(lower.layer + 1);
-                }
-                if lower.pass < pass && dy.abs() < 1.5 * d {
-                    bulge = bulge.min((dy * dy + rise * rise).sqrt() - d);
-                }
-                next = *beneath;
-            }
+    /// Layer of the next station where wire lies `below` it as it does, and for how many stations that has said
+    /// otherwise: a layer changes once it has for as many as a defect needs.
+    fn layer_after(&self, below: u32) -> (u32, u32) {
+        match self.records.last() {
+            Some(last) if last.station.layer != below => match last.other_layer + 1 {
+                count if count < stations_for(SHORT_RUN) => (last.station.layer, count),
+                _ => (below, 0),
+            },
+            _ => (below, 0),
         }
-        (layer, bulge)
     }
 
-    /// Nearest centreline point of the same pass one turn back, and where its search began.
-    fn neighbour(&self, angle: f64, p: V3, sense: f64, pass: u32) -> (Option<Neighbour>, usize) {
+    /// Nearest centreline point of the same row one turn back, and where its search began.
+    ///
+    /// There is none where the wire one turn back belongs to another row, even where the beginning of this one is near.
+    fn neighbour(&self, angle: f64, p: V3, row: Row) -> (Option<Neighbour>, usize) {
         let target = angle - TAU;
         // The window only moves on; what is behind it need not be looked at again.
         let mut first = self.records.last().map_or(0, |record| record.window);
@@ -369,13 +451,16 @@ impl Coil {
         {
             first += 1;
         }
+        if target < row.from {
+            return (None, first);
+        }
         let mut nearest: Option<(f64, V3)> = None;
         for node in first + 1..self.nodes.len() {
             let pair = [&self.nodes[node - 1], &self.nodes[node]];
             if pair[0].reach > target + NEIGHBOUR_WINDOW {
                 break;
             }
-            if pair[1].pass != pass {
+            if pair[1].angle < row.from {
                 continue;
             }
             let q = closest_point_segment(p, pair[0].settled.position, pair[1].settled.position);
@@ -386,12 +471,13 @@ impl Coil {
         }
         let neighbour = nearest.map(|(distance2, q)| Neighbour {
             gap: distance2.sqrt() - self.spec.diameter,
-            axial: sense * (p.y - q.y),
+            axial: row.sense * (p.y - q.y),
         });
         (neighbour, first)
     }
 
-    /// Diameter minus axial distance where the wire overlaps its neighbour, else 0, m.
+    /// Diameter minus axial distance where the wire overlaps its neighbour, else 0, m; a diameter where it has changed
+    /// places with it.
     fn overlap_depth(&self, station: &Station) -> f64 {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let Some(Neighbour { axial, .. }) = station.neighbour else {
@@ -400,7 +486,7 @@ impl Coil {
         let stands_on =
             axial < limits.overlap_axial * d && station.bulge > limits.overlap_height * d;
         if stands_on || axial < 0.0 {
-            d - axial
+            (d - axial).min(d)
         } else {
             0.0
         }
@@ -410,6 +496,7 @@ impl Coil {
     fn judge(
         &self,
         station: Station,
+        row: Row,
         window: usize,
         bucket: (usize, i64),
         beneath: Option<usize>,
@@ -417,6 +504,7 @@ impl Coil {
         let index = self.records.len();
         let mut record = Record {
             station,
+            row,
             runs: [Run::default(); 3],
             raised: [0; 3],
             last_defect: None,
@@ -425,6 +513,7 @@ impl Coil {
             window,
             bucket,
             beneath,
+            other_layer: 0,
         };
         let mut runs_before = [Run::default(); 3];
         if let Some(last) = self.records.last() {
@@ -434,7 +523,7 @@ impl Coil {
             record.axial_sum = last.axial_sum;
             record.axial_count = last.axial_count;
         }
-        for kind in DefectKind::ALL {
+        for kind in DefectKind::MEASURED {
             let (value, limit, least) = self.criterion(kind, &station);
             let k = kind as usize;
             record.runs[k] = runs_before[k].next(value, limit);
@@ -458,6 +547,9 @@ impl Coil {
             DefectKind::Bulge if limits.bulge_absolute > 0.0 => {
                 (Some(station.bulge), limits.bulge_absolute, SHORT_RUN)
             }
+            DefectKind::Bulge if self.spec.profile.is_none() => {
+                (Some(station.bulge), FALLBACK_BULGE * d, SHORT_RUN)
+            }
             DefectKind::Bulge => (station.bulge_excess, limits.bulge_excess * d, SHORT_RUN),
             DefectKind::Gap => (
                 station.neighbour.map(|n| n.gap),
@@ -469,6 +561,7 @@ impl Coil {
                 (1.0 - limits.overlap_axial) * d,
                 SHORT_RUN,
             ),
+            DefectKind::Slack | DefectKind::Break => (None, f64::INFINITY, 0.0),
         };
         (
             value.filter(|_| station.measured),

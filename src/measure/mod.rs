@@ -11,15 +11,18 @@
 
 mod coil;
 mod defect;
+mod passes;
 mod profile;
+mod row;
 mod runs;
 mod state;
 mod station;
+mod support;
 mod turn;
 
 pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode};
-pub use defect::{DefectFlags, DefectLimits, DefectPlace};
+pub use defect::{BulgeLimit, Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
 pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};

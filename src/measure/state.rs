@@ -1,7 +1,8 @@
 //! Numbers that describe the settled coil as a whole, as the machine sees them.
 
 use super::coil::{Coil, Record};
-use super::defect::{DefectFlags, DefectPlace};
+use super::defect::{Defect, DefectFlags, DefectKind, DefectPlace};
+use super::runs::Run;
 use super::station::Station;
 use super::{STATIONS_PER_TURN, Verdict};
 use serde::Serialize;
@@ -40,7 +41,72 @@ impl Coil {
         Some(DefectPlace {
             turn: (index / STATIONS_PER_TURN) as u32 + 1,
             angle: (index % STATIONS_PER_TURN) as f64 * super::STATION_STEP,
+            time: self.records[index].station.time,
         })
+    }
+
+    /// Defects of the settled wire, along the wire: one for each run of stations long enough to count, at
+    /// the station of the run where it is largest (linear in the wire).
+    pub fn defects(&self) -> Vec<Defect> {
+        let mut found: Vec<Defect> = DefectKind::MEASURED
+            .into_iter()
+            .flat_map(|kind| self.defects_of(kind))
+            .collect();
+        found
+            .sort_by_key(|defect| defect.turn * STATIONS_PER_TURN as u32 + defect.angle_deg as u32);
+        found
+    }
+
+    fn defects_of(&self, kind: DefectKind) -> Vec<Defect> {
+        let mut found = Vec::new();
+        // where the present run is worst, and whether it counts
+        let mut worst: Option<(usize, f64)> = None;
+        let mut counts = false;
+        for (index, record) in self.records.iter().enumerate() {
+            let (value, _, least) = self.criterion(kind, &record.station);
+            let run = record.runs[kind as usize];
+            if run == Run::default() {
+                found.extend(
+                    worst
+                        .filter(|_| counts)
+                        .map(|(k, _)| self.defect_at(kind, k)),
+                );
+                (worst, counts) = (None, false);
+                continue;
+            }
+            counts |= run.counts(least);
+            if let Some(value) = value
+                && worst.is_none_or(|(_, most)| value > most)
+            {
+                worst = Some((index, value));
+            }
+        }
+        found.extend(
+            worst
+                .filter(|_| counts)
+                .map(|(k, _)| self.defect_at(kind, k)),
+        );
+        found
+    }
+
+    fn defect_at(&self, kind: DefectKind, index: usize) -> Defect {
+        let station = &self.records[index].station;
+        let size = match kind {
+            DefectKind::Gap => station.neighbour.map(|n| n.gap),
+            DefectKind::Overlap => Some(station.overlap_depth),
+            _ => Some(station.bulge),
+        };
+        Defect {
+            kind,
+            turn: (index / STATIONS_PER_TURN) as u32 + 1,
+            layer: station.layer,
+            angle_deg: (index % STATIONS_PER_TURN) as f64,
+            time_s: station.time,
+            until_s: None,
+            size_m: size,
+            size_d: size.map(|size| size / self.spec.diameter),
+            place_m: station.position.into(),
+        }
     }
 
     /// Largest values of the last settled turn, without the neighbourhood of the clamp.
@@ -112,13 +178,14 @@ impl Coil {
             .fold(0.0, |most, node| node.settled.plastic_strain.max(most))
     }
 
-    /// The worst verdict of the turns that have a neighbour, from the second on, each judged once
-    /// half of it has settled; [`Verdict::Unsettled`] before that.
+    /// The worst verdict of the turns of which half has settled, and of every defect; [`Verdict::Unsettled`] before that.
     pub fn verdict(&self) -> Verdict {
         let turns = self.turns();
-        let judged = turns.iter().skip(1).filter(|turn| turn.settled >= 0.5);
+        let judged = turns.iter().filter(|turn| turn.settled >= 0.5);
+        let defects = self.defects();
         judged
             .map(|turn| turn.verdict)
+            .chain(defects.iter().map(|defect| defect.kind.into()))
             .max()
             .unwrap_or(Verdict::Unsettled)
     }

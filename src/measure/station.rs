@@ -29,21 +29,21 @@ pub struct Station {
     pub time: f64,
     /// distance of the centreline from the core minus the radius, m
     pub height: f64,
-    /// clear distance to what the wire should lie on: the core in the first pass of the traverse,
-    /// wire of earlier passes later on, m
+    /// how far the wire could drop before it lay on what it was laid over: wire of earlier passes below it, else
+    /// the core, m
     pub bulge: f64,
-    /// `bulge` minus the quasi-static height at this angle, m; `None` without a profile
+    /// `bulge` minus the quasi-static height at this angle, which is 0 over wire, m; `None` without a profile
     pub bulge_excess: Option<f64>,
-    /// wire of the same pass one turn back
+    /// wire one turn back, where it is of the same pass
     pub neighbour: Option<Neighbour>,
-    /// diameter minus axial distance where the wire stands on its neighbour or has changed places
-    /// with it, else 0, m
+    /// diameter minus axial distance where the wire stands on its neighbour, a diameter where it has changed
+    /// places with it, else 0, m
     pub overlap_depth: f64,
-    /// one more than the layer of earlier wire right below, 1 without any
+    /// one more than the layer of the wire below, 1 without any
     pub layer: u32,
     /// pass of the traverse, from 1; grows when the traverse turns back
     pub pass: u32,
-    /// false where the clamp still shapes this wire or its neighbour
+    /// false where the clamp still shapes this wire or its neighbour, and in the step to the next layer
     pub measured: bool,
 }
 

@@ -5,6 +5,7 @@ use super::defect::DefectKind;
 use super::runs::Run;
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 /// Limits of an aligned turn, from the default scene: gap within this many diameters ...
@@ -21,16 +22,22 @@ pub enum Verdict {
     /// nothing has come to rest where it could be measured
     #[default]
     Unsettled,
+    /// no defect, and no neighbour to judge most of the turn by
+    Single,
     /// gap within 0.10 d at 95 % of the stations, root mean square below 0.05 d, no defect
     Aligned,
     /// anything between
     Marginal,
+    /// the wire went slack on the way
+    Slack,
     /// stands off further than allowed
     Bulge,
     /// lies beside its place over a run of stations
     Gap,
     /// rides on its neighbour, or has changed places with it, at any station
     Overlap,
+    /// the wire broke
+    Break,
 }
 
 impl Verdict {
@@ -38,11 +45,31 @@ impl Verdict {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Unsettled => "unsettled",
+            Self::Single => "single",
             Self::Aligned => "aligned",
             Self::Marginal => "marginal",
             Self::Bulge => "bulge",
             Self::Gap => "gap",
             Self::Overlap => "overlap",
+            Self::Slack => "slack",
+            Self::Break => "break",
+        }
+    }
+
+    /// Whether it names a defect.
+    pub fn is_defect(self) -> bool {
+        self >= Self::Slack
+    }
+}
+
+impl From<DefectKind> for Verdict {
+    fn from(kind: DefectKind) -> Self {
+        match kind {
+            DefectKind::Bulge => Self::Bulge,
+            DefectKind::Gap => Self::Gap,
+            DefectKind::Overlap => Self::Overlap,
+            DefectKind::Slack => Self::Slack,
+            DefectKind::Break => Self::Break,
         }
     }
 }
@@ -61,6 +88,10 @@ impl std::fmt::Display for Verdict {
 pub struct TurnMeasures {
     /// turn, from 1
     pub turn: u32,
+    /// layer of most of its stations, from 1
+    pub layer: u32,
+    /// which of the turns of that layer it is, from 1
+    pub turn_in_layer: u32,
     /// settled fraction, 0..1
     pub settled: f64,
     /// stations measured
@@ -95,15 +126,28 @@ impl Coil {
     /// Measures of every turn that has begun to settle, first turn first (linear in the wire).
     pub fn turns(&self) -> Vec<TurnMeasures> {
         let turns = self.records.chunks().enumerate();
-        turns
+        let mut turns: Vec<TurnMeasures> = turns
             .map(|(turn, records)| self.measure_turn(turn, records))
-            .collect()
+            .collect();
+        let mut in_layer = BTreeMap::new();
+        for turn in &mut turns {
+            let count = in_layer.entry(turn.layer).or_insert(0);
+            *count += 1;
+            turn.turn_in_layer = *count;
+        }
+        // A run may be long enough in two turns together only.
+        for defect in self.defects() {
+            let turn = &mut turns[defect.turn as usize - 1];
+            turn.verdict = turn.verdict.max(defect.kind.into());
+        }
+        turns
     }
 
     fn measure_turn(&self, turn: usize, records: &[Record]) -> TurnMeasures {
         let d = self.spec.diameter;
         let mut result = TurnMeasures {
             turn: turn as u32 + 1,
+            layer: most_common(records.iter().map(|record| record.station.layer)),
             settled: records.len() as f64 / STATIONS_PER_TURN as f64,
             ..TurnMeasures::default()
         };
@@ -112,7 +156,7 @@ impl Coil {
         let mut has = [false; 3];
         for record in records {
             let station = &record.station;
-            for kind in DefectKind::ALL {
+            for kind in DefectKind::MEASURED {
                 let (value, limit, least) = self.criterion(kind, station);
                 let run = &mut runs[kind as usize];
                 *run = run.next(value, limit);
@@ -155,6 +199,16 @@ impl Coil {
             .filter(|&&edge| from_corner >= edge)
             .count()
     }
+}
+
+/// The layer that most stations have, the lowest of several; 1 without any.
+fn most_common(layers: impl Iterator<Item = u32>) -> u32 {
+    let mut counts = BTreeMap::new();
+    for layer in layers {
+        *counts.entry(layer).or_insert(0) += 1;
+    }
+    let most = counts.iter().rev().max_by_key(|(_, count)| **count);
+    most.map_or(1, |(layer, _)| *layer)
 }
 
 /// Sums over the stations that have a neighbour.
@@ -206,6 +260,8 @@ impl GapSums {
             Verdict::Gap
         } else if has[DefectKind::Bulge as usize] {
             Verdict::Bulge
+        } else if 2 * self.count < turn.stations {
+            Verdict::Single
         } else if aligned {
             Verdict::Aligned
         } else {

@@ -17,7 +17,7 @@ pub use history::{History, Mark};
 pub use picture::{Colouring, CoreMesh, Picture, render, render_png};
 pub use results::{Ending, Snapshot, write_results};
 pub use summary::write_summary;
-pub use tables::{write_stations, write_turns};
+pub use tables::{write_defects, write_stations, write_turns};
 pub use tube::{TubeMesh, tube_mesh};
 pub use vtp::{write_core_vtp, write_vtp};
 

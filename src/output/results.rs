@@ -1,10 +1,11 @@
 //! The files that describe a run where it stands: at its end, or on the way.
 
 use super::{
-    CoreMesh, OutputError, Picture, render_png, write_core_vtp, write_stations, write_summary,
-    write_turns, write_vtp,
+    CoreMesh, OutputError, Picture, render_png, write_core_vtp, write_defects, write_stations,
+    write_summary, write_turns, write_vtp,
 };
 use crate::geometry::Surface;
+use crate::scene::Core;
 use crate::simulation::{Centreline, SimError, Simulation, Summary, core_surface};
 use serde::Serialize;
 use std::path::Path;
@@ -55,7 +56,8 @@ impl Snapshot {
     pub fn write(&self, stem: &Path, simulation: &Simulation) -> Result<(), OutputError> {
         let wire = simulation.centreline();
         let radius = simulation.scene().wire.radius();
-        let geometry = self.write_geometry(&stem.with_extension("vtp"), &wire, radius);
+        let flanges = matches!(simulation.scene().core, Core::Mesh { .. });
+        let geometry = self.write_geometry(&stem.with_extension("vtp"), &wire, radius, flanges);
         let picture = Picture::new(Some(self.mesh()), &wire, radius);
         let picture = render_png(&stem.with_extension("png"), &picture);
         geometry.and(picture)
@@ -66,8 +68,12 @@ impl Snapshot {
         path: &Path,
         wire: &Centreline,
         radius: f64,
+        flanges: bool,
     ) -> Result<(), OutputError> {
-        let height = |p| self.core.nearest(p).distance - radius;
+        let height = |p| match flanges {
+            true => self.core.height_over_flank(p) - radius,
+            false => self.core.nearest(p).distance - radius,
+        };
         let heights: Vec<f64> = wire.points.iter().map(|&p| height(p)).collect();
         write_vtp(path, wire, radius, Some(&heights))
     }
@@ -81,8 +87,8 @@ impl Snapshot {
     }
 }
 
-/// Writes the results of a run into an existing folder: `summary.json`, and `turns.csv` and
-/// `stations.csv` of wire at rest.
+/// Writes the results of a run into an existing folder: `summary.json`, `defects.csv`, and
+/// `turns.csv` and `stations.csv` of wire at rest.
 ///
 /// With a `snapshot` also `coil.vtp`, `core.vtp` and `coil.png` of all wire. `wall_s` is the time
 /// computed so far, s.
@@ -98,6 +104,7 @@ pub fn write_results(
 ) -> Result<(), OutputError> {
     let summary = simulation.summary();
     let turns = write_turns(&directory.join("turns.csv"), &summary.turns);
+    let defects = write_defects(&directory.join("defects.csv"), &summary.defects);
     let real_time_factor = if wall_s > 0.0 {
         simulation.time() / wall_s
     } else {
@@ -118,6 +125,7 @@ pub fn write_results(
     });
     [
         turns,
+        defects,
         write_summary(&directory.join("summary.json"), &report),
         write_stations(
             &directory.join("stations.csv"),

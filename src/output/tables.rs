@@ -1,7 +1,7 @@
-//! `turns.csv` and `stations.csv`: the measures as tables, SI units, empty where nothing applies.
+//! `turns.csv`, `stations.csv` and `defects.csv`: the measures as tables, SI units, empty where nothing applies.
 
 use super::OutputError;
-use crate::measure::{STATIONS_PER_TURN, Station, TurnMeasures, Verdict};
+use crate::measure::{Defect, DefectKind, STATIONS_PER_TURN, Station, TurnMeasures, Verdict};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -9,6 +9,8 @@ use std::path::Path;
 #[derive(Serialize)]
 struct TurnRow {
     turn: u32,
+    layer: u32,
+    turn_in_layer: u32,
     verdict: Verdict,
     settled: f64,
     stations: u32,
@@ -31,6 +33,36 @@ struct TurnRow {
 /// Writes `turns.csv`: one row per turn.
 pub fn write_turns(path: &Path, turns: &[TurnMeasures]) -> Result<(), OutputError> {
     write_rows(path, turns.iter().map(TurnRow::from), TURN_HEADER)
+}
+
+#[derive(Serialize)]
+struct DefectRow {
+    kind: DefectKind,
+    turn: u32,
+    layer: u32,
+    angle_deg: f64,
+    time_s: f64,
+    size_m: Option<f64>,
+    size_d: Option<f64>,
+}
+
+/// Writes `defects.csv`: one row per defect, in the order given.
+pub fn write_defects(path: &Path, defects: &[Defect]) -> Result<(), OutputError> {
+    write_rows(path, defects.iter().map(DefectRow::from), DEFECT_HEADER)
+}
+
+impl From<&Defect> for DefectRow {
+    fn from(defect: &Defect) -> Self {
+        Self {
+            kind: defect.kind,
+            turn: defect.turn,
+            layer: defect.layer,
+            angle_deg: defect.angle_deg,
+            time_s: defect.time_s,
+            size_m: defect.size_m,
+            size_d: defect.size_d,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -76,6 +108,8 @@ impl From<&TurnMeasures> for TurnRow {
         let [px, pz, nx, nz] = turn.bulge_faces;
         Self {
             turn: turn.turn,
+            layer: turn.layer,
+            turn_in_layer: turn.turn_in_layer,
             verdict: turn.verdict,
             settled: turn.settled,
             stations: turn.stations,
@@ -125,9 +159,10 @@ impl From<(usize, &Station)> for StationRow {
 }
 
 /// Headers, for a table without rows; with rows they come from the fields (a test compares).
-const TURN_HEADER: &str = "turn,verdict,settled,stations,gap_mean,gap_rms,gap_max,gap_over,\
+const TURN_HEADER: &str = "turn,layer,turn_in_layer,verdict,settled,stations,gap_mean,gap_rms,gap_max,gap_over,\
     gap_run,axial_mean,bulge_max,bulge_excess_max,bulge_face_px,bulge_face_pz,bulge_face_nx,\
     bulge_face_nz,overlap_max,layer_max";
+const DEFECT_HEADER: &str = "kind,turn,layer,angle_deg,time_s,size_m,size_d";
 const STATION_HEADER: &str = "turn,station,angle,polar,x,y,z,radius,arc,time,height,bulge,\
     bulge_excess,gap,axial,overlap,layer,pass,measured";
 
@@ -167,6 +202,19 @@ mod tests {
         assert_eq!(
             header_of(&|writer| writer.serialize(&turn).unwrap()),
             TURN_HEADER
+        );
+        let defect = DefectRow {
+            kind: DefectKind::Break,
+            turn: 1,
+            layer: 1,
+            angle_deg: 0.0,
+            time_s: 0.0,
+            size_m: None,
+            size_d: None,
+        };
+        assert_eq!(
+            header_of(&|writer| writer.serialize(&defect).unwrap()),
+            DEFECT_HEADER
         );
         let station = Station {
             angle: 7.0,

@@ -1,7 +1,9 @@
 //! How a leaf of the settings is set: by name, with a unit, checked against its row.
 
-use super::SceneError;
+use super::error::Warning;
 use super::key::{Key, resolve};
+use super::problems::Problems;
+use super::{Scene, SceneError};
 use crate::settings::{Origin, SceneSettings};
 use crate::variables::{Access, Kind, Value, Variable, by_name, parse_scaled, scaled, table};
 
@@ -23,6 +25,28 @@ impl SceneSettings {
     /// Those of [`set`](Self::set), and a text that is no value of this kind.
     pub fn set_text(&mut self, name: &str, text: &str) -> Result<(), SceneError> {
         self.set_from(name, Given::Text(text), Origin::Set)
+    }
+
+    /// Sets leaves by name from texts, as [`set_text`](Self::set_text) does, then builds the scene; tells all that is
+    /// wrong at once.
+    ///
+    /// # Errors
+    ///
+    /// Everything that [`load`](Self::load), `set_text` and [`build`](Self::build) find. Leaves that were refused have their
+    /// defaults where a later check needs them.
+    pub fn load_and_build(
+        name_or_path: &str,
+        set: &[(String, String)],
+    ) -> Result<(Self, Scene, Vec<Warning>), SceneError> {
+        let mut problems = Problems::default();
+        let (mut settings, found) = Self::load_with(name_or_path)?;
+        found.into_iter().for_each(|error| problems.add(error));
+        for (name, text) in set {
+            problems.note(settings.set_text(name, text));
+        }
+        let built = problems.note(settings.build_with_warnings());
+        let (scene, warnings) = problems.finish_with(built)?;
+        Ok((settings, scene, warnings))
     }
 
     /// The settings from parameters in any order: defaults, then the scene that `scene.file` names,
@@ -119,13 +143,14 @@ impl SceneSettings {
 
     /// Checks every leaf against its row of the variable table.
     pub(super) fn check_ranges(&self) -> Result<(), SceneError> {
+        let mut problems = Problems::default();
         for variable in table() {
             let Access::Parameter { get, .. } = variable.access else {
                 continue;
             };
             let value = get(self);
             if !variable.admits(&value) {
-                return Err(SceneError::OutOfRange {
+                problems.add(SceneError::OutOfRange {
                     origin: self.origin(variable.name),
                     key: variable.name.into(),
                     value: value.to_string().into(),
@@ -133,7 +158,7 @@ impl SceneSettings {
                 });
             }
         }
-        Ok(())
+        problems.finish()
     }
 }
 

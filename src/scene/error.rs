@@ -140,6 +140,12 @@ pub enum SceneError {
         /// what would do
         allowed: Box<str>,
     },
+    /// More than one of the above, a line each.
+    #[error("{}", lines(errors))]
+    Several {
+        /// at least two, none of them of this kind
+        errors: Vec<SceneError>,
+    },
 }
 
 /// A scene that runs, but perhaps not as meant.
@@ -163,6 +169,11 @@ impl fmt::Display for Warning {
             self.origin, self.key, self.value, self.message
         )
     }
+}
+
+fn lines(errors: &[SceneError]) -> String {
+    let lines: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    lines.join("\n")
 }
 
 fn also(suggestion: &Option<Box<str>>) -> String {

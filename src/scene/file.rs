@@ -3,6 +3,7 @@
 use super::SceneError;
 use super::assign::Given;
 use super::key::{nearest, resolve, sections};
+use super::problems::Problems;
 use crate::settings::Origin;
 use crate::settings::SceneSettings;
 use crate::variables::Value;
@@ -36,11 +37,17 @@ impl SceneSettings {
     /// No such scene or unreadable file (names that come near are suggested), and what
     /// [`from_toml_str`](Self::from_toml_str) finds.
     pub fn load(name_or_path: &str) -> Result<Self, SceneError> {
+        let (settings, found) = Self::load_with(name_or_path)?;
+        all_or(found, settings)
+    }
+
+    /// The same, with leaves that are wrong left at their defaults and told beside the settings.
+    pub(super) fn load_with(name_or_path: &str) -> Result<(Self, Vec<SceneError>), SceneError> {
         if name_or_path.is_empty() {
-            return Ok(Self::default());
+            return Ok((Self::default(), Vec::new()));
         }
-        if let Some(packed) = Self::packed(name_or_path) {
-            return packed;
+        if let Some((_, text)) = PACKED.iter().find(|p| p.0 == name_or_path) {
+            return Self::read(text, name_or_path, Path::new(""));
         }
         let path = Path::new(name_or_path);
         let text = std::fs::read_to_string(path).map_err(|error| match error.kind() {
@@ -54,7 +61,7 @@ impl SceneSettings {
                 reason: error.to_string().into(),
             },
         })?;
-        Self::from_toml_str(&text, name_or_path, path.parent().unwrap_or(Path::new("")))
+        Self::read(&text, name_or_path, path.parent().unwrap_or(Path::new("")))
     }
 
     /// Reads a scene from a TOML text; leaves that it does not give keep their defaults.
@@ -66,6 +73,16 @@ impl SceneSettings {
     /// Text that is no TOML, an unknown section or key, a value of the wrong kind or outside its range, each with
     /// file and line.
     pub fn from_toml_str(text: &str, file_name: &str, base_dir: &Path) -> Result<Self, SceneError> {
+        let (settings, found) = Self::read(text, file_name, base_dir)?;
+        all_or(found, settings)
+    }
+
+    /// The same, with leaves that are wrong left at their defaults and told beside the settings.
+    fn read(
+        text: &str,
+        file_name: &str,
+        base_dir: &Path,
+    ) -> Result<(Self, Vec<SceneError>), SceneError> {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let at = |offset: Option<usize>| Origin::File {
             file: file_name.into(),
@@ -100,18 +117,20 @@ impl SceneSettings {
             settings.set_from(key, given, origin)
         };
 
-        // In the order of the file, so that the first mistake is the one reported.
+        // Mistakes are told in the order of the file.
+        let mut found = Vec::new();
         for (key, value) in in_file_order(table.get_ref()) {
             let (name, offset) = (key.get_ref().as_ref(), key.span().start);
             match value.get_ref() {
                 DeValue::Table(section) if sections().contains(&name) => {
                     for (key, value) in in_file_order(section) {
                         let path = format!("{name}.{}", key.get_ref());
-                        leaf(&mut settings, &path, key.span().start, value.get_ref())?;
+                        let set = leaf(&mut settings, &path, key.span().start, value.get_ref());
+                        found.extend(set.err());
                     }
                 }
                 DeValue::Table(_) => {
-                    return Err(SceneError::UnknownSection {
+                    found.push(SceneError::UnknownSection {
                         origin: at(Some(offset)),
                         section: name.into(),
                         suggestion: nearest(name, sections().into_iter())
@@ -119,7 +138,7 @@ impl SceneSettings {
                         allowed: sections().join(", ").into(),
                     });
                 }
-                value => leaf(&mut settings, name, offset, value)?,
+                value => found.extend(leaf(&mut settings, name, offset, value).err()),
             }
         }
 
@@ -129,8 +148,15 @@ impl SceneSettings {
                 .to_string_lossy()
                 .into_owned();
         }
-        Ok(settings)
+        Ok((settings, found))
     }
+}
+
+/// The settings, or all that is wrong with them.
+fn all_or(found: Vec<SceneError>, settings: SceneSettings) -> Result<SceneSettings, SceneError> {
+    let mut problems = Problems::default();
+    found.into_iter().for_each(|error| problems.add(error));
+    problems.finish().map(|()| settings)
 }
 
 fn in_file_order<'t, 'i>(

@@ -2,6 +2,7 @@
 
 use super::SceneError;
 use super::impossible::si;
+use super::problems::Problems;
 use crate::rod::Section;
 use crate::settings::{SceneSettings, WireSettings};
 use std::f64::consts::PI;
@@ -109,6 +110,12 @@ pub(super) fn section(settings: &SceneSettings) -> Result<Section, SceneError> {
                 "wire.moment_cap",
                 format!("at least {} N.m", si(section.m_y)),
             )
+        } else if wire.m_y <= 0.0
+            && settings.origins.contains_key("wire.yield_stress")
+            && !settings.origins.contains_key("wire.flow_stress")
+        {
+            let most = format!("at most wire.flow_stress, {} Pa", si(wire.flow_stress));
+            ("wire.yield_stress", most)
         } else {
             (
                 "wire.flow_stress",
@@ -139,10 +146,12 @@ fn rigidities(
             ("wire.GJ", wire.gj),
             ("wire.GJp", wire.gj_p),
         ];
-        if let Some((key, _)) = all.into_iter().find(|(_, x)| *x <= 0.0) {
+        let mut problems = Problems::default();
+        for (key, _) in all.into_iter().filter(|(_, x)| *x <= 0.0) {
             let reason = "wire.material = custom needs every rigidity";
-            return Err(settings.impossible(key, reason, "more than 0"));
+            problems.add(settings.impossible(key, reason, "more than 0"));
         }
+        problems.finish()?;
     }
     let material = of_material.unwrap_or(Rigidities {
         ea: 0.0,
@@ -166,6 +175,7 @@ fn rigidities(
         ("wire.EIp", "wire.EI", found.ei_p, found.ei, "N.m2"),
         ("wire.GJp", "wire.GJ", found.gj_p, found.gj, "N.m2"),
     ];
+    let mut problems = Problems::default();
     for (key_p, key, tangent, elastic, unit) in pairs {
         if tangent >= elastic && !wire.elastic {
             // Blame the one the user gave.
@@ -174,9 +184,10 @@ fn rigidities(
                 false => (key, format!("more than {key_p}, {} {unit}", si(tangent))),
             };
             let reason = "beyond yield the wire must be softer than before";
-            return Err(settings.impossible(blamed, reason, allowed));
+            problems.add(settings.impossible(blamed, reason, allowed));
         }
     }
+    problems.finish()?;
     Ok(found)
 }
 

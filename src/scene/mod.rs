@@ -6,6 +6,7 @@
 
 mod assign;
 mod build;
+mod checks;
 mod description;
 mod error;
 mod features;
@@ -13,7 +14,9 @@ mod file;
 mod impossible;
 mod key;
 mod material;
+mod problems;
 mod saved;
+mod warnings;
 mod write;
 
 pub use crate::rod::{Section, Twist};

@@ -183,7 +183,6 @@ impl Simulation {
     }
 
     pub(super) fn finish(&mut self) {
-        self.follow_traverse();
         self.sys.state.time = self.run.time;
         self.update_outputs();
     }

@@ -1,28 +1,11 @@
 //! What can be read of a run: outputs at a communication point, the coil, the wire's centreline.
 
-use super::{Centreline, SLACK, Simulation};
+use super::{Centreline, Simulation};
 use crate::math::{Spin, V3, turn_about_y};
-use crate::math::{polar_angle, wrap_to_pi};
 use crate::measure::{Coil, SettledNode};
-use crate::signals::EventKind;
+use crate::scene::Core;
 
 impl Simulation {
-    pub(super) fn watch_tension(&mut self) {
-        let t = self.wire_tension();
-        self.run.outputs.wire_tension_min = self.run.outputs.wire_tension_min.min(t);
-        self.run.outputs.wire_tension_max = self.run.outputs.wire_tension_max.max(t);
-        let slack = t < SLACK;
-        if slack && !self.run.was_slack {
-            self.report(
-                EventKind::Slack,
-                format!(
-                    "the wire went slack at the nozzle (tension below {SLACK} N); raise tension_setpoint or change the spindle's speed more gently"
-                ),
-            );
-        }
-        self.run.was_slack = slack;
-    }
-
     pub(super) fn wire_tension(&self) -> f64 {
         // below zero the wire hangs loose in the nozzle, which holds nothing
         self.sys
@@ -39,19 +22,6 @@ impl Simulation {
         let t = self.wire_tension();
         self.run.outputs.wire_tension_min = t;
         self.run.outputs.wire_tension_max = t;
-    }
-
-    /// A new pass begins once the nozzle has come back by half a diameter; less is jitter.
-    pub(super) fn follow_traverse(&mut self) {
-        let y = self.sys.state.support[1].point.y;
-        let (extreme, sign) = self.run.pass;
-        let advance = (y - extreme) * sign;
-        if advance > 0.0 {
-            self.run.pass.0 = y;
-        } else if advance < -0.5 * self.scene.wire.diameter {
-            self.run.pass = (y, -sign);
-            self.coil.set_traverse(-sign);
-        }
     }
 
     /// The settled wire and, taken as if it were settled, the live wire up to lift-off.
@@ -73,9 +43,15 @@ impl Simulation {
     }
 
     pub(super) fn settled(&self, position: V3, arc: f64, plastic_strain: f64) -> SettledNode {
-        let height = match self.sys.distance_to_core(position) {
-            d if d.is_finite() => d - self.scene.wire.radius(),
-            _ => 0.0,
+        let height = match (&self.scene.core, &self.sys.model.core) {
+            // Only a mesh can have flanges.
+            (Core::Mesh { .. }, Some(core)) => core.height_over_flank(position),
+            _ => self.sys.distance_to_core(position),
+        };
+        let height = if height.is_finite() {
+            height - self.scene.wire.radius()
+        } else {
+            0.0
         };
         SettledNode {
             position,
@@ -98,19 +74,9 @@ impl Simulation {
         if self.run.broken && self.run.outputs.defect_break {
             return self.update_broken();
         }
-        let spin = Spin::new(self.sys.state.spindle.angle);
         let lift = self.lift_off();
         let rod = &self.sys.state.rod;
-        // polar angle along the wire from the last settled node, or from the clamp, where the coil starts
-        let mut last = self
-            .coil
-            .end_angle()
-            .unwrap_or_else(|| (0.0, polar_angle(spin.to_core(rod.x[0]))));
-        let direction = self.coil.spec().direction;
-        for i in 0..=lift {
-            let polar = polar_angle(spin.to_core(rod.x[i]));
-            last = (last.0 + direction * wrap_to_pi(polar - last.1), polar);
-        }
+        let laid = self.wound_to(lift).0;
         let free: f64 = (lift..rod.edges())
             .map(|j| (rod.x[j + 1] - rod.x[j]).norm())
             .sum();
@@ -121,6 +87,8 @@ impl Simulation {
         let flags = self.coil.flags();
         let worst = self.coil.worst();
         let tension = self.wire_tension();
+        let count = self.coil.defect_count() as usize + self.run.faults.len();
+        let last_defect = self.last_defect();
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
         o.wire_tension = tension;
@@ -134,15 +102,15 @@ impl Simulation {
             + 4 * i32::from(flags.overlap)
             + 8 * i32::from(self.run.broken)
             + 16 * i32::from(self.run.was_slack);
-        o.defect_count = self.coil.defect_count() as i32;
-        if let Some(d) = self.coil.last_defect() {
-            o.defect_turn = f64::from(d.turn);
-            o.defect_angle = d.angle;
+        o.defect_count = count as i32;
+        if let Some((turn, angle)) = last_defect {
+            o.defect_turn = f64::from(turn);
+            o.defect_angle = angle;
         }
         o.bulge_height = worst.bulge_height;
         o.gap_width = worst.gap_width;
         o.overlap_depth = worst.overlap_depth;
-        o.turns_wound = last.0.max(0.0) / std::f64::consts::TAU;
+        o.turns_wound = laid.max(0.0) / std::f64::consts::TAU;
         o.turns_settled = self.coil.turns_settled();
         o.layer = self.coil.layer().max(1) as i32;
         o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
@@ -151,7 +119,7 @@ impl Simulation {
         o.fed_length = feed.fed;
         o.free_length = free;
         o.layon_position = rod.x[lift].y;
-        o.layon_angle = last.0;
+        o.layon_angle = laid;
         o.coil_width = self.coil.coil_width();
         o.mean_pitch = self.coil.mean_pitch();
         o.fill_factor = self.coil.fill_factor();

@@ -17,6 +17,7 @@ use crate::rod::Twist;
 use crate::rod::{Bend, Rod, Section};
 use crate::scene::{Core, Scene};
 use crate::system::{Support, System};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 use std::sync::Arc;
 
 /// Node spacing of the loop, m, for wire of 0.7 mm; half of it moves the heights by 4 um.
@@ -34,32 +35,54 @@ const SOFTER: f64 = 10.0;
 const DRAW: f64 = 0.01;
 /// Draws after which there is no yardstick.
 const MOST_DRAWS: usize = 60;
+/// Largest difference of the two sides of a mesh, diameters; a tenth of the largest bulge excess.
+const SYMMETRIC: f64 = 0.05;
+/// Share of its bending moments that a limp loop begins with, and the factor by which it grows at first.
+const LIMP: f64 = 0.01;
+const STIFFER: f64 = 2.0;
 /// Error of the heights, m, for wire of 0.7 mm, and of the tension, as a share of it.
 const TOLERANCE: f64 = 1e-7;
 const TENSION: f64 = 1e-2;
 
-/// Height over the core by winding angle, if the core's shape is known and wire bends round it.
-pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>) -> Option<Profile> {
-    let Core::RoundedBox {
-        width_x, height_z, ..
-    } = scene.core
-    else {
-        // a round core has no faces to stand off from; a mesh may have any number of them
+/// Height over the core by winding angle of wire at rest under `tension`, N; none without tension, for a mesh that is not the
+/// same on both sides of x and z, and where no loop is found.
+///
+/// On a cylinder wire has no faces to stand off from: its helix lies on the core.
+pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Profile> {
+    if tension <= 0.0 {
         return None;
+    }
+    let section = match scene.core {
+        Core::Cylinder { .. } => return Profile::new(vec![0.0]),
+        Core::RoundedBox {
+            width_x,
+            height_z,
+            corner_radius,
+            ..
+        } => CoreSection {
+            half: [0.5 * width_x, 0.5 * height_z],
+            corner: corner_radius,
+            y: 0.0,
+        },
+        Core::Mesh { .. } => CoreSection::of(surface, SYMMETRIC * scene.wire.diameter)?,
     };
-    let sys = quarter_loop(scene, surface, width_x, height_z)?;
+    let sys = quarter_loop(scene, surface, &section, tension)?;
     let radius = scene.wire.radius();
+    let height = |p: V3| match scene.core {
+        Core::Mesh { .. } => surface.height_over_flank(p),
+        _ => surface.nearest(p).distance,
+    };
     let quarter: Vec<(f64, f64)> = sys
         .state
         .rod
         .x
         .iter()
-        .map(|p| (polar_angle(*p), surface.nearest(*p).distance - radius))
+        .map(|p| (polar_angle(*p), height(*p) - radius))
         .collect();
     let at = |angle: f64| {
         // fold into the quarter from +x to +z
-        let a = angle.rem_euclid(std::f64::consts::PI);
-        let a = a.min(std::f64::consts::PI - a);
+        let a = angle.rem_euclid(PI);
+        let a = a.min(PI - a);
         let k = quarter
             .partition_point(|q| q.0 < a)
             .clamp(1, quarter.len() - 1);
@@ -73,43 +96,138 @@ pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>) -> Option<Profile> 
     )
 }
 
-/// Point at `s` along the quarter from (a, 0) to (0, b): a straight and a circle of the shorter axis.
-fn outline(a: f64, b: f64, s: f64) -> V3 {
-    let r = a.min(b);
-    let (rise, reach) = (b - r, a - r);
-    let arc = std::f64::consts::FRAC_PI_2 * r;
-    if s < rise {
-        return V3::new(a, 0.0, s);
+/// The core's section square to its axis, as far as a loop round it needs it.
+#[derive(Clone, Copy, Debug)]
+struct CoreSection {
+    /// half its width along x and z, m
+    half: [f64; 2],
+    /// radius of its corners, m
+    corner: f64,
+    /// where along y, m
+    y: f64,
+}
+
+impl CoreSection {
+    /// That of a mesh at the middle of its length, if it is the same on both sides of x and z but for `tolerance`, m.
+    fn of(surface: &Surface, tolerance: f64) -> Option<Self> {
+        let (low, high) = surface.bounds();
+        let y = 0.5 * (low.y + high.y);
+        let points = surface.mesh().section_points(y);
+        // how far the section reaches in a direction
+        let reach = |angle: f64| {
+            let (x, z) = (libm::cos(angle), libm::sin(angle));
+            let along = points.iter().map(|p| x * p.x + z * p.z);
+            along.fold(f64::NEG_INFINITY, f64::max)
+        };
+        let is_symmetric = (0..=STATIONS_PER_TURN / 4).all(|k| {
+            let angle = k as f64 * STATION_STEP;
+            let here = reach(angle);
+            [PI - angle, PI + angle, -angle]
+                .iter()
+                .all(|&mirrored| (reach(mirrored) - here).abs() <= tolerance)
+        });
+        let half = [reach(0.0), reach(FRAC_PI_2)];
+        if !is_symmetric || half[0].min(half[1]) <= 0.0 {
+            return None;
+        }
+        // a rounded rectangle reaches (a + b - 2 r) / sqrt 2 + r at 45 degrees
+        let corner = (half[0] + half[1] - SQRT_2 * reach(FRAC_PI_4)) / (2.0 - SQRT_2);
+        let corner = corner.clamp(0.0, half[0].min(half[1]));
+        Some(Self { half, corner, y })
     }
-    let t = ((s - rise) / r).min(std::f64::consts::FRAC_PI_2);
-    let beyond = (s - rise - arc).max(0.0);
-    V3::new(
-        reach + r * libm::cos(t) - beyond,
-        0.0,
-        rise + r * libm::sin(t),
-    )
+}
+
+/// The quarter loop before it is drawn: from (`a`, 0) to (0, `b`) at `y`, a circle of `radius` between straights, m.
+#[derive(Clone, Copy, Debug)]
+struct Outline {
+    a: f64,
+    b: f64,
+    radius: f64,
+    y: f64,
+}
+
+impl Outline {
+    fn length(&self) -> f64 {
+        self.a + self.b - 2.0 * self.radius + FRAC_PI_2 * self.radius
+    }
+
+    /// Point at `s` along the quarter.
+    fn at(&self, s: f64) -> V3 {
+        let (rise, reach) = (self.b - self.radius, self.a - self.radius);
+        let arc = FRAC_PI_2 * self.radius;
+        if s < rise {
+            return V3::new(self.a, self.y, s);
+        }
+        let t = ((s - rise) / self.radius).min(FRAC_PI_2);
+        let beyond = (s - rise - arc).max(0.0);
+        V3::new(
+            reach + self.radius * libm::cos(t) - beyond,
+            self.y,
+            rise + self.radius * libm::sin(t),
+        )
+    }
 }
 
 /// The quarter loop at rest, by the production method whatever the scene winds with.
-fn quarter_loop(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) -> Option<System> {
-    // how far the wire stretches does not matter for its shape: a softer one settles sooner
+///
+/// Two ways lead there. Wire that starts loose and well outside is drawn tight. On long faces such a loop buckles or finds no
+/// rest; there, wire that starts tight and as limp as a string is stiffened.
+fn quarter_loop(
+    scene: &Scene,
+    surface: &Arc<Surface>,
+    core: &CoreSection,
+    tension: f64,
+) -> Option<System> {
+    let [loose, tight] = starts(scene, surface, core);
+    let section = loose.model.section.clone();
+    draw_tight(loose, tension).or_else(|| stiffened(tight, &section, tension))
+}
+
+/// Both loops to start with: loose and well outside, and tight on the core.
+fn starts(scene: &Scene, surface: &Arc<Surface>, core: &CoreSection) -> [System; 2] {
+    // how far the wire stretches does not matter for its shape: a softer one that cannot yield so settles sooner
     let section = Section {
         ea: scene.wire.ea / SOFTER,
+        n_y: f64::INFINITY,
         ..scene.wire.clone()
     };
     let r = section.radius();
-    let tension = scene.tensioner.tension;
-    if tension <= 0.0 || tension >= section.n_y {
-        return None;
-    }
-    // start well outside: straight along the longer face, then a quarter circle
     let gap = scaled(START_GAP, section.diameter);
-    let (a, b) = (0.5 * width + r + gap, 0.5 * height + r + gap);
-    let (arc, flat) = (std::f64::consts::FRAC_PI_2 * a.min(b), (a - b).abs());
-    let edges = (arc + flat) / scaled(SPACING, section.diameter);
+    let [a, b] = core.half.map(|half| half + r + gap);
+    let loose = Outline {
+        a,
+        b,
+        radius: a.min(b),
+        y: core.y,
+    };
+    let tight = Outline {
+        a: a - gap,
+        b: b - gap,
+        radius: core.corner + r,
+        y: core.y,
+    };
+    let law = ContactLaw {
+        stiffness: scene.contact.stiffness,
+        damping_ratio: 0.0,
+        mu_static: 0.0,
+        mu_kinetic: 0.0,
+        slip_speed: scene.friction.slip_speed,
+    };
+    [loose, tight].map(|outline| {
+        let mut sys = laid_out(outline, &section);
+        sys.touch_along(LineModel::new(core_shape(&scene.core, surface), law, r));
+        sys.refresh();
+        sys
+    })
+}
+
+/// The loop without load, held by the mirror planes at its ends.
+fn laid_out(outline: Outline, section: &Section) -> System {
+    let length = outline.length();
+    let edges = length / scaled(SPACING, section.diameter);
     let count = edges.min(MOST_EDGES).ceil() as usize;
     let points: Vec<V3> = (0..=count)
-        .map(|k| outline(a, b, (arc + flat) * k as f64 / count as f64))
+        .map(|k| outline.at(length * k as f64 / count as f64))
         .collect();
     let mut sys = System::new(section.clone(), Rod::through(&points, None));
     let mirror = |point: V3, hold: [bool; 3], along: V3| Support {
@@ -122,27 +240,34 @@ fn quarter_loop(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) 
     sys.model.twist = Twist::Off;
     sys.state.support[0] = mirror(points[0], [false, true, true], V3::z());
     sys.state.support[1] = mirror(points[count], [true, true, false], -V3::x());
-    let law = ContactLaw {
-        stiffness: scene.contact.stiffness,
-        damping_ratio: 0.0,
-        mu_static: 0.0,
-        mu_kinetic: 0.0,
-        slip_speed: scene.friction.slip_speed,
-    };
-    let shape = core_shape(&scene.core, surface);
-    sys.touch_along(LineModel::new(shape, law, r));
-    sys.refresh();
-    let mut method = Implicit::new(Scheme::Bdf2, scaled(TOLERANCE, section.diameter), 1e-9, 1.0);
-    // the loop is drawn tight by taking wire out evenly; a loose one gives way, a tight one stretches
+    sys
+}
+
+/// Draws a loop to this tension, N, by taking wire out evenly; a loose one gives way, a tight one stretches.
+///
+/// A draw after which the loop finds no rest is taken back and tried by half.
+fn draw_tight(mut sys: System, tension: f64) -> Option<System> {
+    let section = sys.model.section.clone();
+    let tolerance = scaled(TOLERANCE, section.diameter);
+    let mut method = Implicit::new(Scheme::Bdf2, tolerance, 1e-9, 1.0);
     let mut stiffness = section.ea;
     let mut before: Option<(f64, f64)> = None;
     let mut drawn = 0.0;
+    // the loop at its last rest, and the draw that was tried from there
+    let mut rest: Option<(System, f64)> = None;
     for _ in 0..MOST_DRAWS {
         // loading is monotonic: the law is a nonlinear elastic one from the virgin wire, not one that
         // remembers how wide the loop once was
         sys.state.rod.bend.fill(Bend::default());
-        method.equilibrate(&mut sys).ok()?;
-        let pull = sys.state.load.tension.iter().sum::<f64>() / count as f64;
+        if method.equilibrate(&mut sys).is_err() {
+            let (good, tried) = rest.as_mut()?;
+            drawn -= 0.5 * *tried;
+            *tried *= 0.5;
+            sys = good.clone();
+            draw(&mut sys, *tried);
+            continue;
+        }
+        let pull = sys.state.load.tension.iter().sum::<f64>() / sys.state.rod.edges() as f64;
         let missing = tension - pull;
         if missing.abs() < TENSION * tension {
             return Some(sys);
@@ -153,11 +278,51 @@ fn quarter_loop(scene: &Scene, surface: &Arc<Surface>, width: f64, height: f64) 
             stiffness = ((pull - p) / (drawn - d)).min(section.ea);
         }
         before = Some((drawn, pull));
-        let draw = (missing / stiffness).clamp(-DRAW, DRAW);
-        drawn += draw;
-        sys.state.rod.rest.iter_mut().for_each(|l| *l *= 1.0 - draw);
+        let share = (missing / stiffness).clamp(-DRAW, DRAW);
+        drawn += share;
+        rest = Some((sys.clone(), share));
+        draw(&mut sys, share);
     }
     None
+}
+
+/// Takes a share of its length out of every edge.
+fn draw(sys: &mut System, share: f64) {
+    let lengths = sys.state.rod.rest.iter_mut();
+    lengths.for_each(|l| *l *= 1.0 - share);
+}
+
+/// Lets a limp loop that lies on the core become as stiff as `section`, at this tension, N.
+///
+/// A step that is too large for the loop to find rest is halved.
+fn stiffened(mut sys: System, section: &Section, tension: f64) -> Option<System> {
+    draw(&mut sys, tension / section.ea);
+    let (mut share, mut factor) = (LIMP, STIFFER);
+    let mut reached: Option<(System, f64)> = None;
+    for _ in 0..MOST_DRAWS {
+        sys.model.section = with_bending(section, share);
+        sys.refresh();
+        match draw_tight(sys, tension) {
+            Some(found) if share >= 1.0 => return Some(found),
+            Some(found) => reached = Some((found, share)),
+            None => factor = factor.sqrt(),
+        }
+        let (good, at) = reached.as_ref()?;
+        sys = good.clone();
+        share = (at * factor).min(1.0);
+    }
+    None
+}
+
+/// The section with this share of its moments at every curvature.
+fn with_bending(section: &Section, share: f64) -> Section {
+    Section {
+        ei: share * section.ei,
+        ei_p: share * section.ei_p,
+        m_y: share * section.m_y,
+        moment_cap: share * section.moment_cap,
+        ..section.clone()
+    }
 }
 
 #[cfg(test)]
@@ -178,7 +343,8 @@ mod tests {
                 .expect("there is one");
             let scene = settings.build().expect("a scene");
             let surface = Arc::new(core_surface(&scene.core).expect("a core"));
-            let profile = profile(&scene, &surface).expect("a loop at rest");
+            let profile =
+                profile(&scene, &surface, scene.tensioner.tension).expect("a loop at rest");
             let highest = (0..STATIONS_PER_TURN)
                 .map(|k| profile.at(k as f64 * STATION_STEP))
                 .fold(0.0, f64::max);
@@ -187,5 +353,101 @@ mod tests {
                 "{material} stands {highest} m off"
             );
         }
+    }
+
+    fn copper(core: [f64; 3], tension: f64) -> (Scene, Arc<Surface>) {
+        let mut settings = SceneSettings::packed("fig8")
+            .expect("a packed scene")
+            .expect("it is read");
+        let [width, height, corner] = core.map(|mm| mm.to_string());
+        for (key, text) in [
+            ("wire.material", "copper"),
+            ("core.width_x_mm", &width),
+            ("core.height_z_mm", &height),
+            ("core.corner_radius_mm", &corner),
+            ("tensioner.tension", &tension.to_string()),
+        ] {
+            settings.set_text(key, text).expect("there is one");
+        }
+        let scene = settings.build().expect("a scene");
+        let surface = Arc::new(core_surface(&scene.core).expect("a core"));
+        (scene, surface)
+    }
+
+    /// 33 of 42 such settings had no yardstick, so that their bulge was not judged.
+    #[test]
+    fn copper_has_a_yardstick_on_common_boxes() {
+        let boxes = [
+            [12.0, 30.0, 2.0],
+            [10.0, 10.0, 1.0],
+            [16.0, 24.0, 3.0],
+            [12.0, 40.0, 1.0],
+            [20.0, 20.0, 5.0],
+            [8.0, 60.0, 1.0],
+            [30.0, 12.0, 2.0],
+        ];
+        for core in boxes {
+            let mut before = f64::INFINITY;
+            for tension in [3.0, 8.0, 15.0, 25.0, 40.0, 60.0] {
+                let (scene, surface) = copper(core, tension);
+                let profile = profile(&scene, &surface, tension);
+                let heights = profile.unwrap_or_else(|| panic!("{core:?} at {tension} N"));
+                let highest = heights.heights().iter().copied().fold(0.0, f64::max);
+                assert!(
+                    (0.05 * scene.wire.diameter..before).contains(&highest),
+                    "{core:?} at {tension} N: {highest}, at less {before}"
+                );
+                before = highest;
+            }
+        }
+    }
+
+    #[test]
+    fn both_ways_to_the_loop_at_rest_end_at_the_same_one() {
+        let (scene, surface) = copper([12.0, 30.0, 2.0], 15.0);
+        let core = CoreSection {
+            half: [6e-3, 15e-3],
+            corner: 2e-3,
+            y: 0.0,
+        };
+        let [one, other] = starts(&scene, &surface, &core);
+        let section = one.model.section.clone();
+        let highest = |sys: System| {
+            let heights = sys.state.rod.x.iter().map(|p| surface.nearest(*p).distance);
+            heights.fold(0.0, f64::max) - scene.wire.radius()
+        };
+        let drawn = highest(draw_tight(one, 15.0).expect("drawn"));
+        let stiffened = highest(stiffened(other, &section, 15.0).expect("stiffened"));
+        // A tenth of the excess that is a bulge: corners have few nodes, which lie elsewhere.
+        let apart = (drawn - stiffened).abs();
+        assert!(apart < 0.05 * section.diameter, "{drawn} {stiffened}");
+    }
+
+    #[test]
+    fn a_mesh_with_two_mirror_planes_has_the_yardstick_of_its_shape() {
+        let (scene, surface) = copper([12.0, 30.0, 2.0], 15.0);
+        let as_box = profile(&scene, &surface, 15.0).expect("a loop");
+        let mesh = Scene {
+            core: Core::Mesh {
+                path: "unused".into(),
+                unit: 1e-3,
+            },
+            ..scene
+        };
+        let as_mesh = profile(&mesh, &surface, 15.0).expect("a loop round the mesh");
+        for (a, b) in as_box.heights().iter().zip(as_mesh.heights()) {
+            assert!((a - b).abs() < 10e-6, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn wire_on_a_cylinder_lies_on_it() {
+        let (mut scene, surface) = copper([12.0, 30.0, 2.0], 15.0);
+        scene.core = Core::Cylinder {
+            radius: 10e-3,
+            length_y: 20e-3,
+        };
+        let profile = profile(&scene, &surface, 15.0).expect("a helix");
+        assert_eq!(profile.at(1.0), 0.0);
     }
 }

@@ -408,16 +408,14 @@ impl Simulation {
             let text = format!(
                 "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N; lower tension_setpoint or the spindle's acceleration"
             );
-            self.run.broken = true;
-            self.report(EventKind::Break, text);
+            self.note_break(j, text);
         } else if let Some((i, radius)) = self.kink() {
             let text = format!(
                 "the wire broke: it is kinked at live node {i}, bent to a radius of {:.3} mm and itself {:.3} mm thick; keep it under tension there",
                 1e3 * radius,
                 1e3 * self.scene.wire.diameter
             );
-            self.run.broken = true;
-            self.report(EventKind::Break, text);
+            self.note_break(i, text);
         }
         Ok(())
     }

@@ -1,6 +1,8 @@
 //! What a run remembers besides wire, coil and method.
 
 use super::freezing::{FreezePolicy, Watch};
+use super::nozzle_way::Traverse;
+use crate::measure::Defect;
 use crate::signals::{Event, Outputs};
 use serde::{Deserialize, Serialize};
 
@@ -49,10 +51,15 @@ pub(super) struct RunState {
     pub(super) rest_depth: f64,
     pub(super) broken: bool,
     pub(super) was_slack: bool,
+    /// slack and breaks, in the order of their times
+    pub(super) faults: Vec<Defect>,
+    /// core angle at which the wire was last slack, rad
+    pub(super) slack_at: Option<f64>,
     /// how long core, nozzle, tensioner and wire have been still, s
     pub(super) quiet: f64,
     /// farthest that the spindle has been from where it started, rad
     pub(super) farthest: f64,
-    /// farthest nozzle position of this pass, m, and its direction along y
-    pub(super) pass: (f64, f64),
+    pub(super) traverse: Traverse,
+    /// tension that the quasi-static height is for, N
+    pub(super) yardstick_tension: f64,
 }

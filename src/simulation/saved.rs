@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -97,9 +97,16 @@ impl Simulation {
     fn take_over(&mut self, saved: Saved) -> Result<(), &'static str> {
         self.sys.restore(saved.sys.into_owned())?;
         let far = self.sys.far().ok_or("there is no core")?;
+        self.take_yardstick_for(saved.run.yardstick_tension)?;
         self.coil.restore(saved.coil, far)?;
         if !saved.run.watch.fits(self.sys.state.rod.nodes()) {
             return Err("the watch does not go with the nodes");
+        }
+        if !saved.run.traverse.fits(self.coil.passes()) {
+            return Err("the way of the nozzle does not go with the passes");
+        }
+        if saved.run.faults.iter().any(|fault| fault.turn == 0) {
+            return Err("the wire failed before its first turn");
         }
         match (&mut self.stepper, saved.implicit) {
             (Stepper::Implicit(method), Some(([next, wanted], statistics))) => {

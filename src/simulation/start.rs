@@ -3,6 +3,7 @@
 use super::core_model::{core_shape, core_surface};
 use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
+use super::nozzle_way::Traverse;
 use super::run_state::{Instant, RunState};
 use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
@@ -152,7 +153,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,
         limits: scene.defects,
-        profile: super::quasi_static::profile(scene, &surface),
+        profile: super::quasi_static::profile(scene, &surface, yardstick_tension(scene, inputs)),
         start_angle: polar_angle(clamp_core),
         direction,
         traverse: scene.traverse.per_turn * direction,
@@ -160,6 +161,12 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         corner_angle: corner_angle(&scene.core),
     });
     Ok((sys, coil, angle0))
+}
+
+/// Tension that the quasi-static height is for, N: that of the scene, or that at the start where it is more. Wire that is
+/// wound looser than the scene has it stands off more than it should.
+fn yardstick_tension(scene: &Scene, inputs: &Inputs) -> f64 {
+    inputs.tension_setpoint.max(scene.tensioner.tension)
 }
 
 /// Polar angle of the corner between the faces on +x and +z, rad.
@@ -258,9 +265,12 @@ impl Simulation {
             rest_depth: 0.0,
             broken: false,
             was_slack: false,
+            faults: Vec::new(),
+            slack_at: None,
             quiet: 0.0,
             farthest: 0.0,
-            pass: (inputs.nozzle_position, scene.traverse.per_turn.signum()),
+            traverse: Traverse::new(inputs.nozzle_position),
+            yardstick_tension: yardstick_tension(scene, &inputs),
         };
         let mut sim = Self {
             scene: scene.clone(),
@@ -277,6 +287,9 @@ impl Simulation {
         sim.sys.place_supports();
         sim.reset_extremes();
         sim.update_outputs();
+        if let Some((kind, text)) = sim.doubt_about_bulge() {
+            sim.report(kind, text);
+        }
         Ok(sim)
     }
 

@@ -107,6 +107,7 @@ impl Simulation {
         self.run.steps += 1;
         self.watch_tension();
         self.remesh(taken)?;
+        self.follow_traverse();
         if self.run.work > self.most_work {
             return Err(SimError {
                 time: self.sys.state.time,

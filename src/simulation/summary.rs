@@ -1,7 +1,7 @@
 //! The numbers that describe a whole run.
 
 use super::Simulation;
-use crate::measure::TurnMeasures;
+use crate::measure::{BulgeLimit, Defect, TurnMeasures};
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
 
@@ -34,8 +34,12 @@ pub struct Summary {
     pub turns_settled: f64,
     /// wire paid out, m
     pub fed_length_m: f64,
-    /// verdict over all settled turns
+    /// verdict over all settled turns, and over what the wire met
     pub verdict: String,
+    /// what bulges were judged by
+    pub bulge_judged: BulgeLimit,
+    /// every defect found, in the order of their times
+    pub defects: Vec<Defect>,
     /// energy balance
     pub energy: EnergySummary,
     /// penetration
@@ -150,7 +154,9 @@ impl Simulation {
             turns_wound: self.run.outputs.turns_wound,
             turns_settled: self.run.outputs.turns_settled,
             fed_length_m: self.run.outputs.fed_length,
-            verdict: self.coil.verdict().as_str().to_owned(),
+            verdict: self.verdict().as_str().to_owned(),
+            bulge_judged: self.bulge_limit(),
+            defects: self.defects(),
             energy: self.energy(),
             penetration: PenetrationSummary {
                 largest_m: self.sys.state.deepest,
@@ -158,7 +164,7 @@ impl Simulation {
                 largest_over_d: self.sys.state.deepest / d,
                 at_rest_over_d: self.run.rest_depth / d,
             },
-            turns: self.coil.turns(),
+            turns: self.turns(),
         }
     }
 }

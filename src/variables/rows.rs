@@ -229,7 +229,7 @@ table! {
     flag(106, defect_break, "tension above the strength of the wire");
     flag(107, defect_slack, "tension fell to zero");
     count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16");
-    count(Output, 109, defect_count, "defects found so far");
+    count(Output, 109, defect_count, "defects found so far, of every kind");
     output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect");
     output(111, defect_angle, "rad", "deg", -1e7, 1e7, 1.0, "polar angle of the last defect within its turn");
     output(112, bulge_height, "m", "mm", -10.0, 10.0, 1e-3, "largest height over the core or the layer below, last settled turn");
@@ -334,7 +334,7 @@ table! {
     tunable(2100, "defects.gap", defects.gap, "1", "", 0.0, 100.0, 0.1, "gap above this many diameters ...");
     tunable(2101, "defects.gap_fraction", defects.gap_fraction, "1", "", 0.0, 1.0, 0.1, "... over at least this fraction of a turn in one run");
     tunable(2102, "defects.bulge_excess", defects.bulge_excess, "1", "", 0.0, 100.0, 1.0, "height over the quasi-static height, diameters");
-    tunable(2103, "defects.bulge_absolute", defects.bulge_absolute, "m", "mm", 0.0, 1.0, 1e-3, "height allowed; 0: bulge_excess decides");
+    tunable(2103, "defects.bulge_absolute", defects.bulge_absolute, "m", "mm", 0.0, 1.0, 1e-3, "height allowed; 0: bulge_excess decides, or one diameter where no quasi-static height is known");
     tunable(2104, "defects.overlap_axial", defects.overlap_axial, "1", "", 0.0, 1.0, 1.0, "axial distance to the neighbour below this many diameters ...");
     tunable(2105, "defects.overlap_height", defects.overlap_height, "1", "", 0.0, 100.0, 1.0, "... while standing above its layer by this many diameters");
     tunable(2106, "defects.skip_angle", defects.skip_angle, "rad", "deg", 0.0, 1e3, 1.0, "polar angle after the clamp that is left out");

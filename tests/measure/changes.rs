@@ -1,31 +1,31 @@
 //! Wire that is unwound, settled again or judged by new limits.
 
-use crate::coils::{D, eventful, helix, limits, spec, wound};
+use crate::coils::{D, eventful, helix, limits, on_cylinder, spec, wound};
 use coilwind::measure::{Coil, CoilSpec, DefectFlags, DefectLimits, SettledNode};
+use std::f64::consts::TAU;
 
-fn settle_all(coil: &mut Coil, nodes: &[SettledNode], from: usize) {
-    for (node, &settled) in nodes.iter().enumerate().skip(from) {
-        coil.set_traverse(if node < 600 { 1.0 } else { -1.0 });
-        coil.settle(settled);
-    }
+/// Winding angle at which the nozzle turns back, rad.
+const TURN: f64 = 24.01;
+
+fn settle_all(coil: &mut Coil, nodes: &[SettledNode]) {
+    nodes.iter().for_each(|&node| coil.settle(node));
 }
 
 #[test]
 fn what_was_taken_back_was_never_settled() {
     let nodes = eventful();
     for keep in [0, 1, 2, 150, 300, 450, 599, 600, 601, 670] {
+        // Passes are the caller's: both coils are told the same.
         let mut straight = Coil::new(spec());
-        settle_all(&mut straight, &nodes[..keep], 0);
-        let mut back = Coil::new(spec());
-        settle_all(&mut back, &nodes, 0);
+        straight.begin_pass(TURN, -1.0);
+        let mut back = straight.clone();
+        settle_all(&mut straight, &nodes[..keep]);
+        settle_all(&mut back, &nodes);
         back.unsettle(nodes.len() - keep);
-        // The traverse is the caller's: both are told the same.
-        straight.set_traverse(1.0);
-        back.set_traverse(1.0);
         assert_eq!(straight, back, "keep {keep}");
         // And goes on the same.
-        settle_all(&mut straight, &nodes, keep);
-        settle_all(&mut back, &nodes, keep);
+        settle_all(&mut straight, &nodes[keep..]);
+        settle_all(&mut back, &nodes[keep..]);
         assert_eq!(straight, back, "keep {keep}, wound again");
         assert!(straight.defect_count() >= 2);
     }
@@ -82,4 +82,44 @@ fn new_limits_judge_old_wire() {
             &helix(2.0, 1.3 * D)
         )
     );
+}
+
+/// Wire was labelled by what the nozzle did when it came to rest, up to a turn after it was laid.
+#[test]
+fn a_pass_begins_at_the_wire_laid_as_the_nozzle_turned() {
+    let nodes = eventful();
+    let mut known = Coil::new(spec());
+    known.begin_pass(TURN, -1.0);
+    settle_all(&mut known, &nodes);
+    assert!(known.stations().all(|s| (s.pass == 2) == (s.angle >= TURN)));
+    // The nozzle is seen to have turned only once wire laid after that has come to rest.
+    for late in [610, 640, nodes.len()] {
+        let mut coil = Coil::new(spec());
+        settle_all(&mut coil, &nodes[..late]);
+        coil.begin_pass(TURN, -1.0);
+        settle_all(&mut coil, &nodes[late..]);
+        assert_eq!(coil, known, "told after node {late}");
+        coil.take_back_pass();
+        let one_pass = wound(spec(), &nodes);
+        assert_eq!(coil, one_pass);
+    }
+}
+
+#[test]
+fn the_way_of_winding_may_be_known_late() {
+    let nodes = on_cylinder(2.5, -1.0, |angle| (-1.1 * D * angle / TAU, 0.0));
+    let mut coil = wound(spec(), &nodes);
+    assert_eq!(coil.turns_settled(), 0.0, "it seems to be unwound");
+    coil.set_direction(-1.0);
+    coil.set_first_sense(-1.0);
+    let known = CoilSpec {
+        direction: -1.0,
+        ..spec()
+    };
+    assert!((coil.turns_settled() - 2.5).abs() < 0.01);
+    assert!((coil.mean_pitch() - 1.1 * D).abs() < 1e-3 * D);
+    let mut expected = Coil::new(known);
+    expected.set_first_sense(-1.0);
+    settle_all(&mut expected, &nodes);
+    assert_eq!(coil, expected);
 }

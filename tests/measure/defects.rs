@@ -2,7 +2,8 @@
 
 use crate::coils::{D, limits, on_cylinder, spec, wound};
 use coilwind::measure::{
-    CoilSpec, DefectFlags, DefectLimits, Profile, STATION_STEP, STATIONS_PER_TURN, Verdict,
+    BulgeLimit, CoilSpec, DefectFlags, DefectLimits, Profile, STATION_STEP, STATIONS_PER_TURN,
+    Verdict,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -41,6 +42,35 @@ fn a_made_gap_is_found_where_it_is() {
     assert!((coil.worst().gap_width - 0.4 * D).abs() < 2e-3 * D);
 }
 
+/// A run over the border of two turns raised the flag, and neither turn had the verdict.
+#[test]
+fn a_defect_over_the_border_of_two_turns_belongs_to_one() {
+    let aside = |angle: f64| {
+        let off = (2.0 * TAU - 0.4..2.0 * TAU + 0.4).contains(&angle);
+        D * angle / TAU + if off { 0.4 * D } else { 0.0 }
+    };
+    let all = DefectLimits {
+        skip_angle: 0.0,
+        ..limits()
+    };
+    let spec = CoilSpec {
+        limits: all,
+        ..spec()
+    };
+    let coil = wound(spec, &on_cylinder(2.8, 1.0, |angle| (aside(angle), 0.0)));
+    let [gap] = &coil.defects()[..] else {
+        panic!("one gap: {:?}", coil.defects());
+    };
+    assert_eq!(coil.defect_count(), 1);
+    let verdicts: Vec<_> = coil.turns().iter().map(|turn| turn.verdict).collect();
+    assert_eq!(
+        verdicts[gap.turn as usize - 1],
+        Verdict::Gap,
+        "{verdicts:?}"
+    );
+    assert_eq!(coil.verdict(), Verdict::Gap);
+}
+
 #[test]
 fn a_gap_shorter_than_its_fraction_is_no_defect() {
     let aside = |angle: f64| {
@@ -64,7 +94,7 @@ fn swapped_turns_overlap() {
     let coil = wound(spec(), &on_cylinder(1.8, 1.0, |angle| (y(angle), 0.0)));
     let turn = &coil.turns()[1];
     assert_eq!(turn.verdict, Verdict::Overlap);
-    assert!((turn.overlap_max - 2.02 * D).abs() < 2e-3 * D);
+    assert_eq!(turn.overlap_max, D, "no more than a wire is wide");
     assert!(coil.flags().overlap);
 }
 
@@ -108,7 +138,7 @@ fn a_second_layer_after_the_traverse_turned_back_is_no_defect() {
         }
     });
     let mut coil = wound(spec(), &out);
-    coil.set_traverse(-1.0);
+    coil.begin_pass(3.0 * TAU, -1.0);
     for &node in &all[out.len()..] {
         coil.settle(node);
     }
@@ -170,8 +200,22 @@ fn bulge_is_judged_against_the_quasi_static_height() {
         },
         &nodes(1.5),
     );
-    assert!(!no_yardstick.flags().bulge);
     assert_eq!(no_yardstick.turns()[1].bulge_excess_max, None);
+    let diameter = BulgeLimit::Fallback { limit_m: D };
+    assert_eq!(no_yardstick.bulge_limit(), diameter);
+    assert!(
+        no_yardstick.flags().bulge,
+        "2.25 d of clear air were aligned for want of a yardstick"
+    );
+    assert_eq!(no_yardstick.turns()[0].verdict, Verdict::Bulge);
+    let low = wound(
+        CoilSpec {
+            profile: None,
+            ..spec()
+        },
+        &nodes(0.6),
+    );
+    assert!(!low.flags().bulge, "0.9 d are within the fallback limit");
     let absolute = DefectLimits {
         bulge_absolute: 1e-3,
         ..limits()

@@ -3,4 +3,5 @@
 mod changes;
 mod coils;
 mod defects;
+mod layers;
 mod pitch;

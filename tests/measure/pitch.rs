@@ -48,7 +48,7 @@ fn helix_on_a_cylinder_has_the_gap_of_its_pitch() {
         }
         let turns = coil.turns();
         assert_eq!(turns[0].gap_mean, None);
-        assert_eq!(turns[0].verdict, Verdict::Aligned);
+        assert_eq!(turns[0].verdict, Verdict::Single);
         assert!((turns[1].gap_mean.unwrap() - expected).abs() < 5e-9);
         assert!((coil.mean_pitch() - axial).abs() < 5e-6 * pitch);
         assert!((coil.coil_width() - (3.2 * pitch + D)).abs() < 0.01 * pitch);

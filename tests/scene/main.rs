@@ -4,3 +4,4 @@ mod choices;
 mod common;
 mod reading;
 mod refusals;
+mod several;

@@ -171,9 +171,8 @@ fn impossible_scenes_say_what_would_do() {
         (
             "[spindle]\nturns = 0.1",
             &[
-                "default scene",
-                "spindle.ramp_turns",
-                "at most spindle.turns, 0.1",
+                "test.toml:2: spindle.turns",
+                "at least spindle.ramp_turns, 0.25",
             ],
         ),
         (
@@ -203,7 +202,11 @@ fn impossible_scenes_say_what_would_do() {
         ),
         (
             "[wire]\nyield_stress_MPa = 300",
-            &["wire.flow_stress", "moment cap", "at least 3e8 Pa"],
+            &[
+                "wire.flow_stress",
+                "moment cap",
+                "at most wire.flow_stress, 2.2e8 Pa",
+            ],
         ),
         (
             "[wire]\nmoment_cap = 1e-3",

@@ -1,0 +1,114 @@
+//! Height of a point over the flank of a core: over what wire is wound on, and not over a flange beside it.
+
+use super::surface::Surface;
+use crate::math::V3;
+
+/// Share of a facet's unit normal along y from which on it is a flange and no flank: steeper than 45 degrees.
+const FLANGE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
+impl Surface {
+    /// Signed distance of `p` (core frame, m) from the flank of the core, m: from the tangent plane of what lies nearest
+    /// at the same place along y.
+    ///
+    /// Wire beside a flange is as high over the core as wire far from it. Where there is only a flange at that place, as in
+    /// the edge of one, and beyond the ends of the core it is the distance to the nearest surface.
+    pub fn height_over_flank(&self, p: V3) -> f64 {
+        let Some((nearest, triangle)) = self.nearest_at_level(p) else {
+            return self.nearest(p).distance;
+        };
+        let normal = self.mesh().normal(triangle);
+        if normal.y.abs() > FLANGE {
+            return self.nearest(p).distance;
+        }
+        // A conical flank leans: its distance is less than that in the plane of the section.
+        let lean = (1.0 - normal.y * normal.y).sqrt();
+        (nearest.distance_sq.sqrt() * lean).copysign(nearest.away.dot(&normal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh::TriMesh;
+    use super::*;
+    use std::f64::consts::TAU;
+
+    /// Revolves an outline of (y, r), mm, that begins and ends on the axis.
+    fn revolved(outline: &[[f64; 2]], sides: u32) -> Surface {
+        let mut vertices = Vec::new();
+        let mut triangles = Vec::new();
+        let inner = &outline[1..outline.len() - 1];
+        for &[y, r] in inner {
+            for side in 0..sides {
+                let a = TAU * f64::from(side) / f64::from(sides);
+                vertices.push(V3::new(r * a.cos(), y, r * a.sin()) * 1e-3);
+            }
+        }
+        let (first, last) = (vertices.len() as u32, vertices.len() as u32 + 1);
+        vertices.push(V3::new(0.0, outline[0][0], 0.0) * 1e-3);
+        vertices.push(V3::new(0.0, outline[outline.len() - 1][0], 0.0) * 1e-3);
+        let rows = inner.len() as u32;
+        for s in 0..sides {
+            let n = (s + 1) % sides;
+            triangles.push([first, s, n]);
+            for row in 0..rows - 1 {
+                let at = |side: u32, row: u32| row * sides + side;
+                triangles.push([at(s, row), at(s, row + 1), at(n, row)]);
+                triangles.push([at(n, row), at(s, row + 1), at(n, row + 1)]);
+            }
+            let top = (rows - 1) * sides;
+            triangles.push([last, top + n, top + s]);
+        }
+        Surface::new(TriMesh::new(vertices, triangles).expect("a closed surface"))
+    }
+
+    /// Barrel of radius 8 mm between flanges of 12 mm at y = -5 and 5 mm.
+    fn bobbin() -> Surface {
+        let wall = [
+            [-7.0, 0.0],
+            [-7.0, 12.0],
+            [-5.0, 12.0],
+            [-5.0, 8.0],
+            [5.0, 8.0],
+            [5.0, 12.0],
+            [7.0, 12.0],
+            [7.0, 0.0],
+        ];
+        revolved(&wall, 360)
+    }
+
+    #[test]
+    fn wire_beside_a_flange_is_as_high_as_far_from_it() {
+        let core = bobbin();
+        for rise in [0.35e-3, 1.5e-3, 3.5e-3] {
+            for y in [-4.65e-3, 0.0, 2.1e-3, 4.65e-3] {
+                let p = V3::new(8e-3 + rise, y, 1e-5);
+                let height = core.height_over_flank(p);
+                assert!((height - rise).abs() < 2e-6, "{rise} {y}: {height}");
+            }
+        }
+        let flange = core.nearest(V3::new(11e-3, 4.65e-3, 1e-5)).distance;
+        assert!((flange - 0.35e-3).abs() < 1e-6, "the flange is nearer");
+    }
+
+    #[test]
+    fn a_conical_flank_is_as_far_as_its_surface() {
+        // 8 to 6 mm over 10 mm.
+        let wall = [[-5.0, 0.0], [-5.0, 8.0], [5.0, 6.0], [5.0, 0.0]];
+        let core = revolved(&wall, 360);
+        let p = V3::new(7.9e-3, 0.0, 1e-5);
+        let (height, nearest) = (core.height_over_flank(p), core.nearest(p).distance);
+        assert!((height - nearest).abs() < 1e-6, "{height} {nearest}");
+    }
+
+    #[test]
+    fn the_search_finds_what_asking_every_triangle_finds() {
+        let core = bobbin();
+        for k in 0..500 {
+            let k = f64::from(k);
+            let (r, a) = (15e-3 * (k * 0.618).fract(), k * 0.377);
+            let p = V3::new(r * a.cos(), 16e-3 * (k * 0.271).fract() - 8e-3, r * a.sin());
+            let brute = core.mesh().nearest_at_level_brute(p);
+            assert_eq!(core.nearest_at_level(p), brute, "{p:?}");
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Rows: wire that lies turn beside turn, one way along y.
+//!
+//! The wire trails behind the nozzle. When the nozzle turns, wire may still be laid on beside the row for a turn or more,
+//! or may have climbed already. A pass is what the nozzle did, a row is what the wire made of it.
+
+use super::passes::Pass;
+
+/// Way back along y by which wire has turned, diameters: more than jitter, less than the groove beside it.
+const CAME_BACK: f64 = 0.5;
+
+/// The row that a station belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Row {
+    /// from 1
+    pub(crate) number: u32,
+    /// winding angle at which it begins, rad
+    pub(crate) from: f64,
+    /// its direction along y, +1 or -1
+    pub(crate) sense: f64,
+    /// farthest place along y in that direction, m
+    farthest: f64,
+}
+
+impl Row {
+    /// The first row, in the direction of its pass, from a place along y, m.
+    pub(crate) fn first(pass: Pass, y: f64) -> Self {
+        Self {
+            number: 1,
+            from: f64::NEG_INFINITY,
+            sense: pass.sense,
+            farthest: y,
+        }
+    }
+
+    /// Whether the nozzle goes the other way by now, so that the next row may begin.
+    pub(crate) fn is_over_in(&self, pass: Pass) -> bool {
+        self.sense != pass.sense
+    }
+
+    /// The row of the next station at `angle` (rad) and `y` (m): a new one once the nozzle has turned and wire has
+    /// climbed or come back.
+    pub(crate) fn next(self, pass: Pass, angle: f64, y: f64, climbed: bool, diameter: f64) -> Self {
+        let back = (self.farthest - y) * self.sense > CAME_BACK * diameter;
+        if self.is_over_in(pass) && (climbed || back) {
+            return Self {
+                number: self.number + 1,
+                from: angle,
+                sense: pass.sense,
+                farthest: y,
+            };
+        }
+        let farthest = if (y - self.farthest) * self.sense > 0.0 {
+            y
+        } else {
+            self.farthest
+        };
+        Self { farthest, ..self }
+    }
+}

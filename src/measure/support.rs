@@ -1,0 +1,89 @@
+//! What a wire was laid over: the core, or wire of earlier rows below it.
+
+use super::coil::{Coil, Record};
+use super::passes::Pass;
+use super::row::Row;
+
+/// Axial distance up to which wire of an earlier row lies below a wire, diameters: cos 30 degrees, the largest at
+/// which wire that rests on it stands half a diameter above it.
+const BELOW: f64 = 0.866_025_403_784_438_6;
+
+/// The same for wire of the same row, which a wire can only have climbed on, diameters.
+const CLIMBED: f64 = 0.5;
+
+/// Rise over a wire from which on another lies in the layer above it, diameters: half of a wire on a wire. In the
+/// groove of touching wires it is 0.866.
+const NEXT_LAYER: f64 = 0.5;
+
+/// What lies below a wire at one polar angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Support {
+    /// height over the core at which the wire would rest if it were pushed straight down, m
+    pub(crate) level: f64,
+    /// it would rest on wire and not on the core
+    pub(crate) is_wire: bool,
+    /// one more than the layer of the wire below, 1 where there is none
+    pub(crate) layer: u32,
+}
+
+impl Coil {
+    /// Row of the next station, and what lies below it: wire at `angle` (rad), `y` (m) and `height` over the core
+    /// (m) in this pass. `bucket` is that of the wire.
+    pub(crate) fn row_and_support(
+        &self,
+        pass: Pass,
+        angle: f64,
+        bucket: (usize, i64),
+        y: f64,
+        height: f64,
+    ) -> (Row, Support) {
+        let last = self.records.last();
+        let row = last.map_or_else(|| Row::first(pass, y), |last| last.row);
+        // Once the nozzle has turned, wire of the row itself may be what the next one lies on.
+        let least = row.number + u32::from(row.is_over_in(pass));
+        let climbed = row.is_over_in(pass)
+            && self.support(least, bucket, y, height).layer
+                > last.map_or(1, |last| last.station.layer);
+        let row = row.next(pass, angle, y, climbed, self.spec.diameter);
+        (row, self.support(row.number, bucket, y, height))
+    }
+
+    /// What lies below wire at `y` (m) and `height` over the core (m) among the stations of one polar angle. Only
+    /// rows before number `row` carry it; on others it has climbed.
+    ///
+    /// Down is the direction of the wire's height: what lies beside the wire does not carry it.
+    fn support(&self, row: u32, bucket: (usize, i64), y: f64, height: f64) -> Support {
+        let d = self.spec.diameter;
+        let mut support = Support {
+            level: 0.0,
+            is_wire: false,
+            layer: 1,
+        };
+        for bin in bucket.1 - 1..=bucket.1 + 1 {
+            let mut next = self.buckets.get(&(bucket.0, bin)).copied();
+            while let Some(index) = next {
+                let Record {
+                    station: lower,
+                    row: of,
+                    beneath,
+                    ..
+                } = &self.records[index];
+                next = *beneath;
+                let (aside, rise) = ((y - lower.position.y).abs() / d, height - lower.height);
+                let earlier = of.number < row;
+                if aside > if earlier { BELOW } else { CLIMBED } {
+                    continue;
+                }
+                if rise >= NEXT_LAYER * d {
+                    support.layer = support.layer.max(lower.layer + 1);
+                }
+                let level = lower.height + d * (1.0 - aside * aside).sqrt();
+                if earlier && level > support.level {
+                    support.level = level;
+                    support.is_wire = true;
+                }
+            }
+        }
+        support
+    }
+}

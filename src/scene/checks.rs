@@ -1,0 +1,210 @@
+//! Leaves that contradict each other, each told with the leaf to change.
+
+use super::build::{COARSEST, Extent, FINEST};
+use super::impossible::si;
+use super::problems::Problems;
+use super::{Integrator, SceneError, Solver};
+use crate::rod::Section;
+use crate::settings::SceneSettings;
+
+impl SceneSettings {
+    /// The first of these leaves that somebody gave, else the first: the one to blame.
+    fn given(&self, keys: &[&'static str]) -> &'static str {
+        let given = keys.iter().find(|key| self.origins.contains_key(*key));
+        given.unwrap_or(&keys[0])
+    }
+
+    /// The corners do not fit on a core of this smaller half side, m.
+    pub(super) fn corner_too_large(&self, half: f64) -> SceneError {
+        let c = &self.core;
+        let smaller = if c.width_x < c.height_z {
+            "core.width_x"
+        } else {
+            "core.height_z"
+        };
+        match self.given(&["core.corner_radius", smaller]) {
+            "core.corner_radius" => self.impossible(
+                "core.corner_radius",
+                "the corner is larger than half the core's smaller side",
+                format!("0 to {} m", si(half)),
+            ),
+            side => self.impossible(
+                side,
+                format!(
+                    "two corners of core.corner_radius = {} m do not fit",
+                    si(c.corner_radius)
+                ),
+                format!(
+                    "at least {} m, or a smaller core.corner_radius",
+                    si(2.0 * c.corner_radius)
+                ),
+            ),
+        }
+    }
+
+    pub(super) fn check_core(&self, wire: &Section, extent: &Extent, problems: &mut Problems) {
+        let length = extent.y_max - extent.y_min;
+        if wire.diameter > length {
+            let reason = "the wire is wider than the core is long";
+            let blamed = match self.core.shape.as_str() {
+                "mesh" => "wire.diameter",
+                _ => self.given(&["wire.diameter", "core.length_y"]),
+            };
+            problems.add(match blamed {
+                "core.length_y" => {
+                    self.impossible(blamed, reason, format!("at least {} m", si(wire.diameter)))
+                }
+                _ => self.impossible(blamed, reason, format!("at most {} m", si(length))),
+            });
+            return;
+        }
+        let (low, high) = (extent.y_min + wire.radius(), extent.y_max - wire.radius());
+        if !(low..=high).contains(&self.start.clamp_y) {
+            problems.add(self.impossible(
+                "start.clamp_y",
+                "the wire end is clamped beside the core",
+                format!("{} to {} m", si(low), si(high)),
+            ));
+        }
+    }
+
+    pub(super) fn check_nozzle(&self, wire: &Section, extent: &Extent, problems: &mut Problems) {
+        let distance = self.nozzle.distance;
+        let clear = extent.turning_radius + wire.diameter;
+        if distance <= clear {
+            problems.add(self.impossible(
+                "nozzle.distance",
+                format!(
+                    "the nozzle is inside the circle the turning core needs, {} m and the wire",
+                    si(extent.turning_radius)
+                ),
+                format!("more than {} m", si(clear)),
+            ));
+        }
+        // Further out the wire would leave the core at more than 45 degrees.
+        let (low, high) = (extent.y_min - distance, extent.y_max + distance);
+        if !(low..=high).contains(&self.nozzle.y_start) {
+            problems.add(self.impossible(
+                "nozzle.y_start",
+                "the nozzle is farther beside the core than in front of it",
+                format!("{} to {} m", si(low), si(high)),
+            ));
+        }
+    }
+
+    pub(super) fn check_strength(&self, wire: &Section, problems: &mut Problems) {
+        if self.tensioner.tension >= wire.strength {
+            problems.add(self.impossible(
+                "tensioner.tension",
+                format!("the wire breaks at {} N", si(wire.strength)),
+                format!("less than {} N", si(wire.strength)),
+            ));
+        }
+    }
+
+    pub(super) fn check_motion_and_friction(&self, problems: &mut Problems) {
+        let (ramp, turns) = (self.spindle.ramp_turns, self.spindle.turns);
+        if ramp > turns {
+            let reason = format!("the run ends after {} turns, still accelerating", si(turns));
+            problems.add(match self.given(&["spindle.ramp_turns", "spindle.turns"]) {
+                "spindle.turns" => self.impossible(
+                    "spindle.turns",
+                    reason,
+                    format!(
+                        "at least spindle.ramp_turns, {}, or a shorter ramp",
+                        si(ramp)
+                    ),
+                ),
+                key => {
+                    self.impossible(key, reason, format!("at most spindle.turns, {}", si(turns)))
+                }
+            });
+        }
+        if self.friction.kinetic > self.friction.static_ {
+            let reason = "static friction below kinetic friction";
+            problems.add(match self.given(&["friction.kinetic", "friction.static"]) {
+                "friction.static" => self.impossible(
+                    "friction.static",
+                    reason,
+                    format!("at least friction.kinetic, {}", si(self.friction.kinetic)),
+                ),
+                key => self.impossible(
+                    key,
+                    reason,
+                    format!("at most friction.static, {}", si(self.friction.static_)),
+                ),
+            });
+        }
+    }
+
+    pub(super) fn check_spacing(
+        &self,
+        solver: &Solver,
+        wire: &Section,
+        extent: &Extent,
+        problems: &mut Problems,
+    ) {
+        let d = wire.diameter;
+        let (finest, coarsest) = (FINEST * d, COARSEST * d);
+        let near = solver.spacing_near;
+        if !(finest..=coarsest).contains(&near) {
+            let reason = if near < finest {
+                "too fine for a rod"
+            } else {
+                "too coarse for this wire"
+            };
+            let range = format!(
+                "{} to {} m ({FINEST} to {COARSEST} wire diameters)",
+                si(finest),
+                si(coarsest)
+            );
+            problems.add(self.impossible("solver.spacing_near", reason, range));
+            return;
+        }
+        // Contact of stiffness 1e10 N/m2 that is wrong by so much pushes harder than most wire is
+        // pulled.
+        let most = 0.1 * d;
+        if solver.tolerance > most * (1.0 + 1e-9) && solver.integrator == Integrator::Implicit {
+            problems.add(self.impossible(
+                "solver.tolerance",
+                "steps may be wrong by more than a tenth of the wire's diameter",
+                format!("at most {} m", si(most)),
+            ));
+        }
+        let span = self.nozzle.distance - extent.turning_radius;
+        if span <= d {
+            // The nozzle inside the core is told already.
+            return;
+        }
+        let free = solver.spacing_free;
+        if 3.0 * near > span {
+            problems.add(self.impossible(
+                self.given(&["nozzle.distance", "solver.spacing_near"]),
+                format!(
+                    "the free span, {} m, has no room for three edges of the spacing near the core, {} m",
+                    si(span),
+                    si(near)
+                ),
+                format!(
+                    "nozzle.distance at least {} m, or solver.spacing_near at most {} m",
+                    si(extent.turning_radius + 3.0 * near),
+                    si(span / 3.0)
+                ),
+            ));
+        } else if free < near || 3.0 * free > span {
+            let reason = match free < near {
+                true => "the free span cannot be finer than the wire near the core",
+                false => "the free span needs at least three edges",
+            };
+            problems.add(self.impossible(
+                "solver.spacing_free",
+                reason,
+                format!(
+                    "solver.spacing_near, {} m, to {} m",
+                    si(near),
+                    si(span / 3.0)
+                ),
+            ));
+        }
+    }
+}

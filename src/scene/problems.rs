@@ -1,0 +1,38 @@
+//! All that is wrong with a scene, collected before any of it is told.
+
+use super::SceneError;
+
+/// Errors in the order in which they were found.
+#[derive(Debug, Default)]
+pub(super) struct Problems(Vec<SceneError>);
+
+impl Problems {
+    /// Adds an error; one that stands for several adds each of them once.
+    pub(super) fn add(&mut self, error: SceneError) {
+        match error {
+            SceneError::Several { errors } => errors.into_iter().for_each(|error| self.add(error)),
+            error if self.0.contains(&error) => {}
+            error => self.0.push(error),
+        }
+    }
+
+    /// The value, if there is one; otherwise its error is added.
+    pub(super) fn note<T>(&mut self, result: Result<T, SceneError>) -> Option<T> {
+        result.map_err(|error| self.add(error)).ok()
+    }
+
+    /// An error where there was one, of all where there were several.
+    pub(super) fn finish(mut self) -> Result<(), SceneError> {
+        match self.0.len() {
+            0 => Ok(()),
+            1 => Err(self.0.remove(0)),
+            _ => Err(SceneError::Several { errors: self.0 }),
+        }
+    }
+
+    /// The value where nothing is wrong. There is one in that case.
+    pub(super) fn finish_with<T>(self, value: Option<T>) -> Result<T, SceneError> {
+        let nothing = SceneError::Several { errors: Vec::new() };
+        self.finish().and_then(|()| value.ok_or(nothing))
+    }
+}

@@ -1,0 +1,132 @@
+//! Faults of the wire itself: slack and break, kept as defects with their place, and the verdict on the run.
+
+use super::{SLACK, Simulation};
+use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
+use crate::measure::{Defect, DefectKind, TurnMeasures, Verdict};
+use crate::signals::EventKind;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Turn of the core within which wire that is slack again is still slack, rad.
+///
+/// A free span that goes slack swings, and every swing lets the tension fall to zero again. A quarter of a turn
+/// lies between the corners of a core, each of which may jerk the wire again.
+const SAME_SLACK: f64 = FRAC_PI_2;
+
+impl Simulation {
+    /// Keeps the extremes of the tension, and notes where the wire goes slack.
+    pub(super) fn watch_tension(&mut self) {
+        let t = self.wire_tension();
+        let o = &mut self.run.outputs;
+        o.wire_tension_min = o.wire_tension_min.min(t);
+        o.wire_tension_max = o.wire_tension_max.max(t);
+        let slack = t < SLACK;
+        if slack {
+            self.note_slack();
+        }
+        self.run.was_slack = slack;
+    }
+
+    fn note_slack(&mut self) {
+        let (core, now) = (self.sys.state.spindle.angle, self.sys.state.time);
+        let last = self.run.slack_at.replace(core);
+        let slack = |fault: &&mut Defect| fault.kind == DefectKind::Slack;
+        if last.is_some_and(|last| (core - last).abs() < SAME_SLACK)
+            && let Some(fault) = self.run.faults.iter_mut().rev().find(slack)
+        {
+            fault.until_s = Some(now);
+            return;
+        }
+        self.note_fault(DefectKind::Slack, self.lift_off());
+        self.report(
+            EventKind::Slack,
+            format!(
+                "the wire went slack at the nozzle (tension below {SLACK} N); raise tension_setpoint or change the spindle's speed more gently"
+            ),
+        );
+    }
+
+    /// The wire has parted at a live node; from now on it stays as it is.
+    pub(super) fn note_break(&mut self, node: usize, text: String) {
+        self.run.broken = true;
+        self.note_fault(DefectKind::Break, node);
+        self.report(EventKind::Break, text);
+    }
+
+    /// Keeps a fault of the wire at a live node; what is not laid yet counts to the place where wire is laid.
+    fn note_fault(&mut self, kind: DefectKind, node: usize) {
+        let (angle, _) = self.wound_to(node.min(self.lift_off()));
+        let angle = angle.max(0.0);
+        let now = self.sys.state.time;
+        let place: V3 = Spin::new(self.sys.state.spindle.angle).to_core(self.sys.state.rod.x[node]);
+        self.run.faults.push(Defect {
+            kind,
+            turn: (angle / TAU) as u32 + 1,
+            layer: self.coil.layer(),
+            angle_deg: (angle % TAU).to_degrees(),
+            time_s: now,
+            until_s: (kind == DefectKind::Slack).then_some(now),
+            size_m: None,
+            size_d: None,
+            place_m: place.into(),
+        });
+    }
+
+    /// Angle along the wire from the clamp to a live node, and its polar angle, rad.
+    pub(super) fn wound_to(&self, node: usize) -> (f64, f64) {
+        let spin = Spin::new(self.sys.state.spindle.angle);
+        let x = &self.sys.state.rod.x;
+        // from the last settled node, or from the clamp, where the coil starts
+        let start = || (0.0, polar_angle(spin.to_core(x[0])));
+        let direction = self.coil.spec().direction;
+        x[..=node].iter().fold(
+            self.coil.end_angle().unwrap_or_else(start),
+            |(angle, last), x| {
+                let polar = polar_angle(spin.to_core(*x));
+                (angle + direction * wrap_to_pi(polar - last), polar)
+            },
+        )
+    }
+
+    /// Turn and polar angle (rad) of the defect that was found last.
+    pub(super) fn last_defect(&self) -> Option<(u32, f64)> {
+        let fault = self.run.faults.last();
+        let fault = fault.map(|f| {
+            (
+                f.until_s.unwrap_or(f.time_s),
+                f.turn,
+                f.angle_deg.to_radians(),
+            )
+        });
+        let laid = self.coil.last_defect().map(|d| (d.time, d.turn, d.angle));
+        let last = match (laid, fault) {
+            (Some(laid), Some(fault)) if laid.0 > fault.0 => Some(laid),
+            (laid, fault) => fault.or(laid),
+        };
+        last.map(|(_, turn, angle)| (turn, angle))
+    }
+
+    /// Every defect so far, in the order of their times: those of settled wire, slack, and a break.
+    pub fn defects(&self) -> Vec<Defect> {
+        let mut all = self.coil.defects();
+        all.extend(self.run.faults.iter().cloned());
+        all.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
+        all
+    }
+
+    /// Measures of every turn, with the verdict of what the wire met while it was wound there.
+    pub fn turns(&self) -> Vec<TurnMeasures> {
+        let mut turns = self.coil.turns();
+        for fault in &self.run.faults {
+            if let Some(turn) = turns.get_mut(fault.turn as usize - 1) {
+                turn.verdict = turn.verdict.max(fault.kind.into());
+            }
+        }
+        turns
+    }
+
+    /// The verdict on the run: that on the coil, or what befell the wire where that is worse.
+    pub fn verdict(&self) -> Verdict {
+        let faults = self.run.faults.iter().map(|fault| fault.kind.into());
+        faults.fold(self.coil.verdict(), Verdict::max)
+    }
+}

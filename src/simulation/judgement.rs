@@ -1,0 +1,54 @@
+//! What bulges are judged by: the height of wire at rest, or a limit of their own.
+
+use super::{Simulation, quasi_static};
+use crate::measure::BulgeLimit;
+use crate::signals::EventKind;
+
+/// Largest tension of a yardstick that a saved state may ask for, N: that of the input.
+const MOST_TENSION: f64 = 1e4;
+
+impl Simulation {
+    /// Takes the quasi-static height of wire under `tension`, N, as the yardstick where it is another than that of
+    /// the scene.
+    pub(super) fn take_yardstick_for(&mut self, tension: f64) -> Result<(), &'static str> {
+        if tension == self.run.yardstick_tension {
+            return Ok(());
+        }
+        if !(0.0..=MOST_TENSION).contains(&tension) {
+            return Err("wire at rest has no such tension");
+        }
+        let surface = self.sys.model.core.clone().ok_or("there is no core")?;
+        let profile = quasi_static::profile(&self.scene, &surface, tension);
+        self.coil.set_profile(profile);
+        Ok(())
+    }
+
+    /// What bulges are judged by.
+    pub fn bulge_limit(&self) -> BulgeLimit {
+        self.coil.bulge_limit()
+    }
+
+    /// What the reader of a verdict has to know about bulges, if anything.
+    pub(super) fn doubt_about_bulge(&self) -> Option<(EventKind, String)> {
+        let (d, tension) = (self.scene.wire.diameter, self.run.yardstick_tension);
+        let limit = self.coil.bulge_limit();
+        match limit {
+            BulgeLimit::Fallback { limit_m } => Some((
+                EventKind::Judgement,
+                format!(
+                    "the height of this wire at rest on this core is not known, so wire bulges that stands more than {:.3} mm (one diameter) off; set defects.bulge_absolute to judge by another height",
+                    1e3 * limit_m
+                ),
+            )),
+            BulgeLimit::OverRest { highest_m, .. } if highest_m > d => Some((
+                EventKind::Note,
+                format!(
+                    "this wire stands up to {:.3} mm ({:.1} d) off this core at rest under {tension} N, which is no bulge to the verdict; raise the tension, or set defects.bulge_absolute",
+                    1e3 * highest_m,
+                    highest_m / d
+                ),
+            )),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Which way the nozzle went while wire was laid: where passes begin, and which way the core winds.
+
+use super::Simulation;
+use super::nozzle_way::{Found, Traverse};
+use std::f64::consts::TAU;
+
+/// Way back along y from which on the nozzle has turned, wire diameters; less is jitter. Chosen: half of the
+/// smallest pitch.
+const TURNED: f64 = 0.5;
+
+/// Turn of the core the other way round beyond its start from which on it winds that way, rad. Chosen: a
+/// twentieth of a turn, less than a corner of any core takes.
+const OTHER_WAY: f64 = 0.05 * TAU;
+
+impl Simulation {
+    /// Follows core and nozzle after a step: which way wire is wound, and where the nozzle turned.
+    ///
+    /// A pass is begun at the wire that was laid when the nozzle turned, not at the wire that has come to rest by then.
+    pub(super) fn follow_traverse(&mut self) {
+        let turn = self.sys.state.spindle.angle - self.run.angle0;
+        let direction = self.coil.spec().direction;
+        if turn * direction < -OTHER_WAY {
+            self.coil.set_direction(-direction);
+            while self.coil.passes() > 1 {
+                self.coil.take_back_pass();
+            }
+            self.run.traverse = Traverse::new(self.sys.state.support[1].point.y);
+        }
+        let core = turn * self.coil.spec().direction;
+        let y = self.sys.state.support[1].point.y;
+        let turned = TURNED * self.scene.wire.diameter;
+        let found = self.run.traverse.look(y, core, turned);
+        if found != Found::Nothing || self.run.traverse.just_left().next().is_some() {
+            let ahead = self.wound_to(self.lift_off()).0 - core;
+            for end in self.run.traverse.just_left() {
+                end.ahead = Some(ahead);
+            }
+            match found {
+                Found::Nothing => {}
+                Found::First(sense) => self.coil.set_first_sense(sense),
+                Found::Turned(turn, sense) => self.coil.begin_pass(turn.laid(ahead), sense),
+                Found::TakenBack => self.coil.take_back_pass(),
+            }
+        }
+    }
+}

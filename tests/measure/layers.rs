@@ -1,0 +1,152 @@
+//! Coils of several layers, made on paper: where a layer is one, where a neighbour is one, and what lies below.
+
+use crate::coils::{D, on_cylinder, spec, wound};
+use coilwind::measure::{Coil, DefectFlags, DefectKind, STATIONS_PER_TURN, SettledNode, Verdict};
+use std::f64::consts::TAU;
+
+/// Turns of a layer of the coils here.
+const TURNS: f64 = 5.0;
+
+/// Rise from layer to layer in grooves, m.
+fn step() -> f64 {
+    0.75f64.sqrt() * D
+}
+
+/// Place of wire `angle` after the clamp in a coil of layers in grooves: y and height over the core.
+///
+/// Straight over most of a turn, a step to the next groove in the rest, as orthocyclic winding has it.
+fn orthocyclic(angle: f64) -> (f64, f64) {
+    let turn = (angle / TAU).floor();
+    let within = angle / TAU - turn;
+    let layer = (turn / TURNS).floor();
+    let place = |turn: f64| {
+        let layer = (turn / TURNS).floor();
+        let along = turn - layer * TURNS;
+        let back = layer % 2.0 == 1.0;
+        D * if back { TURNS - 0.5 - along } else { along }
+    };
+    let aside = ((within - 0.9) / 0.1).max(0.0);
+    let y = place(turn) + aside * (place(turn + 1.0) - place(turn));
+    let next = ((turn + 1.0) / TURNS).floor();
+    (y, step() * (layer + aside * (next - layer)))
+}
+
+fn coil_of(layers: u32) -> Coil {
+    // Without the last turn's step, which would climb to a layer that is not there.
+    let nodes = on_cylinder(f64::from(layers) * TURNS - 0.15, 1.0, orthocyclic);
+    let mut coil = wound(spec(), &nodes);
+    for layer in 1..layers {
+        let sense = if layer % 2 == 1 { -1.0 } else { 1.0 };
+        coil.begin_pass((f64::from(layer) * TURNS - 0.05) * TAU, sense);
+    }
+    coil
+}
+
+/// The first turn of a pass was compared with the beginning of its pass: gaps of 6 to 12 mm, and `layer` flickered
+/// in grooves.
+#[test]
+fn layers_in_grooves_have_neither_gaps_nor_flicker() {
+    let coil = coil_of(4);
+    assert_eq!(coil.flags(), DefectFlags::default(), "{:?}", coil.defects());
+    assert!(coil.worst().gap_width < 0.05 * D);
+    let layers: Vec<u32> = coil.stations().map(|s| s.layer).collect();
+    let changes = layers.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    assert_eq!((changes, layers.last()), (3, Some(&4)));
+    for station in coil.stations() {
+        let within = station.angle / TAU % 1.0;
+        let straight = (0.02..0.85).contains(&within);
+        let over = format!("turn {:.2}: {station:?}", station.angle / TAU);
+        assert!(!straight || station.bulge.abs() < 0.01 * D, "{over}");
+        assert!(!straight || station.overlap_depth == 0.0, "{over}");
+        if let (Some(n), true) = (station.neighbour, straight) {
+            assert!(
+                n.gap.abs() < 0.02 * D && (n.axial - D).abs() < 0.02 * D,
+                "{over}"
+            );
+        }
+    }
+    let turns = coil.turns();
+    for (k, turn) in turns.iter().enumerate() {
+        let first = k as f64 % TURNS == 0.0;
+        let expected = if first {
+            Verdict::Single
+        } else {
+            Verdict::Aligned
+        };
+        assert_eq!(turn.verdict, expected, "{turn:?}");
+        let place = (k as u32 / TURNS as u32 + 1, k as u32 % TURNS as u32 + 1);
+        assert_eq!((turn.layer, turn.turn_in_layer), place, "{turn:?}");
+    }
+}
+
+/// A nozzle that goes back by one pitch once makes no gap where the pass begins anew.
+#[test]
+fn going_back_by_a_pitch_once_is_no_gap() {
+    let place = |angle: f64| match angle / TAU {
+        t if t < 3.0 => (D * t, 0.0),
+        t if t < 4.0 => (D * (6.0 - t), step()),
+        t => (D * (t - 2.0) + 2.0 * D, 0.0),
+    };
+    let mut coil = wound(spec(), &on_cylinder(7.0, 1.0, place));
+    assert!(coil.flags().gap, "one pass would have gaps");
+    coil.begin_pass(3.0 * TAU, -1.0);
+    coil.begin_pass(4.0 * TAU, 1.0);
+    assert!(!coil.flags().gap, "{:?}", coil.defects());
+    let without = |s: &&coilwind::measure::Station| s.neighbour.is_none();
+    // The first turn of each of three rows, which begin up to half a wire's way after the nozzle has turned.
+    let count = coil.stations().filter(without).count();
+    assert!(
+        (3 * STATIONS_PER_TURN - 50..=3 * STATIONS_PER_TURN).contains(&count),
+        "{count}"
+    );
+}
+
+/// A bulge in the second layer was judged by the height of the first, or of the nearest wire beside it.
+#[test]
+fn a_bulge_in_the_second_layer_is_measured_over_the_first() {
+    let nodes: Vec<SettledNode> = on_cylinder(2.0 * TURNS - 0.15, 1.0, |angle| {
+        let (y, height) = orthocyclic(angle);
+        let off = (7.3..7.6).contains(&(angle / TAU));
+        (y, height + if off { 1.2 * D } else { 0.0 })
+    });
+    let mut coil = wound(spec(), &nodes);
+    coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    let defects = coil.defects();
+    let bulges: Vec<_> = defects
+        .iter()
+        .filter(|d| d.kind == DefectKind::Bulge)
+        .collect();
+    let [bulge] = bulges[..] else {
+        panic!("one bulge: {:?}", coil.defects());
+    };
+    assert_eq!(
+        (bulge.kind.as_str(), bulge.turn, bulge.layer),
+        ("bulge", 8, 2)
+    );
+    assert!((100.0..220.0).contains(&bulge.angle_deg), "{bulge:?}");
+    assert!((bulge.size_d.unwrap() - 1.2).abs() < 0.02, "{bulge:?}");
+}
+
+/// Wire that has no room left at the flange climbs just before the nozzle turns, which was an overlap.
+#[test]
+fn the_step_to_the_next_layer_is_no_overlap() {
+    let turn = 4.0;
+    let place = |angle: f64| match angle / TAU {
+        t if t < turn - 0.15 => (D * t, 0.0),
+        // Squeezed in half a wire on, then back in the grooves.
+        t if t < turn + 1.0 => (D * (turn - 0.65), 0.76 * D),
+        t => (D * (2.0 * turn + 0.35 - t), step()),
+    };
+    let nodes = on_cylinder(6.0, 1.0, place);
+    let mut coil = wound(spec(), &nodes);
+    assert!(coil.flags().overlap, "as long as the nozzle has not turned");
+    coil.begin_pass(turn * TAU, -1.0);
+    assert!(!coil.flags().overlap, "{:?}", coil.defects());
+    assert_eq!(coil.turns()[3].verdict, Verdict::Aligned);
+    // A climb that begins earlier is one.
+    let mut early = wound(spec(), &nodes);
+    early.begin_pass((turn + 0.3) * TAU, -1.0);
+    let defects = early.defects();
+    let overlap = defects.iter().any(|d| d.kind == DefectKind::Overlap);
+    assert!(overlap, "{defects:?}");
+}

@@ -1,0 +1,124 @@
+//! Scenes with more than one thing wrong, and whom a contradiction is blamed on.
+
+use crate::common::{assert_says, parse, refused};
+use coilwind::scene::SceneError;
+use coilwind::settings::SceneSettings;
+
+/// `check` stopped at the first of these.
+#[test]
+fn all_that_is_wrong_is_told_at_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("seven.toml");
+    let text = "[wire]\ndiametr_mm = 0.7\nmaterial = 'steel'\n[wier]\na = 1\n[core]\ncorner_radius_mm = 7\n\
+                [friction]\nstatic = 0.1\nkinetic = 0.3\n[tensioner]\ntension = 1e9\n[start]\nclamp_y_mm = 90\n";
+    std::fs::write(&scene, text).unwrap();
+    let set = [("solver.tolerance_um".to_owned(), "-1".to_owned())];
+    let error = SceneSettings::load_and_build(scene.to_str().unwrap(), &set).expect_err("refused");
+    let SceneError::Several { errors } = &error else {
+        panic!("one of many: {error}");
+    };
+    assert_eq!(errors.len(), 8, "{error}");
+    let message = error.to_string();
+    assert_eq!(message.lines().count(), 8, "a line each: {message}");
+    assert_says(
+        &message,
+        &[
+            "seven.toml:2: unknown key wire.diametr_mm",
+            "seven.toml:3: wire.material",
+            "seven.toml:4: unknown section [wier]",
+            "seven.toml:7: core.corner_radius",
+            "seven.toml:10: friction.kinetic",
+            "seven.toml:12: tensioner.tension",
+            "seven.toml:14: start.clamp_y",
+            "set by name: solver.tolerance_um = -1",
+        ],
+    );
+}
+
+#[test]
+fn what_is_told_together_is_what_is_told_alone() {
+    let one = refused("[friction]\nstatic = 0.1\nkinetic = 0.3");
+    let both = refused("[friction]\nstatic = 0.1\nkinetic = 0.3\n[start]\nclamp_y_mm = 90");
+    assert!(
+        both.starts_with(&one) && both.lines().count() == 2,
+        "{both}"
+    );
+    assert_eq!(one.lines().count(), 1);
+}
+
+/// Messages named a key that nobody had given, such as the default radius of the corners.
+#[test]
+fn the_key_to_blame_is_one_that_was_given() {
+    for (text, parts) in [
+        (
+            "[core]\nwidth_x_mm = 3",
+            &["test.toml:2: core.width_x = 0.003 m", "at least 0.004 m"][..],
+        ),
+        (
+            "[core]\nlength_y_mm = 0.5",
+            &["test.toml:2: core.length_y = 0.0005 m", "at least 0.0007 m"],
+        ),
+        (
+            "[spindle]\nturns = 0.001",
+            &[
+                "test.toml:2: spindle.turns = 0.001",
+                "at least spindle.ramp_turns",
+            ],
+        ),
+        (
+            "[wire]\nyield_stress_MPa = 2000",
+            &["test.toml:2: wire.yield_stress", "at most wire.flow_stress"],
+        ),
+    ] {
+        let message = refused(text);
+        assert_eq!(message.lines().count(), 1, "{message}");
+        assert_says(&message, parts);
+    }
+}
+
+/// The allowed interval of the spacing of the free span was empty: from the spacing near the core to less than that.
+#[test]
+fn a_free_span_without_room_says_what_would_make_room() {
+    let message = refused("[nozzle]\ndistance_mm = 17\n[solver]\nspacing_near_mm = 2");
+    assert_says(
+        &message,
+        &[
+            "nozzle.distance = 0.017 m",
+            "three edges",
+            "solver.spacing_near at most",
+        ],
+    );
+}
+
+/// Thick wire was refused for a spacing that nobody had given.
+#[test]
+fn thick_wire_has_a_spacing_of_its_own() {
+    let text = "[wire]\ndiameter_mm = 5\n[core]\ncorner_radius_mm = 5\n[solver]\ntolerance_um = 2";
+    let scene = parse(text)
+        .expect("it is read")
+        .build()
+        .expect("it is built");
+    assert!(scene.solver.spacing_near >= 0.5e-3);
+}
+
+#[test]
+fn a_key_that_the_shape_does_not_use_is_warned_of() {
+    let warned = |text: &str| -> Vec<String> {
+        let (_, warnings) = parse(text).unwrap().build_with_warnings().unwrap();
+        warnings.iter().map(ToString::to_string).collect()
+    };
+    let warnings =
+        warned("[core]\nshape = 'cylinder'\nradius_mm = 10\nwidth_x_mm = 12\nlength_y_mm = 30");
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert_says(
+        &warnings[0],
+        &[
+            "test.toml:4: core.width_x = 0.012 m",
+            "core.shape = cylinder does not use it",
+            "core.shape = rounded-box",
+        ],
+    );
+    let warnings = warned("[core]\nradius_mm = 10");
+    assert_says(&warnings[0], &["core.radius", "set core.shape = cylinder"]);
+    assert!(warned("[core]\nwidth_x_mm = 12").is_empty());
+}
