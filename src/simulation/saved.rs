@@ -65,7 +65,9 @@ impl Simulation {
             sys: Cow::Borrowed(&self.sys.state),
             coil: self.coil.saved(),
             implicit: match &self.stepper {
-                Stepper::Implicit(method) => Some(([method.next, method.wanted], method.statistics)),
+                Stepper::Implicit(method) => {
+                    Some(([method.next, method.wanted], method.statistics))
+                }
                 Stepper::Explicit { .. } => None,
             },
             run: Cow::Borrowed(&self.run),

@@ -55,11 +55,17 @@ struct Impulse {
 }
 
 impl Impulse {
-    /// None yet, of a touch in a step that ends with forces acting over `gamma` (s); `None` where nothing pushes or can move.
-    fn of(touch: &AcceptedTouch, gamma: f64, mobility: &[f64]) -> Option<Self> {
+    /// None yet, of a touch of the wire at `places` (m) in a step that ends with forces acting over `gamma` (s); `None` where
+    /// nothing pushes or can move.
+    ///
+    /// What pulls along the wire is left to the solve: an edge is so stiff that it moves with all wire that a wave reaches in the step.
+    fn of(touch: &AcceptedTouch, gamma: f64, mobility: &[f64], places: &[V3]) -> Option<Self> {
         let pressed = touch.force.dot(&touch.normal);
         let (mut nodes, mut weights, mut count) = ([0; 6], [0.0; 6], 0);
-        for place in [Some(touch.point.weights()), touch.old].into_iter().flatten() {
+        for place in [Some(touch.point.weights()), touch.old]
+            .into_iter()
+            .flatten()
+        {
             for (i, w) in place.iter().filter(|(_, w)| *w != 0.0) {
                 (nodes[count], weights[count]) = (i, w);
                 count += 1;
@@ -68,12 +74,20 @@ impl Impulse {
         let mobile = |(i, w): (usize, f64)| w * w * mobility[i];
         let parts = nodes.into_iter().zip(weights).take(count);
         let inverse: f64 = parts.map(mobile).sum();
+        let young = touch.point.weights().nodes;
+        let tangent = (places[young[2]] - places[young[0]]).normalize();
+        let of_wire = |v: V3| v - tangent * v.dot(&tangent);
+        let touch = AcceptedTouch {
+            surplus: of_wire(touch.surplus),
+            ..*touch
+        };
+        let friction = touch.force - touch.normal * pressed;
         (pressed > 0.0 && inverse > 0.0).then(|| Self {
-            touch: *touch,
+            touch,
             nodes,
             weights,
             count,
-            along: touch.force / pressed,
+            along: touch.normal + of_wire(friction) / pressed,
             given: gamma * pressed,
             inverse,
             range: [[0.0; 2]; PARTS],
@@ -157,9 +171,8 @@ impl Impacts {
     fn rubbed(&self) -> f64 {
         let of_touch = |impulse: &Impulse| {
             let rubs = impulse.along - impulse.touch.normal;
-            let mean = |(i, w): (usize, f64)| {
-                0.5 * w * (self.motion[0][i] + self.start[0][i]).dot(&rubs)
-            };
+            let mean =
+                |(i, w): (usize, f64)| 0.5 * w * (self.motion[0][i] + self.start[0][i]).dot(&rubs);
             -impulse.added[0] * impulse.nodes().map(mean).sum::<f64>()
         };
         self.impulses.iter().map(of_touch).sum()
@@ -201,7 +214,7 @@ impl Impacts {
         self.impulses.clear();
         let began = !self.motion[1].is_empty();
         for touch in touches {
-            let Some(mut impulse) = Impulse::of(touch, step.gamma, &self.mobility) else {
+            let Some(mut impulse) = Impulse::of(touch, step.gamma, &self.mobility, places) else {
                 continue;
             };
             impulse.range[0] = [0.0, touch.rebound];
@@ -219,11 +232,18 @@ impl Impacts {
         }
     }
 
-    /// Gives back what the solve took too much of friction.
+    /// Gives back what the solve took too much of friction, or takes what it left, by no more than the wire slides.
     fn give_back_friction(&mut self, sys: &mut System, step: &StepFormula, parts: usize) {
         let before = sys.kinetic();
         let spin = Spin::new(sys.state.spindle.angle);
-        for impulse in &self.impulses {
+        for impulse in &mut self.impulses {
+            let of_nodes = impulse.nodes();
+            let speed: V3 = of_nodes.map(|(i, w)| self.motion[0][i] * w).sum();
+            let slide = speed - impulse.touch.normal * speed.dot(&impulse.touch.normal);
+            let change = impulse.touch.surplus.norm() * impulse.inverse * step.gamma;
+            if change > slide.norm() {
+                impulse.touch.surplus *= slide.norm() / change;
+            }
             for (i, w) in impulse.nodes() {
                 let speed = impulse.touch.surplus * (w * self.mobility[i] * step.gamma);
                 sys.state.rod.v[i] += spin.to_lab(speed);
