@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::terminal::{print, stop_flag};
 use clap::Args;
-use coilwind::lab::stress::case_files::Files;
+use coilwind::lab::stress::case_files::{self, Files};
 use coilwind::lab::stress::invariants::judge;
 use coilwind::lab::stress::region::Totals;
 use coilwind::lab::stress::shrink::shrink;
@@ -182,6 +182,7 @@ fn collect(
     bar: &ProgressBar,
 ) -> Result<Totals, Failure> {
     let mut totals = Totals::new();
+    let mut rows = format!("{}\n", case_files::columns());
     let mut early = std::collections::BTreeMap::new();
     let mut due = 0;
     for (index, done) in receive {
@@ -189,6 +190,8 @@ fn collect(
         while let Some(done) = early.remove(&due) {
             let done = done?;
             totals.add(&done.case, &done.verdict);
+            rows += &case_files::row(&done.case, &done.verdict);
+            rows.push('\n');
             let mut text = line(args, &done);
             if !done.kept.is_empty() {
                 text += &done.kept;
@@ -199,6 +202,8 @@ fn collect(
         }
         bar.set_position(due);
     }
+    let path = args.out.join("cases.csv");
+    fs::write(&path, rows).map_err(|e| Failure::write(&path, e))?;
     Ok(totals)
 }
 

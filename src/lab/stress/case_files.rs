@@ -1,6 +1,6 @@
 //! A case as files: a scene, its inputs, and its mesh if it winds on one.
 
-use super::{Case, Kind};
+use super::{Case, Kind, Measures, Outcome, Verdict};
 use crate::settings::SceneSettings;
 use crate::signals::Inputs;
 use std::fmt::Write;
@@ -102,6 +102,34 @@ pub fn read(scene: &Path) -> Result<Case, String> {
         step: rows.get(1).ok_or_else(|| bad(&"fewer than two samples"))?[0],
         inputs: inputs.collect(),
     })
+}
+
+/// Names of the columns of [`row`].
+pub fn columns() -> String {
+    format!("number,signal,core,diameter,tension,speed,tolerance,twist,outcome,{}", Measures::COLUMNS)
+}
+
+/// A line of a table of cases: what was drawn, how it ended, and the numbers on the way.
+pub fn row(case: &Case, verdict: &Verdict) -> String {
+    let s = &case.settings;
+    let outcome = match &verdict.outcome {
+        Outcome::Completed => "completed".to_owned(),
+        Outcome::Broke { .. } => "broke".to_owned(),
+        Outcome::GaveUp { .. } => "gave up".to_owned(),
+        Outcome::Invariant { what, .. } => what.to_string(),
+    };
+    format!(
+        "{},{},{},{:.4e},{:.4e},{:.4e},{:.3e},{},{outcome},{}",
+        case.number,
+        case.kind.as_str(),
+        s.core.shape,
+        s.wire.diameter,
+        s.tensioner.tension,
+        s.spindle.speed,
+        s.solver.tolerance,
+        s.solver.twist,
+        verdict.measures.row()
+    )
 }
 
 /// Inputs as the command line reads them back to the bit: a sample at each communication point.

@@ -8,11 +8,13 @@ pub mod case_files;
 mod case_random;
 pub mod draw;
 pub mod invariants;
+mod measures;
 mod prism;
 pub mod region;
 pub mod shrink;
 mod signal;
 
+pub use measures::Measures;
 pub use prism::Prism;
 
 use crate::settings::SceneSettings;
@@ -210,35 +212,4 @@ pub struct Verdict {
     pub outcome: Outcome,
     /// numbers on the way
     pub measures: Measures,
-}
-
-/// What a case took, and how near it came to its limits.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Measures {
-    /// turned either way, turns
-    pub turns: f64,
-    /// simulated, s
-    pub time: f64,
-    /// accepted steps
-    pub steps: u64,
-    /// steps thrown away
-    pub rejects: u64,
-    /// steps thrown away for a stalled Newton method
-    pub newton_failures: u64,
-    /// evaluations of the potential
-    pub evaluations: u64,
-    /// live nodes at most
-    pub nodes: usize,
-    /// unexplained energy over what went through, at worst
-    pub energy: f64,
-    /// energy that the method itself added over what went through, at worst
-    pub added: f64,
-    /// deepest contact as the method sees it, diameters
-    pub depth: f64,
-    /// deepest place of the centreline in the core, as measured beside it, diameters
-    pub sunk: f64,
-    /// deepest place in other wire, as measured beside the method, diameters
-    pub crossed: f64,
-    /// friction over its limit, at worst
-    pub cone: f64,
 }
