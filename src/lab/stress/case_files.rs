@@ -106,7 +106,10 @@ pub fn read(scene: &Path) -> Result<Case, String> {
 
 /// Names of the columns of [`row`].
 pub fn columns() -> String {
-    format!("number,signal,core,diameter,tension,speed,tolerance,twist,outcome,{}", Measures::COLUMNS)
+    format!(
+        "number,signal,core,diameter,tension,speed,tolerance,twist,outcome,{}",
+        Measures::COLUMNS
+    )
 }
 
 /// A line of a table of cases: what was drawn, how it ended, and the numbers on the way.

@@ -27,6 +27,10 @@ pub struct Measures {
     pub energy: f64,
     /// plastic work, friction and damping, J
     pub dissipated: f64,
+    /// what spindle and feed did, either way, J
+    pub through: f64,
+    /// motion energy at most, J
+    pub motion: f64,
     /// what the time steps took out of the motion over what was dissipated, at the end
     pub numerical: f64,
     /// what changes of the mesh took over what was dissipated, at the end
@@ -56,7 +60,7 @@ impl Measures {
     }
 
     /// Names of [`Self::row`]'s columns.
-    pub const COLUMNS: &'static str = "turns,time,looks,fed,steps,rejects,newton_failures,evaluations,nodes,work,energy,dissipated,numerical,remeshing,depth,depth_over_expected,sunk,crossed,cone,cone_on_frozen,cone_on_live,plastic,pushed";
+    pub const COLUMNS: &'static str = "turns,time,looks,fed,steps,rejects,newton_failures,evaluations,nodes,work,energy,dissipated,through,motion,numerical,remeshing,depth,depth_over_expected,sunk,crossed,cone,cone_on_frozen,cone_on_live,plastic,pushed";
 
     /// The numbers, separated by commas.
     pub fn row(&self) -> String {
@@ -73,6 +77,8 @@ impl Measures {
             self.work,
             self.energy,
             self.dissipated,
+            self.through,
+            self.motion,
             self.numerical,
             self.remeshing,
             self.depth,

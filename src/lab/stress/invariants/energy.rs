@@ -33,6 +33,8 @@ impl Energy {
         let now = [b.spindle, b.nozzle];
         self.through += (0..2).map(|k| (now[k] - self.before[k]).abs()).sum::<f64>();
         self.before = now;
+        m.through = self.through;
+        m.motion = m.motion.max(sys.kinetic());
         lines(sim, m);
         let residual = sys.energy_residual(None);
         let scale = self.through + sys.stored() + sys.kinetic() + draw(sim);

@@ -6,9 +6,9 @@ mod finite;
 mod friction_cone;
 mod frozen;
 mod length;
-mod plastic_work;
 #[cfg(test)]
 mod planted;
+mod plastic_work;
 mod tension;
 mod watch;
 mod wire_in_wire;

@@ -74,10 +74,9 @@ impl PlasticWork {
                     _ => self.rod.voronoi(i),
                 };
                 least += length
-                    * work(&law, was, is)
-                        .map_err(|text| {
-                            Broken::new(Invariant::PlasticWork, format!("{name} at {i} {text}"))
-                        })?;
+                    * work(&law, was, is).map_err(|text| {
+                        Broken::new(Invariant::PlasticWork, format!("{name} at {i} {text}"))
+                    })?;
             }
             let booked = self.booked[kind] - before.booked[kind];
             let over = (least - booked) / booked.max(least).max(f64::MIN_POSITIVE);
