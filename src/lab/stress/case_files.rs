@@ -1,6 +1,6 @@
 //! A case as files: a scene, its inputs, and its mesh if it winds on one.
 
-use super::{Case, Kind, Measures, Outcome, Verdict};
+use super::{Case, Kind, Layers, Measures, Outcome, Verdict};
 use crate::settings::SceneSettings;
 use crate::signals::Inputs;
 use std::fmt::Write;
@@ -31,10 +31,10 @@ impl Files {
 
     /// Writes the mesh, if the case winds on one, and tells the case where it is.
     pub fn write_mesh(&self, case: &mut Case) -> io::Result<()> {
-        let Some(prism) = case.prism else {
+        let Some(mesh) = case.mesh else {
             return Ok(());
         };
-        std::fs::write(&self.mesh, prism.stl())?;
+        std::fs::write(&self.mesh, mesh.stl())?;
         case.settings.core.file = self.mesh.display().to_string();
         Ok(())
     }
@@ -42,7 +42,7 @@ impl Files {
     /// Writes scene and inputs of a case whose mesh is written. `words` go on top of the scene.
     pub fn write(&self, case: &Case, words: &str) -> io::Result<()> {
         let mut settings = case.settings.clone();
-        if case.prism.is_some()
+        if case.mesh.is_some()
             && let Some(name) = self.mesh.file_name()
         {
             // relative to the scene file, so that the folder can be moved
@@ -71,7 +71,7 @@ impl Files {
 
     /// Takes the mesh away again.
     pub fn remove_mesh(&self, case: &Case) -> io::Result<()> {
-        match case.prism {
+        match case.mesh {
             Some(_) => std::fs::remove_file(&self.mesh),
             None => Ok(()),
         }
@@ -97,7 +97,8 @@ pub fn read(scene: &Path) -> Result<Case, String> {
         number: 0,
         kind: Kind::Ramp,
         settings,
-        prism: None,
+        mesh: None,
+        layers: Layers::ONE,
         // samples are whole multiples of it
         step: rows.get(1).ok_or_else(|| bad(&"fewer than two samples"))?[0],
         inputs: inputs.collect(),

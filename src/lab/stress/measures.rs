@@ -21,7 +21,7 @@ pub struct Measures {
     pub evaluations: u64,
     /// live nodes at most
     pub nodes: usize,
-    /// steps tried over those that are enough
+    /// node steps tried over those that are enough
     pub work: f64,
     /// unexplained energy over what went through, at worst
     pub energy: f64,

@@ -4,17 +4,24 @@
 //! gets where it fails ([`shrink`]). Nothing here depends on time or on the number of threads. The
 //! files of a case ([`case_files`]) are what `coilwind run SCENE --inputs CSV --step H` takes.
 
+mod bobbin;
 pub mod case_files;
 mod case_random;
 pub mod draw;
 pub mod invariants;
+mod layers;
 mod measures;
+mod mesh;
 mod prism;
 pub mod region;
 pub mod shrink;
 mod signal;
+mod stl_text;
 
+pub use bobbin::Bobbin;
+pub use layers::Layers;
 pub use measures::Measures;
+pub use mesh::Mesh;
 pub use prism::Prism;
 
 use crate::settings::SceneSettings;
@@ -82,7 +89,9 @@ pub struct Case {
     /// the scene
     pub settings: SceneSettings,
     /// the mesh it winds on, if it is one
-    pub prism: Option<Prism>,
+    pub mesh: Option<Mesh>,
+    /// how its nozzle goes to and fro
+    pub layers: Layers,
     /// communication step, s
     pub step: f64,
     /// held over step k (the nozzle arrives at its end); the last one only ends the run

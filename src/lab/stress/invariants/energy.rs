@@ -53,10 +53,13 @@ fn draw(sim: &Simulation) -> f64 {
 }
 
 /// The method's own lines over what was dissipated.
+///
+/// Scenes that dissipate nothing have a floor: the work that draws in a diameter of wire, and the largest motion energy. Wire has
+/// no damping of its own, so steps may take from its motion what motion there was.
 fn lines(sim: &Simulation, m: &mut Measures) {
     let b = sim.system().state.balance;
     m.dissipated = b.plastic.iter().sum::<f64>() + b.friction + b.damping;
-    let scale = m.dissipated + draw(sim);
+    let scale = m.dissipated + draw(sim) + m.motion;
     m.numerical = b.numerical / scale;
     m.remeshing = b.remeshing / scale;
 }

@@ -20,6 +20,7 @@ use crate::simulation::{SimError, Simulation};
 use std::f64::consts::TAU;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use watch::Watch;
+use work::Work;
 
 /// An invariant that does not hold.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,20 +70,22 @@ fn wind(case: &Case, measures: &mut Measures) -> Outcome {
         Err(e) => return gave_up(&e, None),
     };
     let mut watch = Watch::new(&sim);
+    let mut work = Work::default();
     let mut end = 0.0;
     for (k, inputs) in case.inputs[..case.inputs.len() - 1].iter().enumerate() {
         // times as `coilwind run --inputs` makes them, so that it repeats this run to the bit
         let start = end;
         end = (k + 1) as f64 * case.step;
         let turned = (inputs.spindle_speed * (end - start)).abs() / TAU;
-        // one step is always allowed: the bound grows with what is turned, and this is not yet
-        sim.limit_work(work::allowed(measures.turns + turned));
+        work.begin(&sim, end - start);
+        sim.limit_work(work.allowed());
         let advanced = sim.advance(*inputs, end - start);
         measures.turns += turned;
         measures.time = end;
         measures.count(&sim);
+        work.end(&sim, measures);
         if let Err(e) = advanced {
-            if sim.work() > work::allowed(measures.turns) {
+            if sim.work() > work.allowed() {
                 let text = format!(
                     "{} steps tried in {:.3} turns, {} live nodes, {:.3} m of wire fed",
                     measures.attempts(),
