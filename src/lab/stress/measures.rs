@@ -11,6 +11,8 @@ pub struct Measures {
     pub looks: u64,
     /// wire fed, either way, m
     pub fed: f64,
+    /// defects of the coil so far, as the output `defect_code` has them
+    pub defects: i32,
     /// accepted steps
     pub steps: u64,
     /// steps thrown away
@@ -37,8 +39,6 @@ pub struct Measures {
     pub remeshing: f64,
     /// deepest contact as the method sees it, diameters
     pub depth: f64,
-    /// the same over what tension and speed explain
-    pub depth_over_expected: f64,
     /// deepest place of the centreline in the core, as measured beside it, diameters
     pub sunk: f64,
     /// deepest place in other wire, as measured beside the method, diameters
@@ -60,7 +60,7 @@ impl Measures {
     }
 
     /// Names of [`Self::row`]'s columns.
-    pub const COLUMNS: &'static str = "turns,time,looks,fed,steps,rejects,newton_failures,evaluations,nodes,work,energy,dissipated,through,motion,numerical,remeshing,depth,depth_over_expected,sunk,crossed,cone,cone_on_frozen,cone_on_live,plastic,pushed";
+    pub const COLUMNS: &'static str = "turns,time,looks,fed,defects,steps,rejects,newton_failures,evaluations,nodes,work,energy,dissipated,through,motion,numerical,remeshing,depth,sunk,crossed,cone,cone_on_frozen,cone_on_live,plastic,pushed";
 
     /// The numbers, separated by commas.
     pub fn row(&self) -> String {
@@ -82,7 +82,6 @@ impl Measures {
             self.numerical,
             self.remeshing,
             self.depth,
-            self.depth_over_expected,
             self.sunk,
             self.crossed,
             self.cone,
@@ -94,7 +93,8 @@ impl Measures {
         .map(|x| format!("{x:.4e}"));
         let (turns, time, looks, fed) = (self.turns, self.time, self.looks, self.fed);
         format!(
-            "{turns:.4},{time:.6e},{looks},{fed:.5e},{},{}",
+            "{turns:.4},{time:.6e},{looks},{fed:.5e},{},{},{}",
+            self.defects,
             counts.join(","),
             rest.join(",")
         )

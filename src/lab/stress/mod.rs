@@ -13,16 +13,19 @@ mod layers;
 mod measures;
 mod mesh;
 mod prism;
+pub mod refined;
 pub mod region;
 pub mod shrink;
 mod signal;
 mod stl_text;
+mod worst;
 
 pub use bobbin::Bobbin;
 pub use layers::Layers;
 pub use measures::Measures;
 pub use mesh::Mesh;
 pub use prism::Prism;
+pub use worst::Worst;
 
 use crate::settings::SceneSettings;
 use crate::signals::Inputs;

@@ -1,6 +1,6 @@
 //! Which part of the parameter space a case lies in, and what came of the cases of each.
 
-use super::{Case, Mesh, Outcome, Verdict};
+use super::{Case, Mesh, Outcome, Verdict, Worst};
 use crate::scene::Scene;
 use std::fmt::Write;
 
@@ -172,6 +172,7 @@ const HEAD: &str = "| cases | completed | wire broke | gave up | invariant | ste
 pub struct Totals {
     all: Tally,
     by: Vec<Vec<Tally>>,
+    worst: Worst,
 }
 
 impl Totals {
@@ -183,12 +184,14 @@ impl Totals {
                 .iter()
                 .map(|axis| vec![Tally::default(); axis.parts.len()])
                 .collect(),
+            worst: Worst::new(),
         }
     }
 
     /// Counts a case in.
     pub fn add(&mut self, case: &Case, verdict: &Verdict) {
         self.all.add(verdict);
+        self.worst.add(case, verdict);
         // (the file of a mesh is gone once its case is done)
         let built = match &case.mesh {
             Some(mesh) => mesh.stand_in(&case.settings).build(),
@@ -221,6 +224,11 @@ impl Totals {
             100.0 * t.gave_up as f64 / (t.cases as f64).max(1.0),
             t.invariant
         )
+    }
+
+    /// The worst of each measure, and the cases beyond the marks, Markdown.
+    pub fn worst(&self) -> String {
+        self.worst.table() + &self.worst.beyond()
     }
 
     /// A table for each way to divide the space, Markdown.

@@ -134,6 +134,7 @@ impl Measures {
         self.newton_failures = statistics.newton_failures;
         self.evaluations = statistics.evaluations;
         self.looks += 1;
+        self.defects = sim.outputs().defect_code;
         self.fed = sim.outputs().fed_length.abs().max(self.fed);
         self.nodes = self.nodes.max(sim.system().state.rod.nodes());
     }
