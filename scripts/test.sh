@@ -102,7 +102,7 @@ lab() {
     "$command" verify --preset paper
 
     step random scenes
-    "$command" stress --count 100 --seed 1 --quiet --out "$target/stress" | tail -n 1
+    "$command" stress --count 200 --seed 1 --quiet --out "$target/stress" | tail -n 1
 
     build_fmu
     step benchmarks at their coarsest

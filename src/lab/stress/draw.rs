@@ -15,6 +15,10 @@ const DRAWS: usize = 200;
 /// Edges of one turn on the core that a scene may ask for: bounds the cost of a case, not its kind.
 const EDGES_PER_TURN: f64 = 300.0;
 
+/// Turns of a scene with layers, and its finest tolerance in wire diameters: they bound the cost of a case as well.
+const TURNS: f64 = 5.0;
+const FINEST: f64 = 1e-3;
+
 /// Case `number` of `seed`, or what the rules had against the last draw.
 pub fn case(seed: u64, number: u64) -> Result<Case, String> {
     let mut case_random = CaseRandom::new(seed, number);
@@ -129,13 +133,25 @@ fn scene(case_random: &mut CaseRandom, region: Region) -> (SceneSettings, Option
 /// A traverse that turns back at the flanges, or after a few turns.
 fn layers(case_random: &mut CaseRandom, s: &mut SceneSettings, mesh: Option<&Mesh>) -> Layers {
     let d = s.wire.diameter;
-    let count = case_random.pick(&[1, 2, 3, 4]);
     let pitch = d * case_random.even(1.0, 1.1);
-    let turns = match mesh {
+    let (count, turns) = match mesh {
         // as far as wire goes that lies beside either flange
-        Some(Mesh::Bobbin(bobbin)) => (bobbin.width - d) / pitch,
-        _ => case_random.even(1.0, 3.0),
+        Some(Mesh::Bobbin(bobbin)) => {
+            let turns = (bobbin.width - d) / pitch;
+            (
+                case_random.even(1.0, 5.0_f64.min(1.0 + TURNS / turns)) as u32,
+                turns,
+            )
+        }
+        _ => {
+            let count = case_random.pick(&[1, 2, 3, 4]);
+            (
+                count,
+                case_random.even(1.0, (TURNS / f64::from(count)).max(1.2)),
+            )
+        }
     };
+    s.solver.tolerance = s.solver.tolerance.max(FINEST * d);
     let way = pitch * turns;
     let start = match mesh {
         Some(Mesh::Bobbin(_)) => -0.5 * way,
