@@ -104,6 +104,9 @@ lab() {
     step random scenes
     "$command" stress --count 200 --seed 1 --quiet --out "$target/stress" | tail -n 1
 
+    step long runs, short
+    COILWIND_COMMAND=$command scripts/endurance.sh --short
+
     build_fmu
     step benchmarks at their coarsest
     local log=$target/bench-quick.log

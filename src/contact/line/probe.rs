@@ -1,4 +1,4 @@
-//! What holds each touch by friction, for a judge that computes the force anew.
+//! What holds each touch by friction, for a judge that computes the force itself.
 
 use super::state::LineState;
 use crate::math::V3;

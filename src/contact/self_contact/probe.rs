@@ -1,4 +1,4 @@
-//! What holds each pair of live wire by friction, for a judge that computes the force anew.
+//! What holds each pair of live wire by friction, for a judge that computes the force itself.
 
 use super::pairs::SelfContact;
 use crate::math::V3;

@@ -1,6 +1,6 @@
 //! Wire stays out of the core, and no touch is ever so deep that its law means nothing.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::lab::stress::{Invariant, Measures};
 use crate::math::Spin;
 use crate::scene::{Core, Scene};

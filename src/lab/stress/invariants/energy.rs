@@ -1,6 +1,6 @@
 //! The energy balance explains all energy, and the method's own lines in it stay small.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::lab::stress::{Invariant, Measures};
 use crate::simulation::Simulation;
 

@@ -1,6 +1,6 @@
 //! Every number is one.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::lab::stress::Invariant;
 use crate::simulation::Simulation;
 

@@ -4,7 +4,7 @@
 //! Nothing that the method's own friction was cut off with enters. The normal force follows from the distance to the core's
 //! surface, or to the spline of the wire that is touched, of which the method gives no more than roughly where.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::contact::{ContactPoint, LineModel};
 use crate::lab::stress::{Invariant, Measures};
 use crate::math::{Spin, V3};

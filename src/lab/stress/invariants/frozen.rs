@@ -1,6 +1,6 @@
 //! Frozen wire stays where it is.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::lab::stress::Invariant;
 use crate::math::V3;
 use crate::simulation::Simulation;

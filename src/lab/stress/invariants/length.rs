@@ -1,6 +1,6 @@
 //! Wire between clamp and nozzle is what there was and what was fed.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::lab::stress::Invariant;
 use crate::simulation::Simulation;
 

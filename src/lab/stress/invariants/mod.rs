@@ -1,5 +1,6 @@
 //! Runs a case and judges it at every communication point: an invariant a file.
 
+mod broken;
 mod depth;
 mod energy;
 mod finite;
@@ -17,34 +18,11 @@ mod work;
 use super::{Case, Invariant, Measures, Outcome, Verdict};
 use crate::signals::EventKind;
 use crate::simulation::{SimError, Simulation};
+use broken::Broken;
 use std::f64::consts::TAU;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use watch::Watch;
 use work::Work;
-
-/// An invariant that does not hold.
-#[derive(Clone, Debug, PartialEq)]
-struct Broken {
-    what: Invariant,
-    /// how far off
-    text: String,
-}
-
-impl Broken {
-    fn new(what: Invariant, text: String) -> Self {
-        Self { what, text }
-    }
-
-    fn at(self, time: f64) -> Outcome {
-        Outcome::Invariant {
-            time,
-            what: self.what,
-            text: self.text,
-        }
-    }
-}
-
-type Found = Result<(), Broken>;
 
 /// Runs a case whose mesh, if it has one, is on disk.
 pub fn judge(case: &Case) -> Verdict {

@@ -1,6 +1,6 @@
 //! A short wind to plant violations in, for the tests of this folder.
 
-use super::Found;
+use super::broken::Found;
 use crate::lab::stress::Invariant;
 use crate::settings::SceneSettings;
 use crate::signals::Inputs;

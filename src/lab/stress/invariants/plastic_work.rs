@@ -5,7 +5,7 @@
 //! `(Y (q - q0) + (q^2 - q0^2) / 2) / H` per length. Where the limit is at its cap, or does not rise, the way of the plastic
 //! strain between two looks is a lower bound of what it has gone through.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::lab::stress::{Invariant, Measures};
 use crate::rod::{Law, Rod};
 use crate::simulation::Simulation;
@@ -177,7 +177,7 @@ mod tests {
         planted::sees(look(plastic, &sim), Invariant::PlasticWork);
     }
 
-    /// A step that books a tenth too little: the sum of all steps still rises.
+    /// A step that counts a tenth too little: the sum of all steps still rises.
     #[test]
     fn work_that_is_not_booked_is_seen() {
         for kind in 0..3 {

@@ -1,6 +1,6 @@
 //! The nozzle never pushes wire out.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::lab::stress::{Invariant, Measures};
 use crate::simulation::Simulation;
 

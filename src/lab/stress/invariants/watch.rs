@@ -1,10 +1,11 @@
 //! Looks at a run at every communication point.
 
+use super::broken::Found;
 use super::energy::Energy;
 use super::frozen::Frozen;
 use super::length::Length;
 use super::plastic_work::PlasticWork;
-use super::{Found, depth, finite, friction_cone, tension, wire_in_wire};
+use super::{depth, finite, friction_cone, tension, wire_in_wire};
 use crate::lab::stress::Measures;
 use crate::simulation::Simulation;
 

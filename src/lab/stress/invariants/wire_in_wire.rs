@@ -3,7 +3,7 @@
 //!
 //! The wire behind is passed in chunks, each in a ball; a ball that a node is far from is passed over.
 
-use super::{Broken, Found};
+use super::broken::{Broken, Found};
 use crate::lab::stress::{Invariant, Measures};
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
 use crate::simulation::Simulation;

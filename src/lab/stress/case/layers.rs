@@ -17,7 +17,7 @@ impl Layers {
     };
 
     /// Turns by which the nozzle has come from its start after so many turns of the core.
-    pub(super) fn way(&self, turned: f64) -> f64 {
+    pub fn way(&self, turned: f64) -> f64 {
         if self.count == 1 {
             return turned;
         }
