@@ -102,7 +102,10 @@ lab() {
     "$command" verify --preset paper
 
     step random scenes
-    "$command" stress --count 100 --seed 1 --quiet --out "$target/stress" | tail -n 1
+    "$command" stress --count 200 --seed 1 --quiet --out "$target/stress" | tail -n 1
+
+    step long runs, short
+    COILWIND_COMMAND=$command scripts/endurance.sh --short
 
     build_fmu
     step benchmarks at their coarsest

@@ -38,7 +38,7 @@ fn a_kept_case_runs_as_it_was_drawn() {
     for number in 0..40 {
         let mut case = draw::case(11, number).unwrap();
         case.inputs.truncate(60);
-        if std::mem::replace(&mut seen[usize::from(case.prism.is_some())], true) {
+        if std::mem::replace(&mut seen[usize::from(case.mesh.is_some())], true) {
             continue;
         }
         let files = Files::new(folder.path(), &format!("case{number}"));

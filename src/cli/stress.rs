@@ -3,8 +3,9 @@
 use super::failure::Failure;
 use super::terminal::{print, stop_flag};
 use clap::Args;
-use coilwind::lab::stress::case_files::Files;
+use coilwind::lab::stress::case_files::{self, Files};
 use coilwind::lab::stress::invariants::judge;
+use coilwind::lab::stress::refined::{Refined, refine};
 use coilwind::lab::stress::region::Totals;
 use coilwind::lab::stress::shrink::shrink;
 use coilwind::lab::stress::{Case, Outcome, Verdict, draw};
@@ -35,6 +36,9 @@ pub(super) struct StressArgs {
     /// Keep failures as they were drawn instead of making them small first
     #[arg(long)]
     no_shrink: bool,
+    /// Run each scene again at half the tolerance and half the spacing, and compare outcome and verdict
+    #[arg(long)]
+    refined: bool,
     /// No progress bar
     #[arg(long)]
     quiet: bool,
@@ -44,6 +48,8 @@ pub(super) struct StressArgs {
 struct Done {
     case: Case,
     verdict: Verdict,
+    /// made finer, or why it could not be
+    refined: Option<Result<Refined, String>>,
     /// what was kept of a failure, in words
     kept: String,
 }
@@ -71,8 +77,13 @@ pub(super) fn stress(args: &StressArgs) -> Result<(), Failure> {
     });
     bar.finish_and_clear();
     let totals = totals?;
-    let path = args.out.join("stability.md");
-    fs::write(&path, totals.tables()).map_err(|e| Failure::write(&path, e))?;
+    for (name, text) in [
+        ("stability.md", totals.tables()),
+        ("worst.md", totals.worst()),
+    ] {
+        let path = args.out.join(name);
+        fs::write(&path, text).map_err(|e| Failure::write(&path, e))?;
+    }
     print(&format!("\n{}\n{}\n", totals.tables(), totals.line()))?;
     if stop.load(Ordering::SeqCst) {
         return Err(Failure::StepError {
@@ -127,6 +138,7 @@ fn one(args: &StressArgs, number: u64) -> Result<Done, Failure> {
     let write = |e| Failure::write(&args.out, e);
     files.write_mesh(&mut case).map_err(write)?;
     let verdict = judge(&case);
+    let refined = args.refined.then(|| refine(&case, &verdict));
     let kept = match verdict.outcome.is_trouble() {
         true => keep(args, &files, &case, &verdict).map_err(write)?,
         false => String::new(),
@@ -137,6 +149,7 @@ fn one(args: &StressArgs, number: u64) -> Result<Done, Failure> {
     Ok(Done {
         case,
         verdict,
+        refined,
         kept,
     })
 }
@@ -182,6 +195,8 @@ fn collect(
     bar: &ProgressBar,
 ) -> Result<Totals, Failure> {
     let mut totals = Totals::new();
+    let mut rows = format!("{}\n", case_files::columns());
+    let mut compared = Compared::default();
     let mut early = std::collections::BTreeMap::new();
     let mut due = 0;
     for (index, done) in receive {
@@ -189,7 +204,10 @@ fn collect(
         while let Some(done) = early.remove(&due) {
             let done = done?;
             totals.add(&done.case, &done.verdict);
+            rows += &case_files::row(&done.case, &done.verdict);
+            rows.push('\n');
             let mut text = line(args, &done);
+            text += &compared.add(&done);
             if !done.kept.is_empty() {
                 text += &done.kept;
                 text.push('\n');
@@ -199,7 +217,55 @@ fn collect(
         }
         bar.set_position(due);
     }
+    let path = args.out.join("cases.csv");
+    fs::write(&path, rows).map_err(|e| Failure::write(&path, e))?;
+    if args.refined {
+        print(&format!("\n{}\n", compared.line()))?;
+    }
     Ok(totals)
+}
+
+/// How many scenes end as they do when they are made finer.
+#[derive(Clone, Copy, Debug, Default)]
+struct Compared {
+    scenes: u64,
+    outcome: u64,
+    verdict: u64,
+    finer_refused: u64,
+}
+
+impl Compared {
+    /// Counts a scene in; says what differs.
+    fn add(&mut self, done: &Done) -> String {
+        let refined = match &done.refined {
+            None => return String::new(),
+            Some(Err(reason)) => {
+                self.finer_refused += 1;
+                return format!("  not refined: {reason}\n");
+            }
+            Some(Ok(refined)) => refined,
+        };
+        self.scenes += 1;
+        self.outcome += u64::from(refined.same_outcome);
+        self.verdict += u64::from(refined.same_verdict);
+        if refined.same_outcome && refined.same_verdict {
+            return String::new();
+        }
+        format!(
+            "  REFINED {}: defects {} instead of {}, {}\n",
+            done.case.number,
+            refined.finer.measures.defects,
+            done.verdict.measures.defects,
+            refined.finer.outcome
+        )
+    }
+
+    fn line(&self) -> String {
+        format!(
+            "{} scenes refined ({} more cannot be): outcome equal in {}, verdict in {}",
+            self.scenes, self.finer_refused, self.outcome, self.verdict
+        )
+    }
 }
 
 fn line(_args: &StressArgs, done: &Done) -> String {

@@ -24,6 +24,8 @@ pub use friction::ContactResponse;
 #[cfg(feature = "lab")]
 pub use law::ContactLoss;
 pub use law::{ContactLaw, damping_for_restitution};
+#[cfg(feature = "lab")]
+pub use line::HeldTouch;
 pub use line::{ContactRecord, LineContact, LineModel, LineScratch, LineState};
 #[cfg(feature = "lab")]
 pub use nodal::TouchForce;
@@ -34,5 +36,5 @@ pub use nodal::{LiveContact, NodeContact, Wire};
 pub use own_wire::own_wire;
 pub use self_contact::{Coupling, add_couplings};
 #[cfg(feature = "lab")]
-pub use self_contact::{PairConditions, PairScratch, SelfContact};
+pub use self_contact::{HeldPair, PairConditions, PairScratch, SelfContact};
 pub use stencil::{ContactPoint, NodeWeights};

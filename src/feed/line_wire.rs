@@ -25,6 +25,8 @@ pub struct LineWire {
     stretched: Vec<Stretch>,
     /// state of all wire beyond them: what the present tension makes of virgin wire
     least: Scalar,
+    /// what the tension behind the exit makes of virgin wire: friction there stretches wire as it comes out
+    exit: Scalar,
 }
 
 impl LineWire {
@@ -33,13 +35,24 @@ impl LineWire {
         Self {
             stretched: Vec::new(),
             least: state,
+            exit: Scalar::default(),
         }
     }
 
     /// Plastic state of the wire that comes out next once `fed` (m) has passed.
     pub fn next(&self, fed: f64) -> Scalar {
         let here = self.stretched.iter().find(|s| s.until > fed);
-        here.map_or(self.least, |s| s.state)
+        let here = here.map_or(self.least, |s| s.state);
+        if self.exit.rise > here.rise {
+            self.exit
+        } else {
+            here
+        }
+    }
+
+    /// Takes in the tension of wire that has come out, N; 0 where none comes.
+    pub fn pull_at_exit(&mut self, law: &Law, tension: f64) {
+        self.exit = loaded(law, tension);
     }
 
     /// Takes in that a line of `length` (m) pulls by `tension` (N) after `fed` (m) of wire has passed.
@@ -75,6 +88,7 @@ impl LineWire {
     pub(crate) fn is_sound(&self) -> bool {
         let sound = |s: &Scalar| s.strain.is_finite() && s.rise.is_finite() && s.rise >= 0.0;
         sound(&self.least)
+            && sound(&self.exit)
             && self
                 .stretched
                 .iter()

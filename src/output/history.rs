@@ -11,6 +11,10 @@ use std::time::{Duration, Instant};
 
 /// Rows reach the disk at least this often, so that a run that dies leaves what it computed.
 const FLUSH: Duration = Duration::from_millis(500);
+/// Bytes that the writer keeps at most. Rows leave it together and whole, so that a run that is killed leaves no half of one.
+const BUFFER: usize = 1 << 17;
+/// Bytes from which on they leave; a row has some thousand.
+const FULL: usize = BUFFER / 2;
 
 /// A place in a history: how long the file was then, and a checksum of what was in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,16 +84,22 @@ pub struct History {
     path: PathBuf,
     writer: csv::Writer<Counted>,
     flushed: Instant,
+    /// bytes that the writer keeps
+    pending: usize,
 }
 
 impl History {
     /// Creates the file and writes the header.
+    ///
+    /// # Errors
+    /// Where it cannot be written, or another run writes it.
     pub fn create(path: &Path) -> Result<Self, OutputError> {
-        let file = File::create(path).map_err(OutputError::io(path))?;
+        let file = open_alone(path).map_err(OutputError::io(path))?;
         let mut history = Self {
             path: path.to_owned(),
-            writer: csv::Writer::from_writer(Counted::new(file)),
+            writer: whole_rows(Counted::new(file)),
             flushed: Instant::now(),
+            pending: 0,
         };
         let names = columns().map(|(name, _)| name);
         let written = history
@@ -120,8 +130,9 @@ impl History {
         let counted = Counted::cut(file, mark).map_err(OutputError::io(path))?;
         Ok(counted.map(|counted| Self {
             path: path.to_owned(),
-            writer: csv::Writer::from_writer(counted),
+            writer: whole_rows(counted),
             flushed: Instant::now(),
+            pending: 0,
         }))
     }
 
@@ -139,9 +150,12 @@ impl History {
             Access::Parameter { .. } => String::new(),
         });
         let time = Value::Real(time).to_string();
-        let written = self.writer.write_record(std::iter::once(time).chain(cells));
+        let mut bytes = 0;
+        let cells = std::iter::once(time).chain(cells);
+        let written = (self.writer).write_record(cells.inspect(|cell| bytes += cell.len() + 1));
         self.checked(written)?;
-        if self.flushed.elapsed() >= FLUSH {
+        self.pending += bytes;
+        if self.pending >= FULL || self.flushed.elapsed() >= FLUSH {
             self.flush()?;
         }
         Ok(())
@@ -151,6 +165,7 @@ impl History {
     pub fn flush(&mut self) -> Result<(), OutputError> {
         self.writer.flush().map_err(OutputError::io(&self.path))?;
         self.flushed = Instant::now();
+        self.pending = 0;
         Ok(())
     }
 
@@ -160,6 +175,41 @@ impl History {
             source,
         })
     }
+}
+
+/// A writer that is flushed before it is full.
+fn whole_rows(counted: Counted) -> csv::Writer<Counted> {
+    let mut builder = csv::WriterBuilder::new();
+    builder.buffer_capacity(BUFFER).from_writer(counted)
+}
+
+/// Opens an empty file that no other run has open; two of them would mix their rows.
+#[cfg(unix)]
+fn open_alone(path: &Path) -> std::io::Result<File> {
+    use std::fs::TryLockError;
+    use std::io::{Error, ErrorKind};
+
+    let file = File::options()
+        .write(true)
+        .create(true)
+        .truncate(false)
+        .open(path)?;
+    // (not every file system has locks)
+    if let Err(TryLockError::WouldBlock) = file.try_lock() {
+        let text = "another run writes here; give each run a folder of its own";
+        return Err(Error::new(ErrorKind::WouldBlock, text));
+    }
+    let regular = file.metadata()?.is_file();
+    if regular {
+        file.set_len(0)?;
+    }
+    Ok(file)
+}
+
+/// Opens an empty file. A lock would keep readers out as well here.
+#[cfg(not(unix))]
+fn open_alone(path: &Path) -> std::io::Result<File> {
+    File::create(path)
 }
 
 /// Name and accessor of what changes over time.

@@ -72,9 +72,7 @@ impl Simulation {
         if freeze > 0 {
             self.freeze(freeze);
         }
-        // bring the forces in line with the new arrays; what the change itself cost is a line of its own
-        self.sys.refresh();
-        self.sys.state.balance.remeshing += self.sys.energy_residual(None) - unexplained;
+        self.sys.follow_mesh(unexplained);
         self.shift_velocities(-0.5 * dt);
         Ok(())
     }
@@ -246,8 +244,7 @@ impl Simulation {
         if thaw > 0 {
             self.thaw(thaw);
         }
-        self.sys.refresh();
-        self.sys.state.balance.remeshing += self.sys.energy_residual(None) - unexplained;
+        self.sys.follow_mesh(unexplained);
     }
 
     fn join(&mut self, node: usize) {

@@ -20,20 +20,41 @@ impl System {
             return own.strain;
         }
         let coming = state.line_wire.next(before);
-        if coming != own {
-            let mean = |own: f64, coming: f64| (own * rest + coming * grown) / (rest + grown);
-            state.rod.stretch[last] = Scalar {
-                strain: mean(own.strain, coming.strain),
-                rise: mean(own.rise, coming.rise),
-            };
-        }
+        state.rod.stretch[last] = mixed(own, rest, coming, grown);
         coming.strain
+    }
+
+    /// Unstretched length that came into the edge at the nozzle, m, where the edge is `length` (m) long, pulls by `tension`
+    /// (N), and as elastic wire would have grown by `grown`, m.
+    ///
+    /// Wire that yields to a tension is longer under it, so less of it came. A step takes the edge as elastic; taken over
+    /// as it is, the edge would yield at its present length and pull less than the step has found.
+    pub(crate) fn grown_with_yield(&self, length: f64, grown: f64, tension: f64) -> f64 {
+        let rod = &self.state.rod;
+        let last = rod.edges() - 1;
+        let (rest, own) = (rod.rest[last], rod.stretch[last]);
+        let law = &self.model.laws.stretch;
+        let fed = self.state.feed.map_or(0.0, |feed| feed.fed);
+        let coming = self.state.line_wire.next(fed);
+        let mut found = grown;
+        // (what came is a small part of the edge: its share is right to many digits at the second look)
+        for _ in 0..3 {
+            let edge = mixed(own, rest, coming, found);
+            let over = tension - law.limit - edge.rise;
+            if over <= 0.0 || law.hardening <= 0.0 {
+                return found;
+            }
+            let strain = edge.strain + over / law.hardening + tension / law.modulus;
+            found = length / (1.0 + strain) - rest;
+        }
+        found
     }
 
     /// The wire in the line yields to the tension there at this instant.
     ///
     /// A step takes the edge at the nozzle as elastic, and so the line's tension where the edge then
-    /// yields: the line pulls no harder than the edge does, but for friction at the exit.
+    /// yields: the line pulls no harder than the edge does, but for friction at the exit. Wire that comes out yields to
+    /// the tension behind that friction on its way.
     pub(crate) fn tighten_line_wire(&mut self) {
         let grip = self.exit_grip();
         let (Some(spec), Some(feed)) = (&self.model.feed, &self.state.feed) else {
@@ -51,6 +72,9 @@ impl System {
         self.state
             .line_wire
             .pull(law, spec.line_length, feed.fed, tension);
+        let comes = feed.rate > 0.0;
+        let after = if comes { tension * grip } else { 0.0 };
+        self.state.line_wire.pull_at_exit(law, after);
     }
 
     /// The edge at the nozzle has grown by `grown`: it is straight wire that came or went, so the set
@@ -81,5 +105,17 @@ impl System {
             return bent + 0.5 * self.model.laws.twist.modulus * twist * twist;
         }
         bent
+    }
+}
+
+/// Plastic state of an edge of the unstretched length `rest` (m) into which `grown` (m) of wire came; none goes by going back.
+fn mixed(own: Scalar, rest: f64, coming: Scalar, grown: f64) -> Scalar {
+    if coming == own || grown <= 0.0 {
+        return own;
+    }
+    let mean = |own: f64, coming: f64| (own * rest + coming * grown) / (rest + grown);
+    Scalar {
+        strain: mean(own.strain, coming.strain),
+        rise: mean(own.rise, coming.rise),
     }
 }

@@ -10,10 +10,6 @@ use crate::contact::law::{NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
 use crate::contact::stencil::ContactPoint;
 use crate::math::V3;
 
-/// Stretch of a bristle below which it is rounding of places, m.
-#[cfg(feature = "lab")]
-const ROUNDING: f64 = 1e-15;
-
 impl LineContact<'_> {
     /// Begins an attempt at a step.
     pub fn begin_attempt(&mut self) {
@@ -129,26 +125,6 @@ impl LineState {
             .iter()
             .filter(|t| t.depth > 0.0)
             .map(move |t| t.normal * (k_n * NormalLaw::at(t.depth, onset).force))
-    }
-
-    /// The contact point whose bristle pulls hardest relative to what static friction can hold there, and the ratio of
-    /// both; both scale with the length of wire that the point stands for.
-    #[cfg(feature = "lab")]
-    pub fn friction_over_limit(&self, model: &LineModel) -> (usize, f64) {
-        let mut worst = (0, 0.0);
-        for (k, point) in self.points.iter().enumerate() {
-            for t in point.touches() {
-                if t.depth > 0.0 && t.anchored {
-                    let b = across(point.last - t.anchor, &t.normal);
-                    let limit = model.law.mu_static * NormalLaw::at(t.depth, model.onset).force;
-                    let pull = TANGENTIAL_SHARE * b.norm();
-                    if pull > limit * worst.1 && b.norm() > ROUNDING {
-                        worst = (k, pull / limit);
-                    }
-                }
-            }
-        }
-        worst
     }
 }
 

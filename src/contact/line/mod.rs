@@ -19,6 +19,8 @@ mod model;
 mod near;
 mod point;
 mod prediction;
+#[cfg(feature = "lab")]
+mod probe;
 mod record;
 mod response;
 mod saved_touches;
@@ -29,6 +31,8 @@ mod touch;
 
 pub use line_contact::LineContact;
 pub use model::LineModel;
+#[cfg(feature = "lab")]
+pub use probe::HeldTouch;
 pub use record::ContactRecord;
 pub use scratch::LineScratch;
 pub use state::LineState;

@@ -14,11 +14,15 @@
 mod commit;
 mod coupling;
 mod pairs;
+#[cfg(feature = "lab")]
+mod probe;
 mod response;
 mod scratch;
 mod search;
 
 pub use coupling::{Coupling, add_couplings};
 pub use pairs::SelfContact;
+#[cfg(feature = "lab")]
+pub use probe::HeldPair;
 pub use response::PairConditions;
 pub use scratch::PairScratch;

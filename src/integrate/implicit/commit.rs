@@ -139,6 +139,7 @@ fn feed(
     let last = sys.state.rod.edges() - 1;
     let length = (q[last + 1] - q[last]).norm();
     let grown = nozzle.rest(length) - sys.state.rod.rest[last];
+    let grown = sys.grown_with_yield(length, grown, nozzle.stretched(length).tension);
     let line = nozzle.line(length);
     let set = sys.set_tension_after(step.share * step.h);
     let next = advance(spec, feed, &sys.state.past, step, (grown, line, set));

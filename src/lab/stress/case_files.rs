@@ -1,6 +1,6 @@
 //! A case as files: a scene, its inputs, and its mesh if it winds on one.
 
-use super::{Case, Kind};
+use super::{Case, Kind, Layers, Measures, Outcome, Verdict};
 use crate::settings::SceneSettings;
 use crate::signals::Inputs;
 use std::fmt::Write;
@@ -31,10 +31,10 @@ impl Files {
 
     /// Writes the mesh, if the case winds on one, and tells the case where it is.
     pub fn write_mesh(&self, case: &mut Case) -> io::Result<()> {
-        let Some(prism) = case.prism else {
+        let Some(mesh) = case.mesh else {
             return Ok(());
         };
-        std::fs::write(&self.mesh, prism.stl())?;
+        std::fs::write(&self.mesh, mesh.stl())?;
         case.settings.core.file = self.mesh.display().to_string();
         Ok(())
     }
@@ -42,7 +42,7 @@ impl Files {
     /// Writes scene and inputs of a case whose mesh is written. `words` go on top of the scene.
     pub fn write(&self, case: &Case, words: &str) -> io::Result<()> {
         let mut settings = case.settings.clone();
-        if case.prism.is_some()
+        if case.mesh.is_some()
             && let Some(name) = self.mesh.file_name()
         {
             // relative to the scene file, so that the folder can be moved
@@ -71,7 +71,7 @@ impl Files {
 
     /// Takes the mesh away again.
     pub fn remove_mesh(&self, case: &Case) -> io::Result<()> {
-        match case.prism {
+        match case.mesh {
             Some(_) => std::fs::remove_file(&self.mesh),
             None => Ok(()),
         }
@@ -97,11 +97,43 @@ pub fn read(scene: &Path) -> Result<Case, String> {
         number: 0,
         kind: Kind::Ramp,
         settings,
-        prism: None,
+        mesh: None,
+        layers: Layers::ONE,
         // samples are whole multiples of it
         step: rows.get(1).ok_or_else(|| bad(&"fewer than two samples"))?[0],
         inputs: inputs.collect(),
     })
+}
+
+/// Names of the columns of [`row`].
+pub fn columns() -> String {
+    format!(
+        "number,signal,core,diameter,tension,speed,tolerance,twist,outcome,{}",
+        Measures::COLUMNS
+    )
+}
+
+/// A line of a table of cases: what was drawn, how it ended, and the numbers on the way.
+pub fn row(case: &Case, verdict: &Verdict) -> String {
+    let s = &case.settings;
+    let outcome = match &verdict.outcome {
+        Outcome::Completed => "completed".to_owned(),
+        Outcome::Broke { .. } => "broke".to_owned(),
+        Outcome::GaveUp { .. } => "gave up".to_owned(),
+        Outcome::Invariant { what, .. } => what.to_string(),
+    };
+    format!(
+        "{},{},{},{:.4e},{:.4e},{:.4e},{:.3e},{},{outcome},{}",
+        case.number,
+        case.kind.as_str(),
+        s.core.shape,
+        s.wire.diameter,
+        s.tensioner.tension,
+        s.spindle.speed,
+        s.solver.tolerance,
+        s.solver.twist,
+        verdict.measures.row()
+    )
 }
 
 /// Inputs as the command line reads them back to the bit: a sample at each communication point.

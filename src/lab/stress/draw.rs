@@ -5,9 +5,8 @@
 //! refuse is drawn again.
 
 use super::case_random::CaseRandom;
-use super::prism::Prism;
 use super::signal;
-use super::{Case, Kind};
+use super::{Bobbin, Case, Kind, Layers, Mesh, Prism};
 use crate::settings::SceneSettings;
 use std::f64::consts::PI;
 
@@ -16,27 +15,33 @@ const DRAWS: usize = 200;
 /// Edges of one turn on the core that a scene may ask for: bounds the cost of a case, not its kind.
 const EDGES_PER_TURN: f64 = 300.0;
 
+/// Turns of a scene with layers, and its finest tolerance in wire diameters: they bound the cost of a case as well.
+const TURNS: f64 = 5.0;
+const FINEST: f64 = 1e-3;
+
 /// Case `number` of `seed`, or what the rules had against the last draw.
 pub fn case(seed: u64, number: u64) -> Result<Case, String> {
     let mut case_random = CaseRandom::new(seed, number);
+    let region = Region::of(number);
     let mut refused = String::new();
     for _ in 0..DRAWS {
-        let (settings, prism) = scene(&mut case_random);
-        let valid = match &prism {
+        let (settings, mesh, layers) = scene(&mut case_random, region);
+        let valid = match &mesh {
             // the file of a mesh is not there yet; a box of its size stands in for it
-            Some(prism) => prism.stand_in(&settings).build(),
+            Some(mesh) => mesh.stand_in(&settings).build(),
             None => settings.build(),
         };
         match valid {
             Ok(scene) => {
                 let kind = case_random.pick(&Kind::ALL);
-                let (step, inputs) = signal::draw(&mut case_random, kind, &scene);
+                let (step, inputs) = signal::draw(&mut case_random, kind, &scene, layers);
                 return Ok(Case {
                     seed,
                     number,
                     kind,
                     settings,
-                    prism,
+                    mesh,
+                    layers,
                     step,
                     inputs,
                 });
@@ -49,15 +54,40 @@ pub fn case(seed: u64, number: u64) -> Result<Case, String> {
     ))
 }
 
-/// A scene that is likely valid, and the mesh it needs.
-fn scene(case_random: &mut CaseRandom) -> (SceneSettings, Option<Prism>) {
+/// Part of the space that a number draws from. Two of ten numbers have one of their own; the scenes of the others are those
+/// of the first generator, in which runs are recorded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Region {
+    /// all but the other two
+    Main,
+    /// the nozzle turns back: 1 to 4 layers, half of them on a bobbin
+    Layers,
+    /// wire yields and twist is off
+    Untwisted,
+}
+
+impl Region {
+    fn of(number: u64) -> Self {
+        match number % 10 {
+            3 => Self::Layers,
+            7 => Self::Untwisted,
+            _ => Self::Main,
+        }
+    }
+}
+
+/// A scene that is likely valid, the mesh it needs and the layers it is wound in.
+fn scene(case_random: &mut CaseRandom, region: Region) -> (SceneSettings, Option<Mesh>, Layers) {
     let mut s = SceneSettings {
         name: "stress".to_owned(),
         ..SceneSettings::default()
     };
     wire(case_random, &mut s);
     let d = s.wire.diameter;
-    let (turning_radius, perimeter, prism) = core(case_random, &mut s);
+    let (turning_radius, perimeter, mesh) = match region {
+        Region::Layers if case_random.chance(0.5) => bobbin(case_random, &mut s),
+        _ => core(case_random, &mut s),
+    };
 
     let room = case_random.log(2e-3 + d, 0.3);
     let near = case_random.chance(0.3);
@@ -89,7 +119,66 @@ fn scene(case_random: &mut CaseRandom) -> (SceneSettings, Option<Prism>) {
         x if x < 0.6 => d * case_random.even(1.0, 1.1),
         _ => d * case_random.log(0.3, 4.0),
     } * case_random.sign();
-    (s, prism)
+    let layers = match region {
+        Region::Layers => layers(case_random, &mut s, mesh.as_ref()),
+        Region::Main | Region::Untwisted => Layers::ONE,
+    };
+    if region == Region::Untwisted {
+        (s.wire.elastic, s.wire.strength) = (false, SceneSettings::default().wire.strength);
+        s.solver.twist = "off".to_owned();
+    }
+    (s, mesh, layers)
+}
+
+/// A traverse that turns back at the flanges, or after a few turns.
+fn layers(case_random: &mut CaseRandom, s: &mut SceneSettings, mesh: Option<&Mesh>) -> Layers {
+    let d = s.wire.diameter;
+    let pitch = d * case_random.even(1.0, 1.1);
+    let (count, turns) = match mesh {
+        // as far as wire goes that lies beside either flange
+        Some(Mesh::Bobbin(bobbin)) => {
+            let turns = (bobbin.width - d) / pitch;
+            (
+                case_random.even(1.0, 5.0_f64.min(1.0 + TURNS / turns)) as u32,
+                turns,
+            )
+        }
+        _ => {
+            let count = case_random.pick(&[1, 2, 3, 4]);
+            (
+                count,
+                case_random.even(1.0, (TURNS / f64::from(count)).max(1.2)),
+            )
+        }
+    };
+    s.solver.tolerance = s.solver.tolerance.max(FINEST * d);
+    let way = pitch * turns;
+    let start = match mesh {
+        Some(Mesh::Bobbin(_)) => -0.5 * way,
+        _ => s.start.clamp_y,
+    };
+    (s.start.clamp_y, s.nozzle.y_start, s.traverse.per_turn) = (start, start, pitch);
+    s.spindle.turns = turns * f64::from(count);
+    s.spindle.ramp_turns = s.spindle.turns.min(2.0) * case_random.even(0.05, 0.3);
+    Layers { count, turns }
+}
+
+/// A bobbin that one to three turns fill; its largest radius and the way round its barrel, m.
+fn bobbin(case_random: &mut CaseRandom, s: &mut SceneSettings) -> (f64, f64, Option<Mesh>) {
+    let d = s.wire.diameter;
+    let barrel = case_random.log((2.0 * d).max(1.5e-3), 15e-3);
+    let bobbin = Bobbin {
+        barrel,
+        flange: barrel + d * case_random.even(2.0, 6.0),
+        width: d * case_random.even(2.1, 4.2),
+        thickness: d * case_random.even(1.0, 4.0),
+    };
+    let c = &mut s.core;
+    c.shape = "mesh".to_owned();
+    c.corner_radius = 0.5 * bobbin.thickness;
+    c.length_y = bobbin.length();
+    let found = (bobbin.turning_radius(), 2.0 * PI * barrel);
+    (found.0, found.1, Some(Mesh::Bobbin(bobbin)))
 }
 
 fn wire(case_random: &mut CaseRandom, s: &mut SceneSettings) {
@@ -132,7 +221,7 @@ fn wire(case_random: &mut CaseRandom, s: &mut SceneSettings) {
 }
 
 /// Core and clamp; the largest radius it sweeps and the way round it, m.
-fn core(case_random: &mut CaseRandom, s: &mut SceneSettings) -> (f64, f64, Option<Prism>) {
+fn core(case_random: &mut CaseRandom, s: &mut SceneSettings) -> (f64, f64, Option<Mesh>) {
     let d = s.wire.diameter;
     let c = &mut s.core;
     c.corner_radius = case_random.log(0.2e-3, 10e-3);
@@ -169,7 +258,7 @@ fn core(case_random: &mut CaseRandom, s: &mut SceneSettings) -> (f64, f64, Optio
         p.length = c.length_y;
     }
     s.start.clamp_y = 0.3 * c.length_y * case_random.even(-1.0, 1.0);
-    (turning_radius, perimeter, prism)
+    (turning_radius, perimeter, prism.map(Mesh::Prism))
 }
 
 fn spacing(case_random: &mut CaseRandom, s: &mut SceneSettings, room: f64, perimeter: f64) {
@@ -179,7 +268,7 @@ fn spacing(case_random: &mut CaseRandom, s: &mut SceneSettings, room: f64, perim
         v.tolerance = case_random.log(1e-7, (0.1 * d).min(2e-5));
     }
     let pick = case_random.pick(&["auto", "auto", "auto", "off", "quasi-static", "dynamic"]);
-    // without twist the set of wire that yields turns into nothing that balances
+    // (wire that yields without twist has a part of the space of its own)
     v.twist = match s.wire.elastic || pick != "off" {
         true => pick.to_owned(),
         false => "auto".to_owned(),

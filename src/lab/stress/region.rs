@@ -1,6 +1,6 @@
 //! Which part of the parameter space a case lies in, and what came of the cases of each.
 
-use super::{Case, Outcome, Verdict};
+use super::{Case, Mesh, Outcome, Verdict, Worst};
 use crate::scene::Scene;
 use std::fmt::Write;
 
@@ -64,12 +64,33 @@ const AXES: &[Axis] = &[
     },
     Axis {
         name: "core",
-        ends: &[0.5, 1.5],
-        parts: &["rounded box", "cylinder", "mesh"],
-        of: |c, _| match c.settings.core.shape.as_str() {
-            "rounded-box" => 0.0,
-            "cylinder" => 1.0,
+        ends: &[0.5, 1.5, 2.5],
+        parts: &["rounded box", "cylinder", "convex mesh", "bobbin"],
+        of: |c, _| match (&c.mesh, c.settings.core.shape.as_str()) {
+            (_, "rounded-box") => 0.0,
+            (_, "cylinder") => 1.0,
+            (Some(Mesh::Bobbin(_)), _) => 3.0,
             _ => 2.0,
+        },
+    },
+    Axis {
+        name: "layers",
+        ends: &[1.5, 2.5, 3.5],
+        parts: &["1", "2", "3", "4"],
+        of: |c, _| f64::from(c.layers.count),
+    },
+    Axis {
+        name: "wire and twist",
+        ends: &[0.5, 1.5, 2.5],
+        parts: &[
+            "yields, twist",
+            "yields, twist off",
+            "elastic, twist",
+            "elastic, twist off",
+        ],
+        of: |c, _| {
+            let off = c.settings.solver.twist == "off";
+            2.0 * f64::from(u8::from(c.settings.wire.elastic)) + f64::from(u8::from(off))
         },
     },
     Axis {
@@ -151,6 +172,7 @@ const HEAD: &str = "| cases | completed | wire broke | gave up | invariant | ste
 pub struct Totals {
     all: Tally,
     by: Vec<Vec<Tally>>,
+    worst: Worst,
 }
 
 impl Totals {
@@ -162,15 +184,17 @@ impl Totals {
                 .iter()
                 .map(|axis| vec![Tally::default(); axis.parts.len()])
                 .collect(),
+            worst: Worst::new(),
         }
     }
 
     /// Counts a case in.
     pub fn add(&mut self, case: &Case, verdict: &Verdict) {
         self.all.add(verdict);
+        self.worst.add(case, verdict);
         // (the file of a mesh is gone once its case is done)
-        let built = match &case.prism {
-            Some(prism) => prism.stand_in(&case.settings).build(),
+        let built = match &case.mesh {
+            Some(mesh) => mesh.stand_in(&case.settings).build(),
             None => case.settings.build(),
         };
         let Ok(scene) = built else {
@@ -200,6 +224,11 @@ impl Totals {
             100.0 * t.gave_up as f64 / (t.cases as f64).max(1.0),
             t.invariant
         )
+    }
+
+    /// The worst of each measure, and the cases beyond the marks, Markdown.
+    pub fn worst(&self) -> String {
+        self.worst.table() + &self.worst.beyond()
     }
 
     /// A table for each way to divide the space, Markdown.
@@ -244,7 +273,7 @@ mod tests {
             .filter(|l| l.starts_with("| all"))
             .count();
         assert_eq!(rows, 1);
-        for (kind, part) in Kind::ALL.iter().zip(AXES[6].parts) {
+        for (kind, part) in Kind::ALL.iter().zip(AXES[8].parts) {
             assert_eq!(kind.as_str(), *part);
         }
     }

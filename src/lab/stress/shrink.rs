@@ -112,9 +112,9 @@ const CHANGES: &[fn(&mut Case)] = &[
     default!(nozzle.distance),
     |case| {
         // a mesh may not be to blame: a cylinder of its size
-        if let Some(prism) = case.prism.take() {
+        if let Some(mesh) = case.mesh.take() {
             case.settings.core.shape = "cylinder".to_owned();
-            case.settings.core.radius = prism.turning_radius();
+            case.settings.core.radius = mesh.barrel();
             case.settings.core.file.clear();
         }
     },

@@ -1,7 +1,7 @@
 //! Input signals: what a machine does, and what goes wrong with it.
 
-use super::Kind;
 use super::case_random::CaseRandom;
+use super::{Kind, Layers};
 use crate::scene::{Core, Scene};
 use crate::signals::Inputs;
 use std::f64::consts::TAU;
@@ -12,7 +12,12 @@ const MOST: usize = 6000;
 const MOST_STILL: f64 = 1200.0;
 
 /// Communication step, s, and the inputs of each, the last of which only ends the run.
-pub(super) fn draw(case_random: &mut CaseRandom, kind: Kind, scene: &Scene) -> (f64, Vec<Inputs>) {
+pub(super) fn draw(
+    case_random: &mut CaseRandom,
+    kind: Kind,
+    scene: &Scene,
+    layers: Layers,
+) -> (f64, Vec<Inputs>) {
     let top = scene.spindle.speed;
     // a controller looks every 0.3 to 6 degrees of its core
     let step = case_random.log(0.005, 0.1) / top;
@@ -33,7 +38,8 @@ pub(super) fn draw(case_random: &mut CaseRandom, kind: Kind, scene: &Scene) -> (
             let passed = plan.jumps.iter().filter(|j| turned > j.0);
             jumped = passed.map(|j| j.1).sum();
         }
-        let mut nozzle = scene.nozzle.y_start + scene.traverse.per_turn * angle / TAU + jumped;
+        let mut nozzle =
+            scene.nozzle.y_start + scene.traverse.per_turn * layers.way(angle / TAU) + jumped;
         if angle + speed * step < 0.0 {
             // unwound: farther back the wire would fold at its clamp, which looks the other way
             break;

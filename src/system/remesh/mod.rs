@@ -32,6 +32,20 @@ pub(super) trait Remesh {
 }
 
 impl System {
+    /// Brings the forces in line with a changed mesh; what the change itself cost is a line of its own in the energy
+    /// balance. The residual was `unexplained` (J) before.
+    ///
+    /// The moment on the core stays what it was: a change of the mesh is no motion, and the forces of the new nodes, which
+    /// nothing has balanced yet, would go with the core's way over the next step.
+    pub fn follow_mesh(&mut self, unexplained: f64) {
+        let moment = (self.state.torque_on_core, self.state.unbalanced);
+        self.refresh();
+        if self.model.contact.is_line() {
+            (self.state.torque_on_core, self.state.unbalanced) = moment;
+        }
+        self.state.balance.remeshing += self.energy_residual(None) - unexplained;
+    }
+
     /// The parts that follow a change of the wire.
     fn parts(&mut self) -> [&mut dyn Remesh; 4] {
         [

@@ -1,8 +1,7 @@
-//! A core from a mesh file: a regular prism with rounded edges, one flat side on +x.
+//! A convex core: a regular prism with rounded edges, one flat side on +x.
 
-use crate::settings::SceneSettings;
+use super::stl_text::StlText;
 use std::f64::consts::{PI, TAU};
-use std::fmt::Write;
 
 /// Chords of one rounded edge per right angle.
 const CHORDS: f64 = 8.0;
@@ -36,16 +35,6 @@ impl Prism {
         f64::from(self.sides) * self.flat + TAU * self.corner_radius
     }
 
-    /// The settings with a box of the same width, so that they can be checked without a file.
-    pub fn stand_in(&self, settings: &SceneSettings) -> SceneSettings {
-        let mut s = settings.clone();
-        let size = 2.0 * self.turning_radius();
-        s.core.shape = "rounded-box".to_owned();
-        (s.core.width_x, s.core.height_z) = (size, size);
-        s.core.corner_radius = 0.5 * size;
-        s
-    }
-
     /// Points of the section, from +x towards +z, m.
     fn section(&self) -> Vec<[f64; 2]> {
         let turn = TAU / f64::from(self.sides);
@@ -68,17 +57,8 @@ impl Prism {
     pub fn stl(&self) -> String {
         let section = self.section();
         let half = 0.5 * self.length;
-        let mut text = "solid prism\n".to_owned();
-        let mut facet = |corners: [[f64; 3]; 3]| {
-            text += "facet normal 0 0 0\nouter loop\n";
-            for [x, y, z] in corners {
-                // as the file's reader will see them
-                let mm = [x, y, z].map(|c| (c * 1e3) as f32);
-                // writing to a text cannot fail
-                let _ = writeln!(text, "vertex {} {} {}", mm[0], mm[1], mm[2]);
-            }
-            text += "endloop\nendfacet\n";
-        };
+        let mut text = StlText::new("prism");
+        let mut facet = |corners| text.facet(corners);
         for (k, &[x, z]) in section.iter().enumerate() {
             let [u, w] = section[(k + 1) % section.len()];
             facet([[x, -half, z], [x, half, z], [u, half, w]]);
@@ -86,7 +66,7 @@ impl Prism {
             facet([[0.0, half, 0.0], [u, half, w], [x, half, z]]);
             facet([[0.0, -half, 0.0], [x, -half, z], [u, -half, w]]);
         }
-        text + "endsolid prism\n"
+        text.finish()
     }
 }
 

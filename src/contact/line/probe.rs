@@ -1,0 +1,37 @@
+//! What holds each touch by friction, for a judge that computes the force itself.
+
+use super::state::LineState;
+use crate::math::V3;
+
+/// A touch whose bristle holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldTouch {
+    /// number of its contact point
+    pub point: usize,
+    /// the friction anchor, core frame, m
+    pub anchor: V3,
+    /// segment of frozen wire near which the foot lies; `None`: the core
+    pub segment: Option<u32>,
+}
+
+impl LineState {
+    /// The touches with core and frozen wire that friction holds.
+    pub fn held(&self) -> impl Iterator<Item = HeldTouch> {
+        self.points.iter().enumerate().flat_map(|(point, state)| {
+            let touches = state.touches().iter().enumerate();
+            let holding = touches.filter(|(_, t)| t.depth > 0.0 && t.anchored);
+            holding.map(move |(slot, t)| HeldTouch {
+                point,
+                anchor: t.anchor,
+                segment: (slot > 0).then_some(t.start),
+            })
+        })
+    }
+
+    /// Moves the anchors of a point, m: what a judge has to notice.
+    pub fn stretch_bristles(&mut self, point: usize, by: V3) {
+        for t in self.points[point].touches_mut() {
+            t.anchor += by;
+        }
+    }
+}

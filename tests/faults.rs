@@ -1,0 +1,152 @@
+//! What a run leaves where something goes wrong outside of it: no room, no rights, a kill, a second run.
+#![cfg(unix)]
+
+use std::path::Path;
+use std::process::{Child, Command, Output, Stdio};
+use std::time::Duration;
+
+/// A run of `turns` into a folder.
+fn run(folder: &Path, turns: f64) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    command.args(["run", "fig8", "--quiet", "--no-geometry"]);
+    command.args(["--set", &format!("spindle.turns={turns}")]);
+    command.arg("--out").arg(folder);
+    command.stdout(Stdio::null()).stderr(Stdio::piped());
+    command
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Holds every table of a folder to be readable, with rows as long as the header; returns the rows of the history.
+fn rows(folder: &Path) -> usize {
+    let mut history = 0;
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let text = std::fs::read_to_string(&path).unwrap();
+        if path.extension().is_some_and(|e| e == "csv") && !text.is_empty() {
+            assert!(text.ends_with('\n'), "half a line in {}", path.display());
+            let mut reader = csv::Reader::from_path(&path).unwrap();
+            let count = reader.records().map(Result::unwrap).count();
+            if path.ends_with("history.csv") {
+                history = count;
+            }
+        }
+        if path.ends_with("summary.json") {
+            let _: serde_json::Value = serde_json::from_str(&text).unwrap();
+        }
+    }
+    history
+}
+
+fn wait_for_rows(folder: &Path, child: &mut Child) {
+    let history = folder.join("history.csv");
+    while !std::fs::metadata(&history).is_ok_and(|m| m.len() > 10_000) {
+        assert!(child.try_wait().unwrap().is_none(), "ended before it wrote");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// The history ended in the middle of a number.
+#[test]
+fn a_killed_run_leaves_whole_lines() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut least = usize::MAX;
+    for k in 0..6 {
+        let out = folder.path().join(k.to_string());
+        let mut child = run(&out, 50.0).spawn().unwrap();
+        wait_for_rows(&out, &mut child);
+        std::thread::sleep(Duration::from_millis(37 * k));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        least = least.min(rows(&out));
+    }
+    assert!(least > 5, "{least} rows");
+}
+
+#[test]
+fn a_full_disk_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["history.csv", "turns.csv", "stations.csv"] {
+        let out = folder.path().join(name.replace('.', "-"));
+        std::fs::create_dir(&out).unwrap();
+        std::os::unix::fs::symlink("/dev/full", out.join(name)).unwrap();
+        let output = run(&out, 0.3).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}: {}", said(&output));
+        assert!(said(&output).contains("No space left"), "{}", said(&output));
+        assert!(said(&output).contains(name), "{}", said(&output));
+    }
+}
+
+/// Files may not grow beyond 8 kB; the signal for it is ignored, so that the write fails.
+#[test]
+fn a_limit_on_the_size_of_files_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let inner = run(&out, 0.3);
+    let words = std::iter::once(inner.get_program()).chain(inner.get_args());
+    let words: Vec<String> = words.map(|w| w.to_string_lossy().into_owned()).collect();
+    let line = format!("trap '' XFSZ; ulimit -f 8; {}", words.join(" "));
+    let output = Command::new("bash").args(["-c", &line]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(
+        said(&output).contains("File too large"),
+        "{}",
+        said(&output)
+    );
+}
+
+/// Whoever may write everywhere passes.
+#[test]
+fn a_folder_that_may_not_be_written_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let closed = folder.path().join("closed");
+    // not a folder: nobody may write into it, the superuser included
+    std::fs::write(&closed, "").unwrap();
+    let output = run(&closed.join("out"), 0.3).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    assert!(said(&output).contains("closed"), "{}", said(&output));
+}
+
+/// Both wrote into one file, each at places of its own.
+#[test]
+fn a_second_run_into_a_folder_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut first = run(folder.path(), 50.0).spawn().unwrap();
+    wait_for_rows(folder.path(), &mut first);
+    let second = run(folder.path(), 0.3).output().unwrap();
+    assert_eq!(second.status.code(), Some(2), "{}", said(&second));
+    assert!(said(&second).contains("another run"), "{}", said(&second));
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert!(rows(folder.path()) > 5);
+    // the folder is free again
+    let third = run(folder.path(), 0.3).output().unwrap();
+    assert!(third.status.success(), "{}", said(&third));
+    assert!(rows(folder.path()) > 5);
+}
+
+/// Too little memory ends a run with words, and what it wrote before can be read.
+#[test]
+fn too_little_memory_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let inner = run(&out, 2.0);
+    let words = std::iter::once(inner.get_program()).chain(inner.get_args());
+    let words: Vec<String> = words.map(|w| w.to_string_lossy().into_owned()).collect();
+    for kilobytes in [30_000, 40_000, 60_000] {
+        let line = format!("ulimit -v {kilobytes}; exec {}", words.join(" "));
+        let output = Command::new("bash").args(["-c", &line]).output().unwrap();
+        let text = said(&output);
+        let named = text.contains("memory") || text.contains("Resource temporarily unavailable");
+        assert!(
+            output.status.success() || named,
+            "{:?}: {text}",
+            output.status
+        );
+        if out.exists() {
+            rows(&out);
+        }
+    }
+}
