@@ -68,7 +68,8 @@ impl System {
     }
 
     /// Share of the way to `guess` on which no touch turns its normal by more than `most` (rad) after it began; 1: all of it.
-    pub(crate) fn share_to_turn(&mut self, guess: &[V3], most: f64) -> f64 {
+    /// Ways below `unseen`, m, are no matter.
+    pub(crate) fn share_to_turn(&mut self, guess: &[V3], most: f64, unseen: f64) -> f64 {
         let Some(mut line) = line_contact(
             &self.model.contact,
             &mut self.state.contact,
@@ -84,7 +85,7 @@ impl System {
                 if point != ContactPoint::Node(0) {
                     let own = own_wire(point.arc(arc, rest), diameter);
                     let to = point.place(guess);
-                    share = share.min(line.share_to_turn(point.number(), to, own, most));
+                    share = share.min(line.share_to_turn(point.number(), to, own, [most, unseen]));
                 }
             }
             arc += rest_of;

@@ -42,12 +42,12 @@ impl LineContact<'_> {
     }
 
     /// Share of the way of point `k` to `to`, m, on which none of its touches turns its normal by more than `most` (rad) after it
-    /// began; 1: all of it. `own` as in [`Self::push`].
-    pub fn share_to_turn(&mut self, k: usize, to: V3, own: f64, most: f64) -> f64 {
+    /// began; 1: all of it. Ways below `unseen`, m, are no matter. `own` as in [`Self::push`].
+    pub fn share_to_turn(&mut self, k: usize, to: V3, own: f64, [most, unseen]: [f64; 2]) -> f64 {
         let from = self.state.points[k].last;
         let way = to - from;
         // no surface that the centreline lies on is bent more sharply than the wire
-        if !self.state.points[k].placed || way.norm() < most * self.model.radius {
+        if !self.state.points[k].placed || way.norm() < unseen.max(most * self.model.radius) {
             return 1.0;
         }
         self.look_up_if_moved(k, to, own);

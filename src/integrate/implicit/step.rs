@@ -34,7 +34,7 @@ impl Implicit {
                 continue;
             }
             sys.begin_attempt(&work.guess);
-            let share = sys.share_to_turn(&work.guess, MOST_TURN);
+            let share = sys.share_to_turn(&work.guess, MOST_TURN, self.tolerance);
             if share < 1.0 && h > self.shortest && self.fixed.is_none() {
                 if let Some(mut line) = sys.line_contact() {
                     line.undo_attempt();
