@@ -63,7 +63,7 @@ mod tests {
     /// Steps a thousand times as short as the tolerance asks for are too many.
     #[test]
     fn a_solver_that_crawls_is_seen() {
-        let mut case = draw::case(1, 3).unwrap();
+        let mut case = draw::case(1, 4).unwrap();
         assert!(judge(&case).outcome == Outcome::Completed);
         case.settings.solver.step = 1e-8;
         match judge(&case).outcome {
