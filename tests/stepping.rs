@@ -81,7 +81,8 @@ fn a_short_step_is_one_solve_from_a_good_guess() {
     let e = sim.statistics();
     let count = (END / 5e-6).round();
     assert!((e.steps as f64) < 1.02 * count, "{e:?}");
-    assert!((e.evaluations as f64) < 1.5 * count, "{e:?}");
+    // and an update with old factors in most of them
+    assert!((e.evaluations as f64) < 1.8 * count, "{e:?}");
     assert!(
         (e.rejects + e.newton_failures) as f64 <= 0.01 * count,
         "{e:?}"

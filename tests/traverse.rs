@@ -94,7 +94,10 @@ fn a_nozzle_that_goes_back_by_a_pitch_once_makes_no_gap() {
             first.angle / TAU
         );
     }
-    assert!(coil.stations().all(|s| s.layer == 1));
+
+    // where it comes back it may ride on what it meets; what lies on the core is of the first layer
+    let rides = |height: f64| height > 0.3 * 0.7e-3;
+    assert!(coil.stations().all(|s| s.layer == 1 || rides(s.height)));
     let gaps = sim.defects();
     assert!(!gaps.iter().any(|d| d.kind == DefectKind::Gap), "{gaps:?}");
     assert!(

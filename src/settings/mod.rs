@@ -225,7 +225,7 @@ impl Default for SceneSettings {
             },
             contact: Contact {
                 stiffness: 1e10,
-                restitution: 0.0,
+                restitution: 0.5,
             },
             friction: Friction {
                 static_: 0.23,

@@ -248,7 +248,7 @@ fn odd_scenes_build_with_a_warning() {
         ("[spindle]\nturns = 25", "ends beside the core"),
         ("[tensioner]\ntension = 40", "yields in the free span"),
         (
-            "[core]\ncorner_radius = 0\n",
+            "[core]\ncorner_radius = 0\n[solver]\nspacing_near_mm = 0.4\n",
             "coarser than the tightest bend",
         ),
         ("[contact]\nstiffness = 1e8", "1 % of its diameter"),

@@ -59,7 +59,7 @@ impl NewtonLimits {
 
     /// That of a time step, a `short` one or one that may as well be shorter. Then that is cheaper than a long search
     /// for a smaller Newton step (`fig8` at 30 rad/s: a tenth of all evaluations). A scheme that is `damped` forgets a
-    /// small error.
+    /// small error; of a prescribed step its caller wants the solution.
     ///
     /// The first update tells how far the guess is off, within a few per cent where the solve comes to an end. One
     /// beyond `far` saves the rest of a solve that the error would throw away.

@@ -55,7 +55,7 @@ impl Implicit {
                         f64::INFINITY
                     },
                     self.largest_guess(h),
-                    self.scheme == Scheme::Bdf2,
+                    self.scheme == Scheme::Bdf2 && self.fixed.is_none(),
                 ),
             );
             self.statistics.evaluations += std::mem::take(&mut work.evaluations);
