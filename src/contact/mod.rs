@@ -18,7 +18,9 @@ mod self_contact;
 mod stencil;
 mod tolerance;
 
-pub use accepted_touch::{AcceptedTouch, TouchOwner};
+pub use accepted_touch::AcceptedTouch;
+#[cfg(feature = "lab")]
+pub use accepted_touch::TouchOwner;
 #[cfg(feature = "lab")]
 pub use friction::ContactResponse;
 #[cfg(feature = "lab")]

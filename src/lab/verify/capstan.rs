@@ -118,15 +118,14 @@ impl Capstan {
         let law = law(stiffness, 1.0, mu);
         let r = section.radius();
         let wave = (hold / section.mass_per_length()).sqrt();
-        let step;
-        if ctx.integrator == Integrator::Implicit {
+        let step = if ctx.integrator == Integrator::Implicit {
             let core = Shape::Cylinder {
                 radius,
                 half_y: 10.0 * section.diameter,
             };
             let line = LineModel::new(core, law, r);
             sys.touch_along(line);
-            step = Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave));
+            Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave))
         } else {
             let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
             sys.touch_at_nodes(NodalModel {
@@ -135,8 +134,8 @@ impl Capstan {
                 radius: r,
                 diameter: section.diameter,
             });
-            step = Stepper::Explicit(Explicit::new(ExplicitMethod::Verlet));
-        }
+            Stepper::Explicit(Explicit::new(ExplicitMethod::Verlet))
+        };
         let start = FRAC_PI_2 + wrap;
         let out = V3::new(-libm::sin(start), 0.0, libm::cos(start));
         sys.model.loads.nodal = vec![(0, out * hold)];
