@@ -9,7 +9,7 @@ from conftest import WARNING
 STEP = 2e-5
 RESULTS = {
     "scene.toml", "history.csv", "summary.json", "turns.csv", "stations.csv",
-    "coil.vtp", "core.vtp", "coil.png",
+    "defects.csv", "coil.vtp", "core.vtp", "coil.png",
 }
 
 
