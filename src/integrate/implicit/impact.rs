@@ -3,7 +3,7 @@
 //! A blow lasts one or two microseconds, a step ten times as long or longer. The solve holds the wire at the surface; how fast it goes on
 //! would be left to the formula of time. So the accepted velocities are set: of every touch, the speed along its
 //! normal is 0, or what the landing gives back. The impulses that do so act along the forces of the touches, friction
-//! included, and none of them pulls.
+//! across the wire included, and none of them pulls.
 //!
 //! A touch that began within the step also rewrites the history of its nodes. After it, the formula of time has to see a wire
 //! that moved all the time as it does now, or it would take the fall for part of the motion.
