@@ -27,7 +27,7 @@ pub use friction::ContactResponse;
 pub use law::ContactLoss;
 pub use law::{ContactLaw, damping_for_restitution};
 #[cfg(feature = "lab")]
-pub use line::HeldTouch;
+pub use line::{HeldBy, HeldTouch};
 pub use line::{ContactRecord, LineContact, LineModel, LineScratch, LineState};
 #[cfg(feature = "lab")]
 pub use nodal::TouchForce;

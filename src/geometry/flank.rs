@@ -26,6 +26,15 @@ impl Surface {
     }
 }
 
+impl Surface {
+    /// Way along y from `p` (core frame, m) to the flange that is what lies nearest to it, m, negative towards -y; none where
+    /// that is no flange.
+    pub fn flange_beside(&self, p: V3) -> Option<f64> {
+        let nearest = self.nearest(p);
+        (nearest.normal.y.abs() > FLANGE).then(|| -nearest.distance / nearest.normal.y)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::mesh::TriMesh;

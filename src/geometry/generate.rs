@@ -8,8 +8,11 @@
 //! Sides are two triangles per chord over the whole length, caps are fans around the axis.
 
 use super::error::MeshError;
+use super::flange::Flanges;
 use super::mesh::TriMesh;
+use super::shape::Shape;
 use crate::math::V3;
+use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
 /// Most chords of a full turn. Chosen: a sagitta of 3e-6 radii at most is lost.
@@ -72,7 +75,18 @@ pub fn rounded_box(
     } else {
         0
     };
-    let (centre_x, centre_z) = (half_x - corner_radius, half_z - corner_radius);
+    let mut section = rounded_rectangle([half_x, half_z], corner_radius, chords);
+    // A radius of half a side leaves no flat there, and neighbouring arcs share a vertex.
+    section.dedup();
+    if section.len() > 1 && section.first() == section.last() {
+        section.pop();
+    }
+    extrude(&section, length_y)
+}
+
+/// Vertices of a rounded rectangle, m, from +x towards +z, each corner in so many chords. Vertices of arcs that meet come twice.
+fn rounded_rectangle(half: [f64; 2], corner_radius: f64, chords: usize) -> Vec<[f64; 2]> {
+    let (centre_x, centre_z) = (half[0] - corner_radius, half[1] - corner_radius);
     let signs = [(1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0)];
     let mut section: Vec<[f64; 2]> = Vec::with_capacity(4 * (chords + 1));
     for (quarter, (sign_x, sign_z)) in signs.into_iter().enumerate() {
@@ -89,12 +103,118 @@ pub fn rounded_box(
             section.push([sign_x * x, sign_z * z]);
         }
     }
-    // A radius of half a side leaves no flat there, and neighbouring arcs share a vertex.
-    section.dedup();
-    if section.len() > 1 && section.first() == section.last() {
-        section.pop();
+    section
+}
+
+/// A core between flanges as one surface; `corner_chords` to a right angle round the axis, `edge_chords` round the edges of
+/// the flanges.
+pub fn flanged(
+    flanges: &Flanges,
+    corner_chords: usize,
+    edge_chords: usize,
+) -> Result<TriMesh, MeshError> {
+    let (half, corner_radius) = match flanges.core {
+        Shape::RoundedBox {
+            half_x,
+            half_z,
+            corner_radius,
+            ..
+        } => ([half_x, half_z], corner_radius),
+        Shape::Cylinder { radius, .. } => ([radius; 2], radius),
+        Shape::Mesh(_) => {
+            return Err(MeshError::Dimension {
+                name: "core",
+                value: f64::NAN,
+                allowed: "a box or a cylinder; a mesh has its flanges in itself".to_owned(),
+            });
+        }
+    };
+    for (name, value) in [
+        ("inner_distance", flanges.half_inner),
+        ("height", flanges.height),
+        ("thickness", flanges.thickness),
+    ] {
+        check_positive(name, value)?;
     }
-    extrude(&section, length_y)
+    check_count("corner_segments", corner_chords, 1, MOST_SEGMENTS / 4)?;
+    check_count("edge_segments", edge_chords, 1, MOST_SEGMENTS / 4)?;
+
+    // from the core to the outer face of the flange on +y: place along y and height over the core
+    let edge = flanges.edge_radius;
+    let (inner, outer) = (flanges.half_inner, flanges.half_inner + flanges.thickness);
+    let chords = if edge > 0.0 { edge_chords } else { 0 };
+    let mut wall = vec![[inner, 0.0]];
+    let rim = flanges.height - edge;
+    for step in 0..=chords {
+        let (cos, sin) = unit_in_quarter(step, chords);
+        wall.push([inner + edge - edge * cos, rim + edge * sin]);
+    }
+    for step in 0..=chords {
+        let (cos, sin) = unit_in_quarter(step, chords);
+        wall.push([outer - edge + edge * sin, rim + edge * cos]);
+    }
+    if chords == 0 {
+        // both quarters are a corner
+        wall = vec![[inner, 0.0], [inner, flanges.height], [outer, flanges.height]];
+    }
+    let mirrored = wall.iter().rev().map(|&[y, s]| [-y, s]);
+    let profile: Vec<[f64; 2]> = mirrored.chain(wall.iter().copied()).collect();
+    let ring = |s: f64| {
+        let half = half.map(|h| h + s);
+        let radius = corner_radius + s;
+        let chords = if corner_radius + flanges.height > 0.0 {
+            corner_chords
+        } else {
+            0
+        };
+        rounded_rectangle(half, radius, chords)
+    };
+    let rings: Vec<Vec<V3>> = profile
+        .iter()
+        .map(|&[y, s]| ring(s).iter().map(|&[x, z]| V3::new(x, y, z)).collect())
+        .collect();
+    sewn(&rings)
+}
+
+/// The closed surface through rings of as many points each, from low to high y, with a fan round the axis at both ends. Points of a
+/// ring may coincide.
+fn sewn(rings: &[Vec<V3>]) -> Result<TriMesh, MeshError> {
+    let mut vertices: Vec<V3> = Vec::new();
+    let mut known = BTreeMap::new();
+    let mut number = |p: V3| {
+        // -0 is 0
+        let key = [p.x, p.y, p.z].map(|c| (c + 0.0).to_bits());
+        *known.entry(key).or_insert_with(|| {
+            vertices.push(p);
+            vertices.len() as u32 - 1
+        })
+    };
+    let numbers: Vec<Vec<u32>> = rings
+        .iter()
+        .map(|ring| ring.iter().map(|&p| number(p)).collect())
+        .collect();
+    let hub = |ring: &Vec<V3>| V3::new(0.0, ring[0].y, 0.0);
+    let hubs = [number(hub(&rings[0])), number(hub(&rings[rings.len() - 1]))];
+    let mut triangles = Vec::new();
+    let mut triangle = |corners: [u32; 3]| {
+        let [a, b, c] = corners;
+        if a != b && b != c && c != a {
+            triangles.push(corners);
+        }
+    };
+    let count = numbers[0].len();
+    for k in 0..count {
+        let next = (k + 1) % count;
+        for pair in numbers.windows(2) {
+            let (low, high) = (&pair[0], &pair[1]);
+            triangle([low[k], high[k], high[next]]);
+            triangle([low[k], high[next], low[next]]);
+        }
+        let (first, last) = (&numbers[0], &numbers[numbers.len() - 1]);
+        triangle([hubs[1], last[next], last[k]]);
+        triangle([hubs[0], first[k], first[next]]);
+    }
+    TriMesh::new(vertices, triangles)
 }
 
 /// Cylinder of `radius` (m) about y over `length_y` (m), centred at the origin, in `segments`

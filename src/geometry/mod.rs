@@ -21,6 +21,7 @@ mod bvh;
 mod elements;
 mod error;
 mod feature;
+mod flange;
 mod flank;
 mod grid;
 mod level;
@@ -38,10 +39,9 @@ pub use bvh::Bvh;
 pub use error::MeshError;
 #[cfg(feature = "lab")]
 pub use feature::Nearest;
+pub use flange::Flanges;
 pub use mesh::TriMesh;
-#[cfg(feature = "lab")]
-pub use shape::Nearness;
-pub use shape::Shape;
+pub use shape::{Nearness, Shape};
 #[cfg(feature = "lab")]
 pub use spline::Foot;
 pub use spline::{Curve, SplineTube};

@@ -48,10 +48,12 @@ pub struct Nearness {
 
 /// Signed distance from the outline in x-z with its unit gradient, before extrusion.
 #[derive(Clone, Copy)]
-struct Outline {
-    distance: f64,
-    x: f64,
-    z: f64,
+pub(super) struct Outline {
+    /// m; negative inside
+    pub(super) distance: f64,
+    /// unit gradient
+    pub(super) x: f64,
+    pub(super) z: f64,
 }
 
 impl Shape {
@@ -79,6 +81,26 @@ impl Shape {
                     distance: nearest.distance,
                     normal: nearest.normal,
                 }
+            }
+        }
+    }
+
+    /// Signed distance of `p` (core frame, m) from the outline of the core in x-z. A mesh counts as the rectangle that it
+    /// fits in.
+    #[inline]
+    pub(super) fn outline(&self, p: V3) -> Outline {
+        match self {
+            &Self::RoundedBox {
+                half_x,
+                half_z,
+                corner_radius,
+                ..
+            } => rounded_rectangle(half_x, half_z, corner_radius, p),
+            &Self::Cylinder { radius, .. } => circle(radius, p),
+            Self::Mesh(surface) => {
+                let (low, high) = surface.bounds();
+                let (half_x, half_z) = (high.x.max(-low.x), high.z.max(-low.z));
+                rounded_rectangle(half_x, half_z, 0.0, p)
             }
         }
     }

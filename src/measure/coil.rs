@@ -5,6 +5,7 @@ use super::passes::Passes;
 use super::profile::Profile;
 use super::row::Row;
 use super::runs::{Run, stations_for};
+use super::support::RowPlace;
 use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::PersistentVec;
@@ -62,6 +63,8 @@ pub struct SettledNode {
     pub arc: f64,
     /// signed distance of the centreline from the flank of the core (not from a flange), minus the radius, m
     pub height: f64,
+    /// way along y from the centreline to the face of the flange beside it, m, negative towards -y; none far from flanges
+    pub flange: Option<f64>,
     /// plastic stretch
     pub plastic_strain: f64,
     /// time at which it came to rest, s
@@ -379,7 +382,14 @@ impl Coil {
             (position.y / self.spec.diameter).floor() as i64,
         );
         let (number, pass) = self.passes.at(angle);
-        let (row, support) = self.row_and_support(pass, angle, bucket, position.y, height);
+        let at = RowPlace {
+            angle,
+            bucket,
+            y: position.y,
+            height,
+            flange: end.settled.flange,
+        };
+        let (row, support) = self.row_and_support(pass, &at);
         let bulge = height - support.level;
         // A drawn loop lies close on wire that itself stands off the core as it would alone.
         let at_rest = |profile: &Profile| match support.is_wire {
@@ -388,9 +398,9 @@ impl Coil {
         };
         let (layer, other_layer) = self.layer_after(support.layer);
         let (neighbour, window) = self.neighbour(angle, position, row);
-        // The nozzle turns here, and the wire leaves its row.
-        let lifts =
-            row.is_over_in(pass) && bulge > self.spec.limits.overlap_height * self.spec.diameter;
+        // The nozzle turns here or the flange is near, and the wire leaves its row.
+        let lifts = (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
+            && bulge > self.spec.limits.overlap_height * self.spec.diameter;
         let steps_up = lifts || self.passes.ends_within(angle, STEP_UP);
         let mut station = Station {
             angle,

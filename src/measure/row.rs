@@ -19,6 +19,8 @@ pub(crate) struct Row {
     pub(crate) sense: f64,
     /// farthest place along y in that direction, m
     farthest: f64,
+    /// where the pass began in which wire climbed beside a flange, rad: the row is that of the pass to come
+    ahead_of: Option<f64>,
 }
 
 impl Row {
@@ -29,12 +31,25 @@ impl Row {
             from: f64::NEG_INFINITY,
             sense: pass.sense,
             farthest: y,
+            ahead_of: None,
         }
     }
 
     /// Whether the nozzle goes the other way by now, so that the next row may begin.
     pub(crate) fn is_over_in(&self, pass: Pass) -> bool {
-        self.sense != pass.sense
+        self.sense != pass.sense && self.ahead_of != Some(pass.from)
+    }
+
+    /// The row after this one, which begins at `angle` (rad) and `y` (m) because wire has climbed beside a flange: the
+    /// nozzle still goes the way of `pass`.
+    pub(crate) fn beside_flange(self, pass: Pass, angle: f64, y: f64) -> Self {
+        Self {
+            number: self.number + 1,
+            from: angle,
+            sense: -self.sense,
+            farthest: y,
+            ahead_of: Some(pass.from),
+        }
     }
 
     /// The row of the next station at `angle` (rad) and `y` (m): a new one once the nozzle has turned and wire has
@@ -47,6 +62,7 @@ impl Row {
                 from: angle,
                 sense: pass.sense,
                 farthest: y,
+                ahead_of: None,
             };
         }
         let farthest = if (y - self.farthest) * self.sense > 0.0 {

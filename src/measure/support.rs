@@ -26,17 +26,42 @@ pub(crate) struct Support {
     pub(crate) layer: u32,
 }
 
+/// Where the wire of the next station lies.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RowPlace {
+    /// winding angle, rad
+    pub(crate) angle: f64,
+    /// of its polar angle and its place along y
+    pub(crate) bucket: (usize, i64),
+    /// m
+    pub(crate) y: f64,
+    /// over the core, m
+    pub(crate) height: f64,
+    /// way along y to the face of the flange beside it, m
+    pub(crate) flange: Option<f64>,
+}
+
+impl RowPlace {
+    /// Whether a flange leaves no room for another turn of the row: wire that climbs here does so because it has to.
+    ///
+    /// Wire that lies half a diameter beside the turn that it climbs on, a diameter from the flange, has just as much room beside
+    /// that turn as a turn needs.
+    pub(crate) fn has_no_room_in(&self, row: Row, diameter: f64) -> bool {
+        self.flange
+            .is_some_and(|flange| flange * row.sense > 0.0 && flange.abs() < diameter)
+    }
+}
+
 impl Coil {
-    /// Row of the next station, and what lies below it: wire at `angle` (rad), `y` (m) and `height` over the core
-    /// (m) in this pass. `bucket` is that of the wire.
-    pub(crate) fn row_and_support(
-        &self,
-        pass: Pass,
-        angle: f64,
-        bucket: (usize, i64),
-        y: f64,
-        height: f64,
-    ) -> (Row, Support) {
+    /// Row of the next station in this pass, and what lies below it.
+    pub(crate) fn row_and_support(&self, pass: Pass, at: &RowPlace) -> (Row, Support) {
+        let RowPlace {
+            angle,
+            bucket,
+            y,
+            height,
+            ..
+        } = *at;
         let last = self.records.last();
         let row = last.map_or_else(|| Row::first(pass, y), |last| last.row);
         // Once the nozzle has turned, wire of the row itself may be what the next one lies on.
@@ -44,7 +69,15 @@ impl Coil {
         let climbed = row.is_over_in(pass)
             && self.support(least, bucket, y, height).layer
                 > last.map_or(1, |last| last.station.layer);
-        let row = row.next(pass, angle, y, climbed, self.spec.diameter);
+        let climbs_at_flange = !row.is_over_in(pass)
+            && row.sense == pass.sense
+            && at.has_no_room_in(row, self.spec.diameter)
+            && self.support(row.number + 1, bucket, y, height).layer
+                > last.map_or(1, |last| last.station.layer);
+        let row = match climbs_at_flange {
+            true => row.beside_flange(pass, angle, y),
+            false => row.next(pass, angle, y, climbed, self.spec.diameter),
+        };
         (row, self.support(row.number, bucket, y, height))
     }
 

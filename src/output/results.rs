@@ -5,7 +5,6 @@ use super::{
     write_summary, write_turns, write_vtp,
 };
 use crate::geometry::Surface;
-use crate::scene::Core;
 use crate::simulation::{Centreline, SimError, Simulation, Summary, core_surface};
 use serde::Serialize;
 use std::path::Path;
@@ -56,7 +55,7 @@ impl Snapshot {
     pub fn write(&self, stem: &Path, simulation: &Simulation) -> Result<(), OutputError> {
         let wire = simulation.centreline();
         let radius = simulation.scene().wire.radius();
-        let flanges = matches!(simulation.scene().core, Core::Mesh { .. });
+        let flanges = simulation.scene().core.may_have_flanges();
         let geometry = self.write_geometry(&stem.with_extension("vtp"), &wire, radius, flanges);
         let picture = Picture::new(Some(self.mesh()), &wire, radius);
         let picture = render_png(&stem.with_extension("png"), &picture);

@@ -2,11 +2,13 @@
 
 use super::error::Warning;
 use super::features::Decisions;
+use super::impossible::si;
 use super::material::section;
 use super::problems::Problems;
-use super::{Core, Features, Integrator, LiveContact, Preset, Scene, SceneError, Solver};
+use super::{Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver};
 use crate::rod::Twist;
-use crate::settings::SceneSettings;
+use crate::settings::{SceneSettings, Spindle};
+use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 /// Node spacing near the core that goes with a tolerance, m: 0.3 mm to 2e-6 m.
@@ -44,7 +46,10 @@ impl SceneSettings {
         let wire = problems.note(section(self));
         let core = self.core(&mut problems);
         let core = problems.note(core);
-        self.check_motion_and_friction(&mut problems);
+        let law = core.as_ref().and_then(|(_, extent)| {
+            self.nozzle_law(self.wire.diameter, extent, &mut problems)
+        });
+        self.check_motion_and_friction(law.as_ref(), &mut problems);
         if let (Some(wire), Some((_, extent))) = (&wire, &core) {
             self.check_core(wire, extent, &mut problems);
             self.check_nozzle(wire, extent, &mut problems);
@@ -52,7 +57,7 @@ impl SceneSettings {
         if let Some(wire) = &wire {
             self.check_strength(wire, &mut problems);
         }
-        let Some((mut wire, (core, extent))) = wire.zip(core) else {
+        let Some(((mut wire, (core, extent)), nozzle_law)) = wire.zip(core).zip(law) else {
             return problems.finish_with(None);
         };
         let preset = match self.preset.as_str() {
@@ -71,7 +76,7 @@ impl SceneSettings {
         let span = self.nozzle.distance - extent.turning_radius;
         let solver = self.solver_for(integrator, twist, (wire.diameter, span));
         self.check_spacing(&solver, &wire, &extent, &mut problems);
-        let warnings = self.warnings(&solver, &wire, &core, &extent);
+        let warnings = self.warnings(&solver, &wire, &core, &extent, &nozzle_law);
 
         let mut scene = Scene {
             name: self.name.clone(),
@@ -82,8 +87,16 @@ impl SceneSettings {
             nozzle: self.nozzle,
             tensioner: self.tensioner,
             start: self.start,
-            spindle: self.spindle,
-            traverse: self.traverse,
+            spindle: Spindle {
+                turns: match self.spindle.turns {
+                    0.0 => nozzle_law.end() / TAU,
+                    turns => turns,
+                },
+                ..self.spindle
+            },
+            traverse: self.traverse.clone(),
+            winding: self.winding.clone(),
+            nozzle_law,
             contact: self.contact,
             friction: self.friction,
             solver,
@@ -98,23 +111,47 @@ impl SceneSettings {
         Ok((scene, warnings))
     }
 
+    /// The flanges, where there are any.
+    fn flange(&self, problems: &mut Problems) -> Option<Flange> {
+        let f = self.core.flange;
+        if f.inner_distance == 0.0 {
+            return None;
+        }
+        let most = (0.5 * f.thickness).min(f.height);
+        if f.edge_radius > most {
+            problems.add(self.impossible(
+                "core.flange.edge_radius",
+                "the edges need more than the flange's height or half its thickness",
+                format!("0 to {} m", si(most)),
+            ));
+        }
+        if f.inner_distance < self.wire.diameter {
+            problems.add(self.impossible(
+                "core.flange.inner_distance",
+                "the wire is wider than the flanges are apart",
+                format!("at least {} m, or 0 for no flanges", si(self.wire.diameter)),
+            ));
+        }
+        Some(Flange {
+            inner_distance: f.inner_distance,
+            height: f.height,
+            thickness: f.thickness,
+            edge_radius: f.edge_radius.min(most),
+        })
+    }
+
     fn core(&self, problems: &mut Problems) -> Result<(Core, Extent), SceneError> {
         let c = &self.core;
         match c.shape.as_str() {
             "cylinder" => {
                 let half = 0.5 * c.length_y;
+                let flange = self.flange(problems);
                 let core = Core::Cylinder {
                     radius: c.radius,
                     length_y: c.length_y,
+                    flange,
                 };
-                Ok((
-                    core,
-                    Extent {
-                        turning_radius: c.radius,
-                        y_min: -half,
-                        y_max: half,
-                    },
-                ))
+                Ok((core, Extent::of(c.radius, half, flange)))
             }
             "mesh" => {
                 let unit = match c.unit.as_str() {
@@ -138,22 +175,17 @@ impl SceneSettings {
                 if c.corner_radius > r {
                     problems.add(self.corner_too_large(r));
                 }
+                let flange = self.flange(problems);
                 let core = Core::RoundedBox {
                     width_x: c.width_x,
                     height_z: c.height_z,
                     length_y: c.length_y,
                     corner_radius: r,
+                    flange,
                 };
                 let turning_radius = libm::hypot(half_x - r, half_z - r) + r;
                 let half = 0.5 * c.length_y;
-                Ok((
-                    core,
-                    Extent {
-                        turning_radius,
-                        y_min: -half,
-                        y_max: half,
-                    },
-                ))
+                Ok((core, Extent::of(turning_radius, half, flange)))
             }
         }
     }
@@ -176,8 +208,10 @@ impl SceneSettings {
             .map_err(|e| problem(format!("the mesh cannot be read ({e})")))?;
         let mut extent = Extent {
             turning_radius: 0.0,
+            winding_radius: 0.0,
             y_min: f64::INFINITY,
             y_max: f64::NEG_INFINITY,
+            window: None,
         };
         for vertex in &mesh.vertices {
             let [x, y, z] = vertex.0.map(|c| f64::from(c) * unit);
@@ -193,6 +227,7 @@ impl SceneSettings {
         if mesh.faces.is_empty() || extent.turning_radius <= 0.0 || extent.y_min >= extent.y_max {
             return Err(problem("the mesh encloses nothing".to_owned()));
         }
+        extent.winding_radius = extent.turning_radius;
         Ok(extent)
     }
 
@@ -242,7 +277,25 @@ impl SceneSettings {
 pub(super) struct Extent {
     /// largest distance from the axis, m
     pub(super) turning_radius: f64,
+    /// the same of what wire is wound on, without flanges, m
+    pub(super) winding_radius: f64,
     /// ends along the axis, m
     pub(super) y_min: f64,
     pub(super) y_max: f64,
+    /// distance of the flanges, m, where the scene says it
+    pub(super) window: Option<f64>,
+}
+
+impl Extent {
+    /// That of a core with this turning radius and half length, m; between flanges it ends at their outer faces.
+    fn of(turning_radius: f64, half: f64, flange: Option<Flange>) -> Self {
+        let half = flange.map_or(half, |f| 0.5 * f.inner_distance + f.thickness);
+        Self {
+            turning_radius: turning_radius + flange.map_or(0.0, |f| f.height),
+            winding_radius: turning_radius,
+            y_min: -half,
+            y_max: half,
+            window: flange.map(|f| f.inner_distance),
+        }
+    }
 }

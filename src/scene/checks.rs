@@ -3,9 +3,10 @@
 use super::build::{COARSEST, Extent, FINEST};
 use super::impossible::si;
 use super::problems::Problems;
-use super::{Integrator, SceneError, Solver};
+use super::{Integrator, NozzleLaw, SceneError, Solver};
 use crate::rod::Section;
 use crate::settings::SceneSettings;
+use std::f64::consts::TAU;
 
 impl SceneSettings {
     /// The first of these leaves that somebody gave, else the first: the one to blame.
@@ -58,11 +59,19 @@ impl SceneSettings {
             });
             return;
         }
-        let (low, high) = (extent.y_min + wire.radius(), extent.y_max - wire.radius());
+        let (mut low, mut high) = (extent.y_min, extent.y_max);
+        if let Some(width) = extent.window {
+            (low, high) = (-0.5 * width, 0.5 * width);
+        }
+        let rounding = 1e-9 * wire.diameter;
+        let (low, high) = (low + wire.radius() - rounding, high - wire.radius() + rounding);
         if !(low..=high).contains(&self.start.clamp_y) {
             problems.add(self.impossible(
                 "start.clamp_y",
-                "the wire end is clamped beside the core",
+                match extent.window {
+                    Some(_) => "the wire end is clamped in a flange",
+                    None => "the wire end is clamped beside the core",
+                },
                 format!("{} to {} m", si(low), si(high)),
             ));
         }
@@ -102,9 +111,14 @@ impl SceneSettings {
         }
     }
 
-    pub(super) fn check_motion_and_friction(&self, problems: &mut Problems) {
-        let (ramp, turns) = (self.spindle.ramp_turns, self.spindle.turns);
-        if ramp > turns {
+    pub(super) fn check_motion_and_friction(
+        &self,
+        law: Option<&NozzleLaw>,
+        problems: &mut Problems,
+    ) {
+        let ramp = self.spindle.ramp_turns;
+        let turns = law.map_or(self.spindle.turns, |law| law.end() / TAU);
+        if ramp > turns && turns > 0.0 {
             let reason = format!("the run ends after {} turns, still accelerating", si(turns));
             problems.add(match self.given(&["spindle.ramp_turns", "spindle.turns"]) {
                 "spindle.turns" => self.impossible(

@@ -3,8 +3,9 @@
 use crate::measure::DefectLimits;
 use crate::rod::{Section, Twist};
 use crate::settings::{
-    Contact, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse,
+    Contact, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse, Winding,
 };
+use super::nozzle_law::NozzleLaw;
 use std::path::PathBuf;
 
 /// The description of a run, which does not change while it runs.
@@ -28,8 +29,12 @@ pub struct Scene {
     pub start: Start,
     /// spindle motion profile of `coilwind run`
     pub spindle: Spindle,
-    /// traverse motion profile of `coilwind run`
+    /// traverse motion profile of `coilwind run`, as given
     pub traverse: Traverse,
+    /// turns and layers of `coilwind run`, as given
+    pub winding: Winding,
+    /// the nozzle's way that follows from both
+    pub nozzle_law: NozzleLaw,
     /// contact law
     pub contact: Contact,
     /// friction law
@@ -68,6 +73,8 @@ pub enum Core {
         length_y: f64,
         /// radius of the four long edges, m
         corner_radius: f64,
+        /// flanges beside it
+        flange: Option<Flange>,
     },
     /// Circular cylinder about y.
     Cylinder {
@@ -75,6 +82,8 @@ pub enum Core {
         radius: f64,
         /// full length along y, m
         length_y: f64,
+        /// flanges beside it
+        flange: Option<Flange>,
     },
     /// Triangle mesh from an STL file.
     Mesh {
@@ -83,6 +92,34 @@ pub enum Core {
         /// metres per file unit
         unit: f64,
     },
+}
+
+/// Two flanges beside a core, the same on both sides of y = 0. Their rim stands the same height above it all round.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flange {
+    /// distance of the inner faces, m
+    pub inner_distance: f64,
+    /// how far the rim stands above the core, m
+    pub height: f64,
+    /// thickness of each along y, m
+    pub thickness: f64,
+    /// radius of the edges of the rim, m
+    pub edge_radius: f64,
+}
+
+impl Core {
+    /// Whether there may be flanges beside what wire is wound on.
+    pub fn may_have_flanges(&self) -> bool {
+        matches!(self, Self::Mesh { .. }) || self.flange().is_some()
+    }
+
+    /// Flanges of a shape that has keys for them.
+    pub fn flange(&self) -> Option<Flange> {
+        match self {
+            Self::RoundedBox { flange, .. } | Self::Cylinder { flange, .. } => *flange,
+            Self::Mesh { .. } => None,
+        }
+    }
 }
 
 /// Method that moves the wire in time.

@@ -6,7 +6,7 @@ use super::key::{nearest, resolve, sections};
 use super::problems::Problems;
 use crate::settings::Origin;
 use crate::settings::SceneSettings;
-use crate::variables::Value;
+use crate::variables::{Value, table};
 use std::collections::BTreeMap;
 use std::path::Path;
 use toml::Spanned;
@@ -123,10 +123,8 @@ impl SceneSettings {
             let (name, offset) = (key.get_ref().as_ref(), key.span().start);
             match value.get_ref() {
                 DeValue::Table(section) if sections().contains(&name) => {
-                    for (key, value) in in_file_order(section) {
-                        let path = format!("{name}.{}", key.get_ref());
-                        let set = leaf(&mut settings, &path, key.span().start, value.get_ref());
-                        found.extend(set.err());
+                    for (path, offset, value) in leaves(name, section) {
+                        found.extend(leaf(&mut settings, &path, offset, value).err());
                     }
                 }
                 DeValue::Table(_) => {
@@ -142,11 +140,10 @@ impl SceneSettings {
             }
         }
 
-        if settings.origins.contains_key("core.file") && !settings.core.file.is_empty() {
-            settings.core.file = base_dir
-                .join(&settings.core.file)
-                .to_string_lossy()
-                .into_owned();
+        for file in [&mut settings.core.file, &mut settings.traverse.file] {
+            if !file.is_empty() {
+                *file = base_dir.join(&*file).to_string_lossy().into_owned();
+            }
         }
         Ok((settings, found))
     }
@@ -157,6 +154,25 @@ fn all_or(found: Vec<SceneError>, settings: SceneSettings) -> Result<SceneSettin
     let mut problems = Problems::default();
     found.into_iter().for_each(|error| problems.add(error));
     problems.finish().map(|()| settings)
+}
+
+/// Paths, places in the file and values of a section, in the order of the file; `[core.flange]` is a part of `[core]`.
+fn leaves<'t, 'i>(name: &str, section: &'t DeTable<'i>) -> Vec<(String, usize, &'t DeValue<'i>)> {
+    let mut found = Vec::new();
+    for (key, value) in in_file_order(section) {
+        let path = format!("{name}.{}", key.get_ref());
+        match value.get_ref() {
+            DeValue::Table(part) if is_part(&path) => found.extend(leaves(&path, part)),
+            value => found.push((path, key.span().start, value)),
+        }
+    }
+    found
+}
+
+/// Whether some leaves stand in a part of a section of this name.
+fn is_part(path: &str) -> bool {
+    let inside = |name: &str| name.strip_prefix(path).is_some_and(|rest| rest.starts_with('.'));
+    table().iter().any(|v| inside(v.name))
 }
 
 fn in_file_order<'t, 'i>(

@@ -14,16 +14,20 @@ mod file;
 mod impossible;
 mod key;
 mod material;
+mod nozzle_law;
 mod problems;
 mod saved;
 mod warnings;
 mod write;
 
 pub use crate::rod::{Section, Twist};
-pub use description::{Core, Decision, Features, Integrator, LiveContact, Preset, Scene, Solver};
+pub use description::{
+    Core, Decision, Features, Flange, Integrator, LiveContact, Preset, Scene, Solver,
+};
 pub use error::{SceneError, Warning};
 pub use file::packed_names;
 pub use key::{assignment, unit_suffixes};
+pub use nozzle_law::{NozzleLaw, Piece};
 
 #[cfg(doc)]
 use crate::settings::SceneSettings;

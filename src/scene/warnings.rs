@@ -3,7 +3,7 @@
 use super::build::Extent;
 use super::error::Warning;
 use super::impossible::si;
-use super::{Core, Integrator, Solver};
+use super::{Core, Integrator, NozzleLaw, Solver};
 use crate::rod::{Section, Twist};
 use crate::settings::SceneSettings;
 
@@ -16,9 +16,23 @@ const KEYS_OF_SHAPES: [(&str, &[&str]); 3] = [
             "core.height_z",
             "core.length_y",
             "core.corner_radius",
+            "core.flange.inner_distance",
+            "core.flange.height",
+            "core.flange.thickness",
+            "core.flange.edge_radius",
         ],
     ),
-    ("cylinder", &["core.radius", "core.length_y"]),
+    (
+        "cylinder",
+        &[
+            "core.radius",
+            "core.length_y",
+            "core.flange.inner_distance",
+            "core.flange.height",
+            "core.flange.thickness",
+            "core.flange.edge_radius",
+        ],
+    ),
     ("mesh", &["core.file", "core.unit"]),
 ];
 
@@ -29,6 +43,7 @@ impl SceneSettings {
         wire: &Section,
         core: &Core,
         extent: &Extent,
+        law: &NozzleLaw,
     ) -> Vec<Warning> {
         let mut warnings = self.keys_without_effect();
         let mut warn = |key: &'static str, message: String| {
@@ -52,9 +67,8 @@ impl SceneSettings {
                 format!("the nozzle starts beside the core; {ends}"),
             );
         }
-        let travel = self.traverse.lead + self.traverse.per_turn * self.spindle.turns;
-        let last = self.nozzle.y_start + travel;
-        if beside(last) && !beside(self.nozzle.y_start) {
+        let last = law.position(law.end());
+        if self.traverse.mode == "by-angle" && beside(last) && !beside(self.nozzle.y_start) {
             let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
             warn("traverse.per_turn", message);
         }

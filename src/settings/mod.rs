@@ -5,7 +5,8 @@ mod sections;
 
 pub use origin::Origin;
 pub use sections::{
-    Contact, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse,
+    Contact, FlangeSettings, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse,
+    Winding,
 };
 
 use crate::measure::DefectLimits;
@@ -38,6 +39,8 @@ pub struct SceneSettings {
     pub spindle: Spindle,
     /// motion of the nozzle in a native run
     pub traverse: Traverse,
+    /// turns and layers that the nozzle winds in a native run
+    pub winding: Winding,
     /// stiffness and damping of contact
     pub contact: Contact,
     /// coefficients of friction
@@ -112,6 +115,8 @@ pub struct CoreSettings {
     pub file: String,
     /// mesh: unit of the STL file (one of `m`, `mm`, `um`, `inch`)
     pub unit: String,
+    /// flanges beside a rounded box or a cylinder
+    pub flange: FlangeSettings,
 }
 
 /// `[solver]`.
@@ -201,6 +206,12 @@ impl Default for SceneSettings {
                 radius: 10e-3,
                 file: String::new(),
                 unit: "mm".to_owned(),
+                flange: FlangeSettings {
+                    inner_distance: 0.0,
+                    height: 3e-3,
+                    thickness: 1e-3,
+                    edge_radius: 0.0,
+                },
             },
             nozzle: Nozzle {
                 distance: 60e-3,
@@ -217,11 +228,22 @@ impl Default for SceneSettings {
             spindle: Spindle {
                 speed: 500.0,
                 ramp_turns: 0.25,
-                turns: 2.5,
+                turns: 0.0,
             },
             traverse: Traverse {
+                mode: "by-angle".to_owned(),
                 per_turn: 0.7e-3,
                 lead: 0.0,
+                crossover: 0.25 * std::f64::consts::PI,
+                advance: 0.0,
+                dwell_turns: 0.5,
+                file: String::new(),
+            },
+            winding: Winding {
+                turns_per_layer: 0.0,
+                layers: 1.0,
+                direction: "+y".to_owned(),
+                pitch: 0.0,
             },
             contact: Contact {
                 stiffness: 1e10,

@@ -50,17 +50,53 @@ pub struct Spindle {
     pub speed: f64,
     /// turns over which the speed rises with constant acceleration
     pub ramp_turns: f64,
-    /// turns of the spindle until the run ends
+    /// turns of the spindle until the run ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle
     pub turns: f64,
 }
 
-/// Traverse motion profile of a native run: nozzle y proportional to the core angle.
+/// Two flanges beside the core; none where the inner distance is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlangeSettings {
+    /// distance of their inner faces, m; 0: no flanges
+    pub inner_distance: f64,
+    /// how far their rim stands above the core, m
+    pub height: f64,
+    /// thickness of each along the axis, m
+    pub thickness: f64,
+    /// radius of the edges of the rim, m
+    pub edge_radius: f64,
+}
+
+/// Traverse motion profile of a native run: nozzle y over the core angle.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Traverse {
-    /// nozzle travel per turn of the spindle, m (sign: direction along y)
+    /// how the nozzle moves (one of `by-angle`, `orthocyclic`, `helical`, `table`)
+    pub mode: String,
+    /// by-angle: nozzle travel per turn of the spindle, m (sign: direction along y)
     pub per_turn: f64,
-    /// constant lead of the nozzle over the law, m
+    /// constant lead of the nozzle over the law, m; in layers, in the direction of each
     pub lead: f64,
+    /// orthocyclic: core angle of the step to the next turn, rad
+    pub crossover: f64,
+    /// core angle by which the nozzle is ahead of the law, rad
+    pub advance: f64,
+    /// helical: turns that the nozzle stands at the end of a layer
+    pub dwell_turns: f64,
+    /// table: path of the CSV file, already resolved against the folder of the scene file
+    pub file: String,
+}
+
+/// What the layered traverse modes wind.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Winding {
+    /// turns of the first layer; 0: as many as fit between the flanges
+    pub turns_per_layer: f64,
+    /// layers
+    pub layers: f64,
+    /// direction of the first layer along y (one of `+y`, `-y`)
+    pub direction: String,
+    /// distance of neighbouring turns, m; 0: fills the window, or the wire's diameter where there is none
+    pub pitch: f64,
 }
 
 /// Penalty contact.

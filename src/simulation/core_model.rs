@@ -1,8 +1,8 @@
 //! The core of a scene as a triangle mesh and as a shape for contact.
 
 use super::SimError;
-use crate::geometry::generate::{cylinder, rounded_box, segments_for_sagitta};
-use crate::geometry::{Shape, Surface, TriMesh};
+use crate::geometry::generate::{cylinder, flanged, rounded_box, segments_for_sagitta};
+use crate::geometry::{Flanges, Shape, Surface, TriMesh};
 use crate::scene::Core;
 use std::sync::Arc;
 
@@ -16,12 +16,23 @@ const SAGITTA: f64 = 0.5e-6;
 /// If the file of a mesh cannot be read, or the mesh is refused; the message names the reason.
 pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
     let fail = |e: String| SimError::setup(format!("core: {e}"));
+    if let Some(flanges) = core_flanges(core) {
+        let quarter = |radius: f64| segments_for_sagitta(radius, SAGITTA).div_ceil(4).max(2);
+        let rim = match core {
+            Core::RoundedBox { corner_radius, .. } => *corner_radius,
+            Core::Cylinder { radius, .. } => *radius,
+            Core::Mesh { .. } => 0.0,
+        } + flanges.height;
+        let mesh = flanged(&flanges, quarter(rim), quarter(flanges.edge_radius));
+        return Ok(Surface::new(mesh.map_err(|e| fail(e.to_string()))?));
+    }
     let mesh: TriMesh = match core {
         Core::RoundedBox {
             width_x,
             height_z,
             length_y,
             corner_radius,
+            ..
         } => {
             let segments = segments_for_sagitta(*corner_radius, SAGITTA)
                 .div_ceil(4)
@@ -29,7 +40,9 @@ pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
             rounded_box(*width_x, *height_z, *length_y, *corner_radius, segments)
                 .map_err(|e| fail(e.to_string()))?
         }
-        Core::Cylinder { radius, length_y } => {
+        Core::Cylinder {
+            radius, length_y, ..
+        } => {
             cylinder(*radius, *length_y, segments_for_sagitta(*radius, SAGITTA))
                 .map_err(|e| fail(e.to_string()))?
         }
@@ -43,24 +56,48 @@ pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
     Ok(Surface::new(mesh))
 }
 
-/// Returns the shape on which the line contact finds the nearest points.
+/// The flanges of a core that has keys for them, core frame.
+pub(super) fn core_flanges(core: &Core) -> Option<Flanges> {
+    let flange = core.flange()?;
+    Some(Flanges {
+        core: wound_on(core)?,
+        half_inner: 0.5 * flange.inner_distance,
+        height: flange.height,
+        thickness: flange.thickness,
+        edge_radius: flange.edge_radius,
+    })
+}
+
+/// Returns the shape on which the line contact finds the nearest points, without flanges that are none of it.
 pub(super) fn core_shape(core: &Core, surface: &Arc<Surface>) -> Shape {
+    wound_on(core).unwrap_or_else(|| Shape::Mesh(surface.clone()))
+}
+
+/// What wire is wound on, where it has a formula; between flanges it ends at their outer faces.
+fn wound_on(core: &Core) -> Option<Shape> {
+    let half_length = |length_y: f64| match core.flange() {
+        Some(flange) => 0.5 * flange.inner_distance + flange.thickness,
+        None => 0.5 * length_y,
+    };
     match core {
         Core::RoundedBox {
             width_x,
             height_z,
             length_y,
             corner_radius,
-        } => Shape::RoundedBox {
+            ..
+        } => Some(Shape::RoundedBox {
             half_x: 0.5 * width_x,
             half_z: 0.5 * height_z,
-            half_y: 0.5 * length_y,
+            half_y: half_length(*length_y),
             corner_radius: *corner_radius,
-        },
-        Core::Cylinder { radius, length_y } => Shape::Cylinder {
+        }),
+        Core::Cylinder {
+            radius, length_y, ..
+        } => Some(Shape::Cylinder {
             radius: *radius,
-            half_y: 0.5 * length_y,
-        },
-        Core::Mesh { .. } => Shape::Mesh(surface.clone()),
+            half_y: half_length(*length_y),
+        }),
+        Core::Mesh { .. } => None,
     }
 }

@@ -67,7 +67,7 @@ impl Simulation {
         }
         self.reset_extremes();
         let statistics_before = self.statistics();
-        let gone = drives.iter().flatten().try_for_each(|drive| {
+        let gone = drives.iter().try_for_each(|drive| {
             self.sys.begin_drive(drive);
             self.through(drive)
         });
@@ -90,7 +90,7 @@ impl Simulation {
     }
 
     /// The motion over the last `span` seconds up to the end of a communication step of `dt`, s.
-    fn drives(&self, source: &Source, dt: f64, span: f64) -> [Option<Drive>; 2] {
+    fn drives(&self, source: &Source, dt: f64, span: f64) -> Vec<Drive> {
         match source {
             Source::Inputs { inputs, rates } => {
                 let end = inputs.after(rates, dt);
@@ -108,7 +108,7 @@ impl Simulation {
                     tension: start.tension_setpoint,
                     tension_rate: rates.tension_setpoint,
                 };
-                [Some(drive), None]
+                vec![drive]
             }
             Source::Profile => {
                 let (start, end) = (
@@ -117,6 +117,7 @@ impl Simulation {
                 );
                 self.motion_profile
                     .drives(start, end, self.sys.state.set_tension)
+                    .collect()
             }
         }
     }

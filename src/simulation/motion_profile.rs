@@ -1,20 +1,18 @@
 //! The scene's own spindle ramp and traverse, as functions of time.
 
-use crate::scene::Scene;
+use crate::scene::{NozzleLaw, Scene};
 use crate::system::{Drive, NozzleDrive};
 use std::f64::consts::TAU;
 
 /// Share of a time by which sums of pieces of it may miss it.
 pub(super) const ROUNDING: f64 = 1e-12;
 
-/// Constant acceleration over the ramp, then constant speed; nozzle travel proportional to angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Constant acceleration over the ramp, then constant speed; the nozzle goes with the angle.
+#[derive(Clone, Debug, PartialEq)]
 pub struct MotionProfile {
     speed: f64,
     ramp_angle: f64,
-    end_angle: f64,
-    /// nozzle travel per core angle, m/rad
-    pub travel_per_angle: f64,
+    nozzle: NozzleLaw,
 }
 
 impl MotionProfile {
@@ -24,8 +22,7 @@ impl MotionProfile {
         Self {
             speed: s.speed,
             ramp_angle: s.ramp_turns.min(s.turns) * TAU,
-            end_angle: s.turns * TAU,
-            travel_per_angle: scene.traverse.per_turn / TAU,
+            nozzle: scene.nozzle_law.clone(),
         }
     }
 
@@ -67,46 +64,64 @@ impl MotionProfile {
 
     /// When the last turn is done, s.
     pub fn end(&self) -> f64 {
-        self.time_at(self.end_angle)
+        self.time_at(self.nozzle.end())
     }
 
-    /// The motion between two times, s, in intervals of constant acceleration, at set tension `tension`, N.
-    pub(crate) fn drives(&self, from: f64, to: f64, tension: f64) -> [Option<Drive>; 2] {
-        let mut ramp = self.ramp_time();
-        for edge in [from, to] {
-            // what is left between is not a time, but the rounding of two
-            if (edge - ramp).abs() < ROUNDING * ramp {
-                ramp = edge;
+    /// Nozzle position at a time, s, in m.
+    pub fn nozzle(&self, time: f64) -> f64 {
+        self.nozzle.position(self.angle(time).abs())
+    }
+
+    /// The motion between two times, s, in intervals of constant acceleration and even travel, at set tension `tension`, N.
+    pub(crate) fn drives(
+        &self,
+        from: f64,
+        to: f64,
+        tension: f64,
+    ) -> impl Iterator<Item = Drive> + use<'_> {
+        // what is left between is not a time, but the rounding of two
+        let snapped = move |mut time: f64| {
+            for edge in [from, to] {
+                if (edge - time).abs() < ROUNDING * time {
+                    time = edge;
+                }
             }
-        }
-        let mut drives = [None; 2];
-        let drive = Drive {
-            duration: 0.0,
-            speed: self.speed,
-            acceleration: 0.0,
-            nozzle: NozzleDrive::WithSpindle(self.travel_per_angle),
-            tension,
-            tension_rate: 0.0,
+            time
         };
-        if from < ramp {
-            let end = to.min(ramp);
-            if end > from {
-                drives[0] = Some(Drive {
-                    duration: end - from,
+        let ramp = snapped(self.ramp_time());
+        // before the ramp ends and after, in the pieces of the nozzle's way
+        let pieces = self.nozzle.pieces();
+        let starts = pieces.iter().map(move |p| match p.from {
+            0.0 => f64::NEG_INFINITY,
+            angle => snapped(self.time_at(angle)),
+        });
+        let ends = starts.clone().skip(1).chain([f64::INFINITY]);
+        let spans = pieces.iter().zip(starts.zip(ends));
+        spans
+            .filter(move |(_, (start, end))| *start < to && *end > from)
+            .flat_map(move |(piece, (start, end))| {
+                let (from, to) = (from.max(start), to.min(end));
+                let drive = Drive {
+                    duration: 0.0,
+                    speed: self.speed,
+                    acceleration: 0.0,
+                    nozzle: NozzleDrive::WithSpindle(piece.travel * self.speed.signum()),
+                    tension,
+                    tension_rate: 0.0,
+                };
+                let rises = (from < ramp && to.min(ramp) > from).then(|| Drive {
+                    duration: to.min(ramp) - from,
                     speed: self.speed(from),
                     acceleration: self.speed / self.ramp_time(),
                     ..drive
                 });
-            }
-        }
-        let start = from.max(ramp);
-        if to > start {
-            drives[1] = Some(Drive {
-                duration: to - start,
-                ..drive
-            });
-        }
-        drives
+                let begin = from.max(ramp);
+                let goes_on = (to > begin).then(|| Drive {
+                    duration: to - begin,
+                    ..drive
+                });
+                [rises, goes_on].into_iter().flatten()
+            })
     }
 }
 
@@ -134,7 +149,7 @@ mod tests {
                     let (mut time, mut whole) = (0.0, 0.0);
                     for _ in 0..count {
                         let drives = motion_profile.drives(time, time + dt, 15.0);
-                        for piece in drives.into_iter().flatten() {
+                        for piece in drives {
                             assert!(piece.duration > 1e-9 * dt, "{speed} {count} {piece:?}");
                             whole += piece.duration;
                         }

@@ -3,7 +3,6 @@
 use super::{Centreline, Simulation};
 use crate::math::{Spin, V3, turn_about_y};
 use crate::measure::{Coil, SettledNode};
-use crate::scene::Core;
 
 impl Simulation {
     pub(super) fn wire_tension(&self) -> f64 {
@@ -44,8 +43,10 @@ impl Simulation {
 
     pub(super) fn settled(&self, position: V3, arc: f64, plastic_strain: f64) -> SettledNode {
         let height = match (&self.scene.core, &self.sys.model.core) {
-            // Only a mesh can have flanges.
-            (Core::Mesh { .. }, Some(core)) => core.height_over_flank(position),
+            (core, Some(surface)) if core.may_have_flanges() => self
+                .sys
+                .distance_to_wound(position)
+                .unwrap_or_else(|| surface.height_over_flank(position)),
             _ => self.sys.distance_to_core(position),
         };
         let height = if height.is_finite() {
@@ -53,7 +54,17 @@ impl Simulation {
         } else {
             0.0
         };
+        let line = self.sys.model.contact.as_line();
+        let flange = match line.and_then(|line| line.flanges.as_ref()) {
+            Some(flanges) => flanges.beside(position),
+            None => {
+                let surface = self.sys.model.core.as_ref();
+                let surface = surface.filter(|_| self.scene.core.may_have_flanges());
+                surface.and_then(|surface| surface.flange_beside(position))
+            }
+        };
         SettledNode {
+            flange,
             position,
             arc,
             height,

@@ -68,9 +68,9 @@ pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Op
     };
     let sys = quarter_loop(scene, surface, &section, tension)?;
     let radius = scene.wire.radius();
-    let height = |p: V3| match scene.core {
-        Core::Mesh { .. } => surface.height_over_flank(p),
-        _ => surface.nearest(p).distance,
+    let height = |p: V3| match scene.core.may_have_flanges() {
+        true => surface.height_over_flank(p),
+        false => surface.nearest(p).distance,
     };
     let quarter: Vec<(f64, f64)> = sys
         .state

@@ -1,6 +1,6 @@
 //! The state at the start: wire clamped at mid-face, straight to the nozzle, at the set tension.
 
-use super::core_model::{core_shape, core_surface};
+use super::core_model::{core_flanges, core_shape, core_surface};
 use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_way::Traverse;
@@ -136,6 +136,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     if scene.solver.integrator == Integrator::Implicit {
         let shape = core_shape(&scene.core, &surface);
         sys.touch_along(LineModel {
+            flanges: core_flanges(&scene.core),
             restitution: scene.contact.restitution,
             ..LineModel::new(shape, law, radius)
         });
@@ -156,7 +157,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         profile: super::quasi_static::profile(scene, &surface, yardstick_tension(scene, inputs)),
         start_angle: polar_angle(clamp_core),
         direction,
-        traverse: scene.traverse.per_turn * direction,
+        traverse: scene.nozzle_law.sense() * direction,
         clamp_arc: 0.0,
         corner_angle: corner_angle(&scene.core),
     });
@@ -221,7 +222,7 @@ impl Simulation {
     pub fn new(scene: &Scene) -> Result<Self, SimError> {
         let inputs = Inputs {
             spindle_speed: 0.0,
-            nozzle_position: scene.nozzle.y_start + scene.traverse.lead,
+            nozzle_position: scene.nozzle_law.start(),
             tension_setpoint: scene.tensioner.tension,
         };
         Self::starting_with(scene, inputs)

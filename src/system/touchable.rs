@@ -5,7 +5,7 @@ use crate::contact::{
     ContactPoint, LineContact, LineModel, LineScratch, LineState, NodalModel, NodalScratch,
     NodalState, far,
 };
-use crate::geometry::FrozenNode;
+use crate::geometry::{FrozenNode, Shape};
 use crate::math::V3;
 
 impl System {
@@ -97,9 +97,21 @@ impl System {
     /// Signed distance of a point from the core, core frame, m; far away without a core.
     pub fn distance_to_core(&self, p: V3) -> f64 {
         match &self.model.contact {
-            ContactModel::Line(line) => line.shape.nearness(p).distance,
+            ContactModel::Line(line) => line.distance(p),
             ContactModel::Nodal(nodal) => nodal.surface.nearest(p).distance,
             ContactModel::None => f64::INFINITY,
+        }
+    }
+
+    /// Signed distance of a point from what wire is wound on, without flanges, core frame, m; none where flanges are a part of
+    /// its mesh.
+    pub(crate) fn distance_to_wound(&self, p: V3) -> Option<f64> {
+        match &self.model.contact {
+            ContactModel::Line(line) => match line.shape {
+                Shape::Mesh(_) => None,
+                _ => Some(line.shape.nearness(p).distance),
+            },
+            ContactModel::Nodal(_) | ContactModel::None => None,
         }
     }
 

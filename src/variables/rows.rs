@@ -139,6 +139,16 @@ macro_rules! leaf {
             },
         }
     };
+    ($kind:ident, $section:ident . $part:ident . $field:ident) => {
+        Access::Parameter {
+            get: |s| Value::$kind(s.$section.$part.$field.clone()),
+            set: |s, v| {
+                if let Value::$kind(x) = v {
+                    s.$section.$part.$field = x;
+                }
+            },
+        }
+    };
     ($kind:ident, $field:ident) => {
         Access::Parameter {
             get: |s| Value::$kind(s.$field.clone()),
@@ -153,8 +163,8 @@ macro_rules! leaf {
 
 /// Parameter of type Real, fixed.
 macro_rules! fixed {
-    ($reference:literal, $name:literal, $section:ident . $field:ident, $unit:literal, $shown:literal, $min:expr, $max:expr, $nominal:expr, $description:literal) => {{
-        const ACCESS: Access = leaf!(Real, $section.$field);
+    ($reference:literal, $name:literal, $section:ident . $($field:ident).+, $unit:literal, $shown:literal, $min:expr, $max:expr, $nominal:expr, $description:literal) => {{
+        const ACCESS: Access = leaf!(Real, $section.$($field).+);
         real!(
             $unit,
             $shown,
@@ -182,6 +192,11 @@ macro_rules! tunable {
 /// Parameter of type Real that only the native command reads.
 macro_rules! native {
     ($($cell:tt)*) => { Variable { native_only: true, ..fixed!($($cell)*) } };
+}
+
+/// Parameter of type String that only the native command reads.
+macro_rules! native_text {
+    ($($cell:tt)*) => { Variable { native_only: true, ..text!($($cell)*) } };
 }
 
 /// Parameter of type Boolean.
@@ -282,6 +297,10 @@ table! {
     fixed(1105, "core.radius", core.radius, "m", "mm", 5e-5, 1.0, 1e-2, "cylinder: radius");
     text(1106, "core.file", (core.file), [], "mesh: STL file, relative to the scene file; axis along y");
     text(1107, "core.unit", (core.unit), ["m", "mm", "um", "inch"], "mesh: unit of the STL file");
+    fixed(1108, "core.flange.inner_distance", core.flange.inner_distance, "m", "mm", 0.0, 10.0, 1e-2, "rounded box and cylinder: distance of the inner faces of two flanges; 0: no flanges");
+    fixed(1109, "core.flange.height", core.flange.height, "m", "mm", 1e-5, 1.0, 1e-3, "how far the rim of the flanges stands above the core");
+    fixed(1110, "core.flange.thickness", core.flange.thickness, "m", "mm", 1e-5, 1.0, 1e-3, "thickness of each flange along the axis");
+    fixed(1111, "core.flange.edge_radius", core.flange.edge_radius, "m", "mm", 0.0, 1.0, 1e-4, "radius of the edges of the flanges' rim");
 
     fixed(1200, "nozzle.distance", nozzle.distance, "m", "mm", 1e-3, 10.0, 0.1, "nozzle exit from the core axis, on +x");
     fixed(1201, "nozzle.y_start", nozzle.y_start, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis at the start");
@@ -296,10 +315,20 @@ table! {
 
     native(1500, "spindle.speed", spindle.speed, "rad/s", "rpm", 0.1, 2000.0, 100.0, "final speed of the native programme");
     native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "turns over which the speed rises, at constant acceleration");
-    native(1502, "spindle.turns", spindle.turns, "1", "", 1e-3, 1e5, 1.0, "turns of the spindle until the native programme ends");
+    native(1502, "spindle.turns", spindle.turns, "1", "", 0.0, 1e5, 1.0, "turns of the spindle until the native programme ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle");
 
-    native(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "nozzle travel per turn of the native programme; the sign is its direction along y");
-    native(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law");
+    native(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per turn of the native programme; the sign is its direction along y");
+    native(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
+    native_text(1602, "traverse.mode", (traverse.mode), ["by-angle", "orthocyclic", "helical", "table"], "nozzle travel: even with the core's angle; layers with a straight part and a step in each turn; layers of even travel; from a table");
+    native(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.28, 1.0, "orthocyclic: core angle of the step to the next turn");
+    native(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: turns that the nozzle stands at the end of a layer");
+    native_text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file");
+    native(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.28, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
+
+    native(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
+    native(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");
+    native_text(1652, "winding.direction", (winding.direction), ["+y", "-y"], "layered traverse modes: direction of the first layer");
+    native(1653, "winding.pitch", winding.pitch, "m", "mm", 0.0, 1.0, 1e-3, "layered traverse modes: distance of neighbouring turns; 0: fills the window, or the wire's diameter without flanges");
 
     fixed(1700, "contact.stiffness", contact.stiffness, "N/m2", "", 1e6, 1e13, 1e10, "line load per depth");
     fixed(1701, "contact.restitution", contact.restitution, "1", "", 0.0, 1.0, 1.0, "rebound over impact speed");

@@ -46,6 +46,7 @@ pub(crate) fn on_cylinder(
             let r = RADIUS + D / 2.0 + height;
             let polar = direction * angle;
             SettledNode {
+                flange: None,
                 position: V3::new(r * libm::cos(polar), y, r * libm::sin(polar)),
                 arc: angle * r,
                 height,

@@ -144,6 +144,7 @@ fn helix_on_a_rounded_box_has_the_gap_of_its_pitch_at_enough_stations() {
             let s = node as f64 * 0.4e-3;
             let (x, z) = on_rounded_rectangle(w, h, r, s);
             SettledNode {
+                flange: None,
                 position: V3::new(x, pitch * s / around, z),
                 arc: s,
                 height: 0.0,
@@ -227,6 +228,7 @@ fn node_positions_do_not_move_the_stations() {
             let angle = f64::from(k) * TAU / 1000.0;
             let r = RADIUS + D / 2.0;
             SettledNode {
+                flange: None,
                 position: V3::new(r * libm::cos(angle), D * angle / TAU, r * libm::sin(angle)),
                 arc: r * angle,
                 height: 0.0,

@@ -3,8 +3,8 @@
 use crate::contact::law::ContactLaw;
 use crate::contact::self_contact::PairConditions;
 use crate::contact::tolerance::prediction_tolerance;
-use crate::geometry::Shape;
-use crate::math::scaled;
+use crate::geometry::{Flanges, Nearness, Shape};
+use crate::math::{V3, scaled};
 
 /// Depth over which the normal force sets in, m, for wire of 0.7 mm. Chosen: ten times as much takes a tenth off the
 /// evaluations and adds 4.5 um to the depth at rest.
@@ -13,8 +13,10 @@ const ONSET: f64 = 1e-6;
 /// Core, law and wire of contact along the wire.
 #[derive(Clone, Debug)]
 pub struct LineModel {
-    /// the core
+    /// what wire is wound on
     pub shape: Shape,
+    /// flanges beside it
+    pub flanges: Option<Flanges>,
     /// the law
     pub law: ContactLaw,
     /// depth over which the normal force sets in, m
@@ -33,11 +35,24 @@ impl LineModel {
         Self {
             prediction: prediction_tolerance(&shape, radius),
             shape,
+            flanges: None,
             law,
             onset: scaled(ONSET, 2.0 * radius),
             restitution: 0.0,
             radius,
         }
+    }
+
+    /// The flange nearer to a point, core frame, m, as far as there are flanges.
+    #[inline]
+    pub fn flange(&self, p: V3) -> Option<Nearness> {
+        self.flanges.as_ref().map(|flanges| flanges.nearness(p))
+    }
+
+    /// Signed distance of a point from core and flanges, core frame, m.
+    pub fn distance(&self, p: V3) -> f64 {
+        let core = self.shape.nearness(p).distance;
+        self.flange(p).map_or(core, |flange| flange.distance.min(core))
     }
 
     /// What contact of live wire with live wire goes by, `step` (s) after the last accepted instant; it may take the friction

@@ -9,6 +9,13 @@ use serde::{Deserialize, Serialize};
 /// one to spare.
 pub(super) const PASSAGES: usize = 4;
 
+/// Slot of the touch with what wire is wound on, and of that with the flange nearer to the point.
+pub(super) const CORE: usize = 0;
+pub(super) const FLANGE: usize = 1;
+/// Slot of the first passage, and number of all slots.
+pub(super) const WIRE: usize = 2;
+pub(super) const SLOTS: usize = WIRE + PASSAGES;
+
 /// State of a contact point, core frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct PointState {
@@ -24,11 +31,13 @@ pub(super) struct PointState {
     pub(super) clear_at: V3,
     /// how far from `clear_at` it touches nothing, m; 0: not known
     pub(super) clear_within: f64,
-    /// the core, then passages of frozen wire
+    /// the core, a flange, then passages of frozen wire
     #[serde(with = "saved_touches")]
-    pub(super) touch: [TouchState; 1 + PASSAGES],
-    /// whether the first touch is in use
+    pub(super) touch: [TouchState; SLOTS],
+    /// whether the touch with the core is in use
     pub(super) core_near: bool,
+    /// whether the touch with a flange is in use
+    pub(super) flange_near: bool,
     /// number of passages in use
     pub(super) passages: usize,
 }
@@ -42,27 +51,39 @@ impl PointState {
         reach: -1.0,
         clear_at: V3::new(0.0, 0.0, 0.0),
         clear_within: 0.0,
-        touch: [TouchState::UNUSED; 1 + PASSAGES],
+        touch: [TouchState::UNUSED; SLOTS],
         core_near: false,
+        flange_near: false,
         passages: 0,
     };
 
     /// Whether core or frozen wire is near.
     #[inline]
     pub(super) fn has_surroundings(&self) -> bool {
-        self.core_near || self.passages > 0
+        self.core_near || self.flange_near || self.passages > 0
     }
 
-    /// The touch with the core, used or not, and those with the passages near the point.
+    /// The slots of what is near the point.
+    #[inline]
+    pub(super) fn slots(&self) -> impl Iterator<Item = usize> + use<> {
+        let (core, flange) = (self.core_near, self.flange_near);
+        (0..WIRE + self.passages).filter(move |&slot| match slot {
+            CORE => core,
+            FLANGE => flange,
+            _ => true,
+        })
+    }
+
+    /// The touches with core and flange, used or not, and those with the passages near the point.
     #[inline]
     pub(super) fn touches(&self) -> &[TouchState] {
-        &self.touch[..=self.passages]
+        &self.touch[..WIRE + self.passages]
     }
 
     /// [`Self::touches`], to be changed.
     #[inline]
     pub(super) fn touches_mut(&mut self) -> &mut [TouchState] {
-        &mut self.touch[..=self.passages]
+        &mut self.touch[..WIRE + self.passages]
     }
 
     /// Whether a touch before `slot` is with the passage at `segment` already.
@@ -70,6 +91,6 @@ impl PointState {
     /// Inside a sharp bend two feet merge as the point moves; they are one touch then.
     #[inline]
     pub(super) fn has_passage_before(&self, slot: usize, segment: u32) -> bool {
-        self.touch[1..slot].iter().any(|t| t.start == segment)
+        self.touch[WIRE..slot].iter().any(|t| t.start == segment)
     }
 }

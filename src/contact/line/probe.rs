@@ -1,7 +1,19 @@
 //! What holds each touch by friction, for a judge that computes the force itself.
 
+use super::point::{CORE, FLANGE};
 use super::state::LineState;
 use crate::math::V3;
+
+/// What a touch is with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum HeldBy {
+    /// what wire is wound on
+    Core,
+    /// a flange
+    Flange,
+    /// frozen wire, near this segment of it
+    Wire(u32),
+}
 
 /// A touch whose bristle holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -10,8 +22,8 @@ pub struct HeldTouch {
     pub point: usize,
     /// the friction anchor, core frame, m
     pub anchor: V3,
-    /// segment of frozen wire near which the foot lies; `None`: the core
-    pub segment: Option<u32>,
+    /// what it touches
+    pub with: HeldBy,
 }
 
 impl LineState {
@@ -23,7 +35,11 @@ impl LineState {
             holding.map(move |(slot, t)| HeldTouch {
                 point,
                 anchor: t.anchor,
-                segment: (slot > 0).then_some(t.start),
+                with: match slot {
+                    CORE => HeldBy::Core,
+                    FLANGE => HeldBy::Flange,
+                    _ => HeldBy::Wire(t.start),
+                },
             })
         })
     }

@@ -1,6 +1,6 @@
 //! Contact state of frozen nodes, kept for the case that they thaw.
 
-use super::point::{PASSAGES, PointState};
+use super::point::{CORE, FLANGE, PointState, SLOTS, WIRE};
 use super::touch::TouchState;
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
@@ -24,9 +24,9 @@ impl ContactRecord {
     /// The record of two successive points.
     pub(super) fn of(points: &[Box<PointState>]) -> Self {
         let used = |p: &'_ PointState| {
-            (0..=p.passages as u8)
-                .zip(p.touch)
-                .filter(|(slot, t)| (*slot > 0 || p.core_near) && *t != TouchState::UNUSED)
+            p.slots()
+                .map(|slot| (slot as u8, p.touch[slot]))
+                .filter(|(_, t)| *t != TouchState::UNUSED)
                 .collect::<Vec<_>>()
         };
         let mut touches = used(&points[0]);
@@ -43,7 +43,7 @@ impl ContactRecord {
     /// Whether every touch has a slot in its point; saved bytes may say anything.
     pub(crate) fn is_sound(&self) -> bool {
         let mut slots = self.touches.iter().map(|(slot, _)| *slot as usize);
-        self.first as usize <= self.touches.len() && slots.all(|slot| slot <= PASSAGES)
+        self.first as usize <= self.touches.len() && slots.all(|slot| slot < SLOTS)
     }
 
     /// The two points as they froze; their surroundings are looked up again.
@@ -54,8 +54,11 @@ impl ContactRecord {
             (p.last, p.placed) = (self.last[k], self.placed[k]);
             for &(slot, t) in touches {
                 p.touch[slot as usize] = t;
-                p.core_near |= slot == 0;
-                p.passages = p.passages.max(slot as usize);
+                match slot as usize {
+                    CORE => p.core_near = true,
+                    FLANGE => p.flange_near = true,
+                    slot => p.passages = p.passages.max(slot + 1 - WIRE),
+                }
             }
             p
         };

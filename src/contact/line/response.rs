@@ -2,6 +2,8 @@
 
 use super::line_contact::LineContact;
 use super::near::NearPoint;
+use super::point::WIRE;
+use super::search::depth_at;
 use super::touch::{Conditions, TouchState};
 use crate::contact::friction::{ContactResponse, LimitFrom};
 use crate::math::{Block, V3};
@@ -56,7 +58,7 @@ impl LineContact<'_> {
             state,
             scratch,
         } = self;
-        let (law, radius, tube) = (&model.law, model.radius, &scratch.tube);
+        let (law, tube) = (&model.law, &scratch.tube);
         let point = &mut state.points[k];
         let around = Conditions {
             law,
@@ -73,24 +75,15 @@ impl LineContact<'_> {
         let mut sum = ContactResponse::default();
         let mut any = false;
         let mut gap = f64::INFINITY;
-        for slot in 0..=point.passages {
-            let (depth, normal) = if slot == 0 {
-                if !point.core_near {
-                    continue;
-                }
-                let n = model.shape.nearness(p);
-                (radius - n.distance, n.normal)
-            } else {
-                let foot = tube.foot(p, point.touch[slot].start);
-                point.touch[slot].start = foot.segment;
-                if point.has_passage_before(slot, foot.segment) {
-                    let touch = &mut point.touch[slot];
-                    (touch.depth, touch.limit.current) = (0.0, 0.0);
-                    continue;
-                }
-                (foot.depth(radius + tube.radius()), foot.normal)
-            };
+        for slot in point.slots() {
+            let (depth, normal, segment) = depth_at(model, tube, slot, point.touch[slot].start, p);
+            point.touch[slot].start = segment;
+            let double = slot >= WIRE && point.has_passage_before(slot, segment);
             let touch = &mut point.touch[slot];
+            if double {
+                (touch.depth, touch.limit.current) = (0.0, 0.0);
+                continue;
+            }
             touch.depth = depth;
             touch.normal = normal;
             if depth <= 0.0 {
@@ -133,22 +126,13 @@ impl LineContact<'_> {
             limit_from: LimitFrom::Current,
         };
         let mut sum = ContactResponse::default();
-        for slot in 0..=point.passages {
+        for slot in point.slots() {
             let touch = point.touch[slot];
-            if slot > 0 && point.has_passage_before(slot, touch.start) {
+            if slot >= WIRE && point.has_passage_before(slot, touch.start) {
                 continue;
             }
-            let (depth, normal) = if slot == 0 {
-                if !point.core_near {
-                    continue;
-                }
-                let n = self.model.shape.nearness(p);
-                (self.model.radius - n.distance, n.normal)
-            } else {
-                let foot = self.scratch.tube.foot(p, touch.start);
-                let wire = self.model.radius + self.scratch.tube.radius();
-                (foot.depth(wire), foot.normal)
-            };
+            let (depth, normal, _) =
+                depth_at(self.model, &self.scratch.tube, slot, touch.start, p);
             if depth > 0.0 {
                 let there = TouchState {
                     depth,

@@ -1,8 +1,10 @@
 //! The surfaces near a contact point: when they are looked up, and what is found.
 
 use super::line_contact::LineContact;
-use super::point::PASSAGES;
+use super::model::LineModel;
+use super::point::{CORE, FLANGE, PASSAGES, WIRE};
 use super::touch::TouchState;
+use crate::geometry::SplineTube;
 use crate::math::V3;
 
 /// Distance beyond touching within which surfaces are listed, and the way after which a point with surfaces near it looks
@@ -11,6 +13,30 @@ const SKIN: f64 = 0.15;
 
 /// Passages whose segments are nearer along the wire than this are one passage at successive searches.
 const SAME_PASSAGE: u32 = 6;
+
+/// Depth (m) of the wire at `p` (m) in what a slot is with, unit normal towards `p`, and for frozen wire the segment of the
+/// foot, which is looked for from segment `start` on.
+#[inline(always)]
+pub(super) fn depth_at(
+    model: &LineModel,
+    tube: &SplineTube,
+    slot: usize,
+    start: u32,
+    p: V3,
+) -> (f64, V3, u32) {
+    let solid = match slot {
+        CORE => model.shape.nearness(p),
+        FLANGE => match model.flange(p) {
+            Some(near) => near,
+            None => return (f64::NEG_INFINITY, V3::zeros(), start),
+        },
+        _ => {
+            let foot = tube.foot(p, start);
+            return (foot.depth(model.radius + tube.radius()), foot.normal, foot.segment);
+        }
+    };
+    (model.radius - solid.distance, solid.normal, start)
+}
 
 impl LineContact<'_> {
     /// Makes points near frozen wire from node `from` on look their surroundings up again: that wire has just
@@ -53,16 +79,12 @@ impl LineContact<'_> {
         self.look_up_if_moved(k, to, own);
         let point = &self.state.points[k];
         let touch_at = |slot: usize, p: V3| {
-            if slot == 0 {
-                let n = self.model.shape.nearness(p);
-                return (self.model.radius - n.distance, n.normal);
-            }
-            let tube = &self.scratch.tube;
-            let foot = tube.foot(p, point.touch[slot].start);
-            (foot.depth(self.model.radius + tube.radius()), foot.normal)
+            let (depth, normal, _) =
+                depth_at(self.model, &self.scratch.tube, slot, point.touch[slot].start, p);
+            (depth, normal)
         };
         let mut share: f64 = 1.0;
-        for slot in usize::from(!point.core_near)..=point.passages {
+        for slot in point.slots() {
             let (depth, normal) = touch_at(slot, to);
             if depth <= 0.0 {
                 continue;
@@ -99,7 +121,15 @@ impl LineContact<'_> {
         let core_room = core - self.model.radius;
         point.core_near = core_room < skin;
         if !point.core_near {
-            point.touch[0] = TouchState::UNUSED;
+            point.touch[CORE] = TouchState::UNUSED;
+        }
+        let flange_room = match self.model.flange(p) {
+            Some(flange) => flange.distance - self.model.radius,
+            None => f64::INFINITY,
+        };
+        point.flange_near = flange_room < skin;
+        if !point.flange_near {
+            point.touch[FLANGE] = TouchState::UNUSED;
         }
         let wire = self.model.radius + self.scratch.tube.radius();
         // above all frozen wire there is nothing to search for; elsewhere the search ball must stay small
@@ -125,7 +155,7 @@ impl LineContact<'_> {
                 continue;
             }
             // a passage keeps its friction: it is the one whose segment is close by along the wire
-            let known = point.touch[1..=point.passages]
+            let known = point.touch[WIRE..WIRE + point.passages]
                 .iter()
                 .filter(|t| t.start.abs_diff(foot.segment) < SAME_PASSAGE)
                 .min_by_key(|t| t.start.abs_diff(foot.segment));
@@ -133,14 +163,14 @@ impl LineContact<'_> {
             next[count].start = foot.segment;
             count += 1;
         }
-        point.touch[1..].copy_from_slice(&next);
+        point.touch[WIRE..].copy_from_slice(&next);
         point.passages = count;
         let wire_room = nearest.min(reach);
-        let room = if point.core_near { 0.0 } else { core_room }.min(if count > 0 {
-            0.0
-        } else {
-            wire_room
-        });
+        let solids_room = match point.core_near || point.flange_near {
+            true => 0.0,
+            false => core_room.min(flange_room),
+        };
+        let room = solids_room.min(if count > 0 { 0.0 } else { wire_room });
         point.reach = if room > 0.0 { room } else { skin };
     }
 }

@@ -1,7 +1,7 @@
 //! What contact along the wire remembers, and how it follows changes of the wire.
 
 use super::model::LineModel;
-use super::point::PointState;
+use super::point::{PointState, WIRE};
 use super::record::ContactRecord;
 use crate::contact::law::ContactLoss;
 use crate::contact::self_contact::SelfContact;
@@ -190,7 +190,7 @@ impl LineState {
             return Err("contact points do not go with the nodes");
         }
         for p in &self.points {
-            let touches = p.touch.get(1..=p.passages);
+            let touches = p.touch.get(WIRE..WIRE + p.passages);
             let all = touches.ok_or("a contact point has too many touches")?;
             if p.reach >= 0.0 && all.iter().any(|t| t.start >= controls) {
                 return Err("a touch is beyond the frozen wire");

@@ -87,7 +87,9 @@ impl<const D: usize, U: Unknowns<D>> Work<D, U> {
         for (q, guess) in sys.state.past.q[0].iter().zip(&self.guess) {
             let way = (guess - q).norm();
             if way > model.radius {
-                let room = (model.shape.lower_bound(*q) - line.height).max(model.radius);
+                let over = model.shape.lower_bound(*q) - line.height;
+                let beside = model.flange(*q).map_or(over, |flange| flange.distance);
+                let room = over.min(beside).max(model.radius);
                 share = share.min(room / way);
             }
         }

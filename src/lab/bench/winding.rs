@@ -156,7 +156,7 @@ fn go(
     stopped: &mut impl FnMut(f64, i32),
     every: Option<f64>,
 ) -> (Vec<Extremes>, Result<(), SimError>) {
-    let motion_profile = *simulation.motion_profile();
+    let motion_profile = simulation.motion_profile().clone();
     let end = motion_profile.end();
     let mut tension = vec![Extremes::none()];
     let mut window = 1.0;

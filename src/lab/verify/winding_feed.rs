@@ -108,6 +108,7 @@ fn scene(ctx: &Context) -> Result<Scene, VerifyError> {
         height_z,
         length_y: 0.5 * distance + 20.0 * pitch,
         corner_radius,
+        flange: None,
     };
     scene.nozzle.distance = distance;
     scene.nozzle.y_start = 0.0;

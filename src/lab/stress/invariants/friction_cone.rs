@@ -5,7 +5,8 @@
 //! surface, or to the spline of the wire that is touched, of which the method gives no more than roughly where.
 
 use super::broken::{Broken, Found};
-use crate::contact::{ContactPoint, LineModel};
+use crate::contact::{ContactPoint, HeldBy, LineModel};
+use crate::geometry::Nearness;
 use crate::lab::stress::{Invariant, Measures};
 use crate::math::{Spin, V3};
 use crate::simulation::Simulation;
@@ -92,12 +93,11 @@ fn all_held(sim: &Simulation) -> Vec<Held> {
     let inner = 1..2 * sys.state.rod.edges();
     for touch in line.held().filter(|t| inner.contains(&t.point)) {
         let p = ContactPoint::of_number(touch.point).place(&nodes);
-        let (distance, normal, on_wire) = match touch.segment {
-            None => {
-                let near = model.shape.nearness(p);
-                (near.distance + model.radius, near.normal, None)
-            }
-            Some(segment) => {
+        let solid = |near: Nearness| (near.distance + model.radius, near.normal, None);
+        let (distance, normal, on_wire) = match (touch.with, model.flange(p)) {
+            (HeldBy::Flange, Some(flange)) => solid(flange),
+            (HeldBy::Core | HeldBy::Flange, _) => solid(model.shape.nearness(p)),
+            (HeldBy::Wire(segment), _) => {
                 let away = away_from_spline(frozen, segment as usize, p);
                 (away.norm(), away.normalize(), Some(0))
             }
