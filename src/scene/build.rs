@@ -8,7 +8,6 @@ use super::problems::Problems;
 use super::{Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver};
 use crate::rod::Twist;
 use crate::settings::{SceneSettings, Spindle};
-use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 /// Node spacing near the core that goes with a tolerance, m: 0.3 mm to 2e-6 m.
@@ -89,7 +88,7 @@ impl SceneSettings {
             start: self.start,
             spindle: Spindle {
                 turns: match self.spindle.turns {
-                    0.0 => nozzle_law.end() / TAU,
+                    0.0 => nozzle_law.turns(),
                     turns => turns,
                 },
                 ..self.spindle

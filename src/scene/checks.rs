@@ -6,7 +6,6 @@ use super::problems::Problems;
 use super::{Integrator, NozzleLaw, SceneError, Solver};
 use crate::rod::Section;
 use crate::settings::SceneSettings;
-use std::f64::consts::TAU;
 
 impl SceneSettings {
     /// The first of these leaves that somebody gave, else the first: the one to blame.
@@ -117,7 +116,7 @@ impl SceneSettings {
         problems: &mut Problems,
     ) {
         let ramp = self.spindle.ramp_turns;
-        let turns = law.map_or(self.spindle.turns, |law| law.end() / TAU);
+        let turns = law.map_or(self.spindle.turns, NozzleLaw::turns);
         if ramp > turns && turns > 0.0 {
             let reason = format!("the run ends after {} turns, still accelerating", si(turns));
             problems.add(match self.given(&["spindle.ramp_turns", "spindle.turns"]) {

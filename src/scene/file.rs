@@ -16,6 +16,8 @@ use toml::de::{DeTable, DeValue};
 const PACKED: &[(&str, &str)] = &[
     ("fig8", include_str!("packed/fig8.toml")),
     ("fig8_gap", include_str!("packed/fig8_gap.toml")),
+    ("tooth", include_str!("packed/tooth.toml")),
+    ("bobbin", include_str!("packed/bobbin.toml")),
 ];
 
 /// Names of the packed scenes.

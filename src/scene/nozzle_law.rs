@@ -34,8 +34,8 @@ pub struct Piece {
 pub struct NozzleLaw {
     /// by rising angle, the first from 0; the last goes on
     pieces: Vec<Piece>,
-    /// angle at which it ends, rad
-    end: f64,
+    /// turns after which it ends
+    turns: f64,
 }
 
 /// A layer as the nozzle winds it.
@@ -70,28 +70,31 @@ impl NozzleLaw {
         };
         Self {
             pieces: vec![piece],
-            end: turns * TAU,
+            turns,
         }
     }
 
-    /// Straight from point to point: angle, rad, and place, m. There are two at least, by rising angle from 0.
+    /// Straight from point to point: turns and place, m. There are two at least, by rising turns from 0.
     fn through(points: &[[f64; 2]]) -> Self {
         let piece = |pair: &[[f64; 2]]| {
             let [[from, y], [to, end]] = [pair[0], pair[1]];
-            let travel = (end - y) / (to - from);
-            Piece { from, y, travel }
+            Piece {
+                from: from * TAU,
+                y,
+                travel: (end - y) / ((to - from) * TAU),
+            }
         };
         let last = points[points.len() - 1];
         let mut pieces: Vec<Piece> = points.windows(2).map(piece).collect();
         // beyond its end the nozzle stands
         pieces.push(Piece {
-            from: last[0],
+            from: last[0] * TAU,
             y: last[1],
             travel: 0.0,
         });
         Self {
             pieces,
-            end: last[0],
+            turns: last[0],
         }
     }
 
@@ -112,7 +115,7 @@ impl NozzleLaw {
         });
         Self {
             pieces: std::iter::once(start).chain(later).collect(),
-            end: self.end,
+            turns: self.turns,
         }
     }
 
@@ -127,9 +130,14 @@ impl NozzleLaw {
         self.pieces[0].y
     }
 
+    /// Turns of the whole law.
+    pub fn turns(&self) -> f64 {
+        self.turns
+    }
+
     /// Angle of the whole law, rad.
     pub fn end(&self) -> f64 {
-        self.end
+        self.turns * TAU
     }
 
     /// Its pieces by rising angle; the last goes on without end.
@@ -151,10 +159,11 @@ impl NozzleLaw {
 
     /// Least and largest position up to its end, m.
     fn range(&self) -> [f64; 2] {
-        let within = self.pieces.iter().filter(|piece| piece.from <= self.end);
+        let end = self.end();
+        let within = self.pieces.iter().filter(|piece| piece.from <= end);
         let ends = within
             .map(|piece| piece.y)
-            .chain([self.position(self.end)]);
+            .chain([self.position(end)]);
         ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
             [low.min(y), high.max(y)]
         })
@@ -162,6 +171,11 @@ impl NozzleLaw {
 }
 
 impl SceneSettings {
+    /// Whether the nozzle's way follows from turns and layers.
+    pub(super) fn winds_layers(&self) -> bool {
+        matches!(self.traverse.mode.as_str(), "orthocyclic" | "helical")
+    }
+
     /// The nozzle's way, and what is wrong with it.
     pub(super) fn nozzle_law(
         &self,
@@ -185,11 +199,11 @@ impl SceneSettings {
         };
         let law = law.advanced(t.advance);
         self.check_way(&law, diameter, extent, problems);
-        let end = match self.spindle.turns {
-            0.0 => law.end,
-            turns => turns * TAU,
+        let turns = match self.spindle.turns {
+            0.0 => law.turns,
+            turns => turns,
         };
-        Some(NozzleLaw { end, ..law })
+        Some(NozzleLaw { turns, ..law })
     }
 
     /// The layers that the nozzle winds, from the window between the flanges.
@@ -239,6 +253,10 @@ impl SceneSettings {
             }
             (turns, _) => turns,
         };
+        if turns < 1.0 {
+            // flanges so near to each other are told already
+            return None;
+        }
         let room = window.map(|width| width * (1.0 + ROUNDING) - d);
         // with room for half a pitch more every layer has as many turns
         let has_half = |pitch: f64| room.is_none_or(|room| (turns - 0.5) * pitch <= room);
@@ -248,7 +266,9 @@ impl SceneSettings {
             (0.0, _) => d,
             (pitch, _) => pitch,
         };
-        Some(self.stacked(turns as u32, pitch, has_half(pitch * (1.0 - ROUNDING))))
+        let layers = self.stacked(turns as u32, pitch, has_half(pitch * (1.0 - ROUNDING)));
+        self.check_coil(&layers, d, extent, problems);
+        Some(layers)
     }
 
     /// Layers over each other, each half a pitch aside of the one below. Where there is no room for half a pitch more, every
@@ -291,23 +311,23 @@ impl SceneSettings {
             .collect();
         let mut points = vec![[0.0, places[0]]];
         for (turn, pair) in places.windows(2).enumerate() {
-            let end = (turn + 1) as f64 * TAU;
-            points.push([end - self.traverse.crossover, pair[0]]);
+            let end = (turn + 1) as f64;
+            points.push([end - self.traverse.crossover / TAU, pair[0]]);
             points.push([end, pair[1]]);
         }
-        points.push([places.len() as f64 * TAU, places[places.len() - 1]]);
+        points.push([places.len() as f64, places[places.len() - 1]]);
         NozzleLaw::through(&points)
     }
 
     /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there.
     fn helical(&self, Layers { layers, pitch }: &Layers) -> NozzleLaw {
-        let (lead, dwell) = (self.traverse.lead, self.traverse.dwell_turns * TAU);
+        let (lead, dwell) = (self.traverse.lead, self.traverse.dwell_turns);
         let mut points = vec![[0.0, layers[0].first + layers[0].sense * lead]];
         let mut go_to = |y: f64, least: f64| {
-            let [angle, before] = points[points.len() - 1];
-            let turned = ((y - before).abs() / pitch * TAU).max(least);
+            let [turns, before] = points[points.len() - 1];
+            let turned = ((y - before).abs() / pitch).max(least);
             if turned > 0.0 {
-                points.push([angle + turned, y]);
+                points.push([turns + turned, y]);
             }
         };
         for (number, layer) in layers.iter().enumerate() {
@@ -320,10 +340,25 @@ impl SceneSettings {
                     go_to(next.first - lead, 0.0);
                 }
                 // the last turn has to be laid as well
-                None => go_to(layer.last + lead, TAU),
+                None => go_to(layer.last + lead, 1.0),
             }
         }
         NozzleLaw::through(&points)
+    }
+
+    /// The coil has to stay clear of the nozzle in every layer.
+    fn check_coil(&self, layers: &Layers, d: f64, extent: &Extent, problems: &mut Problems) {
+        // where wire crosses wire a layer is a diameter high
+        let top = |number: usize| extent.winding_radius + number as f64 * d;
+        let count = layers.layers.len();
+        if top(count) + d >= self.nozzle.distance {
+            let meets = (1..=count).find(|&number| top(number) + d >= self.nozzle.distance);
+            problems.add(self.impossible(
+                "nozzle.distance",
+                format!("the coil meets the nozzle in layer {}", meets.unwrap_or(count)),
+                format!("more than {} m, or fewer winding.layers", si(top(count) + d)),
+            ));
+        }
     }
 
     /// A layered way stays in the window; the nozzle may lead beyond it.
@@ -387,13 +422,17 @@ impl SceneSettings {
         let columns = [
             column(&header, "angle", "rad").or_else(|| {
                 let turns = header.iter().position(|name| name == "turns")?;
-                Some((turns, Scale::Factor(TAU)))
+                Some((turns, Scale::Tens(0)))
             }),
             column(&header, "y", "m"),
         ];
         let [Some(angle), Some(y)] = columns else {
             let found: Vec<&str> = header.iter().collect();
             return Err(problem(format!("its columns are {}", found.join(", "))));
+        };
+        let per_turn = match header.iter().any(|name| name == "turns") {
+            true => 1.0,
+            false => TAU,
         };
         let mut points: Vec<[f64; 2]> = Vec::new();
         for record in reader.records() {
@@ -405,14 +444,14 @@ impl SceneSettings {
                 let number = number.ok_or_else(|| problem(format!("line {line}: {text:?} is no number")))?;
                 Ok(scaled(number, scale))
             };
-            let point = [cell(angle)?, cell(y)?];
+            let point = [cell(angle)? / per_turn, cell(y)?];
             match points.last() {
                 None if point[0] != 0.0 => {
                     return Err(problem(format!("line {line}: the first angle is not 0")));
                 }
                 Some(last) if point[0] <= last[0] => {
                     return Err(problem(format!(
-                        "line {line}: the angle does not rise, {} rad after {} rad",
+                        "line {line}: the angle does not rise, {} turns after {}",
                         si(point[0]),
                         si(last[0])
                     )));

@@ -7,11 +7,19 @@ use super::{Core, Integrator, NozzleLaw, Solver};
 use crate::rod::{Section, Twist};
 use crate::settings::SceneSettings;
 
-/// Keys of each shape of core.
-const KEYS_OF_SHAPES: [(&str, &[&str]); 3] = [
-    (
-        "rounded-box",
-        &[
+/// Keys of a choice: the shape of the core, or how the nozzle moves.
+struct KeysOf {
+    choice: &'static str,
+    value: &'static str,
+    keys: &'static [&'static str],
+}
+
+/// Keys that only some values of a choice read.
+const KEYS_OF_CHOICES: [KeysOf; 7] = [
+    KeysOf {
+        choice: "core.shape",
+        value: "rounded-box",
+        keys: &[
             "core.width_x",
             "core.height_z",
             "core.length_y",
@@ -21,10 +29,11 @@ const KEYS_OF_SHAPES: [(&str, &[&str]); 3] = [
             "core.flange.thickness",
             "core.flange.edge_radius",
         ],
-    ),
-    (
-        "cylinder",
-        &[
+    },
+    KeysOf {
+        choice: "core.shape",
+        value: "cylinder",
+        keys: &[
             "core.radius",
             "core.length_y",
             "core.flange.inner_distance",
@@ -32,8 +41,46 @@ const KEYS_OF_SHAPES: [(&str, &[&str]); 3] = [
             "core.flange.thickness",
             "core.flange.edge_radius",
         ],
-    ),
-    ("mesh", &["core.file", "core.unit"]),
+    },
+    KeysOf {
+        choice: "core.shape",
+        value: "mesh",
+        keys: &["core.file", "core.unit"],
+    },
+    KeysOf {
+        choice: "traverse.mode",
+        value: "by-angle",
+        keys: &["traverse.per_turn"],
+    },
+    KeysOf {
+        choice: "traverse.mode",
+        value: "orthocyclic",
+        keys: &[
+            "traverse.crossover",
+            "traverse.advance",
+            "winding.turns_per_layer",
+            "winding.layers",
+            "winding.direction",
+            "winding.pitch",
+        ],
+    },
+    KeysOf {
+        choice: "traverse.mode",
+        value: "helical",
+        keys: &[
+            "traverse.dwell_turns",
+            "traverse.advance",
+            "winding.turns_per_layer",
+            "winding.layers",
+            "winding.direction",
+            "winding.pitch",
+        ],
+    },
+    KeysOf {
+        choice: "traverse.mode",
+        value: "table",
+        keys: &["traverse.file", "traverse.advance"],
+    },
 ];
 
 impl SceneSettings {
@@ -71,6 +118,14 @@ impl SceneSettings {
         if self.traverse.mode == "by-angle" && beside(last) && !beside(self.nozzle.y_start) {
             let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
             warn("traverse.per_turn", message);
+        }
+        if let (Some(_), true) = (extent.window, self.winds_layers()) {
+            // each layer but the first lies in the grooves of the one below
+            let coil = wire.diameter * (1.0 + (self.winding.layers - 1.0) * 0.75_f64.sqrt());
+            if coil > self.core.flange.height {
+                let message = format!("the coil stands {} m high, above the flanges", si(coil));
+                warn("core.flange.height", message);
+            }
         }
         let tension = self.tensioner.tension;
         if tension >= wire.n_y {
@@ -116,29 +171,48 @@ impl SceneSettings {
         }
         warnings
     }
-    /// Keys that were given for a core of another shape.
+    /// Keys that were given for another choice.
     fn keys_without_effect(&self) -> Vec<Warning> {
-        let shape = self.core.shape.as_str();
-        let used = |of: &str| {
-            let keys = KEYS_OF_SHAPES.iter().find(|(shape, _)| *shape == of);
-            keys.map_or(&[][..], |(_, keys)| *keys)
-        };
-        let mut warnings = Vec::new();
-        for (other, keys) in KEYS_OF_SHAPES {
-            for &key in keys {
-                let told = warnings.iter().any(|w: &Warning| w.key == key);
-                if used(shape).contains(&key) || told || !self.origins.contains_key(key) {
-                    continue;
-                }
+        let mut warnings: Vec<Warning> = Vec::new();
+        let mut warn = |key: &'static str, message: String| {
+            if self.origins.contains_key(key) && !warnings.iter().any(|w| w.key == key) {
+                let (origin, value) = (self.origin(key), self.shown(key));
                 warnings.push(Warning {
-                    origin: self.origin(key),
+                    origin,
                     key,
-                    value: self.shown(key),
-                    message: format!(
-                        "has no effect: core.shape = {shape} does not use it; set core.shape = {other}, or leave the key out"
-                    ),
+                    value,
+                    message,
                 });
             }
+        };
+        let chosen = |choice: &str| match choice {
+            "core.shape" => self.core.shape.as_str(),
+            _ => self.traverse.mode.as_str(),
+        };
+        for KeysOf {
+            choice,
+            value,
+            keys,
+        } in KEYS_OF_CHOICES
+        {
+            let now = chosen(choice);
+            let used = KEYS_OF_CHOICES
+                .iter()
+                .filter(|of| of.choice == choice && of.value == now)
+                .flat_map(|of| of.keys);
+            let used: Vec<_> = used.collect();
+            for &key in keys.iter().filter(|key| !used.contains(key)) {
+                warn(
+                    key,
+                    format!(
+                        "has no effect: {choice} = {now} does not use it; set {choice} = {value}, or leave the key out"
+                    ),
+                );
+            }
+        }
+        if self.core.flange.inner_distance > 0.0 {
+            let message = "has no effect: between flanges the core ends at their outer faces";
+            warn("core.length_y", message.to_owned());
         }
         warnings
     }

@@ -1,6 +1,7 @@
 //! Scene files through the front door: what is read, in which order, and what is refused.
 
 mod choices;
+mod coils;
 mod common;
 mod reading;
 mod refusals;

@@ -70,6 +70,7 @@ fn packed_fig8_is_the_reference_scene() {
             height_z: number("/core/height_z_m"),
             length_y: number("/core/length_y_m"),
             corner_radius: number("/core/corner_radius_m"),
+            flange: None,
         }
     );
     assert_eq!(scene.start.clamp_y, 0.0);

@@ -1,0 +1,196 @@
+//! Scenes of whole coils: flanges, turns in layers, nozzle ways from a table, and what cannot be wound.
+
+use crate::common::{assert_says, parse, refused};
+use coilwind::scene::{Core, Flange, NozzleLaw, Scene};
+use coilwind::settings::SceneSettings;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+const BOBBIN: &str = "[core]\nshape = 'cylinder'\nradius_mm = 8\n[core.flange]\ninner_distance_mm = 14.5\nheight_mm = 4\n\
+                      [start]\nclamp_y_mm = -6.9\n[nozzle]\ny_start_mm = -6.9\n[winding]\nlayers = 3\n[traverse]\n";
+
+fn bobbin(more: &str) -> Scene {
+    let text = format!("{BOBBIN}{more}");
+    parse(&text).expect("a scene").build().expect("it can be wound")
+}
+
+fn law(more: &str) -> NozzleLaw {
+    bobbin(more).nozzle_law
+}
+
+#[test]
+fn a_part_of_a_section_is_read_and_written() {
+    let scene = bobbin("mode = 'helical'");
+    let flange = Flange {
+        inner_distance: 14.5e-3,
+        height: 4e-3,
+        thickness: 1e-3,
+        edge_radius: 0.0,
+    };
+    assert_eq!(scene.core.flange(), Some(flange));
+    assert!(matches!(scene.core, Core::Cylinder { .. }));
+    let settings = parse(&format!("{BOBBIN}mode = 'helical'")).unwrap();
+    let again = SceneSettings::from_toml_str(&settings.to_toml(), "again", Path::new("")).unwrap();
+    assert_eq!(again.build().unwrap().nozzle_law, scene.nozzle_law);
+    assert_eq!(again.build().unwrap().core, scene.core);
+    // as written without a heading of its own
+    let dotted = BOBBIN.replace("[core.flange]\ninner_distance_mm", "flange.inner_distance_mm");
+    let dotted = dotted.replace("\nheight_mm", "\nflange.height_mm");
+    let dotted = parse(&dotted).unwrap().build().unwrap();
+    assert_eq!(dotted.core, scene.core);
+}
+
+#[test]
+fn turns_that_fit_are_counted_and_fill_the_window() {
+    // 14.5 mm hold twenty turns of 0.7 mm; half a turn more has room, so that every layer has twenty
+    let law = law("mode = 'orthocyclic'");
+    assert_eq!(law.turns(), 60.0);
+    let pitch = (14.5e-3 - 0.7e-3) / 19.5;
+    let first = -6.9e-3;
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+    for turn in 0..60 {
+        let (layer, k) = (turn / 20, f64::from(turn % 20));
+        let place = match layer {
+            0 | 2 => first + k * pitch,
+            _ => first + 0.5 * pitch + (19.0 - k) * pitch,
+        };
+        // straight for 315 degrees, then a step
+        for share in [0.0, 0.4, 0.87] {
+            near(law.position((f64::from(turn) + share) * TAU), place);
+        }
+    }
+    let half_way = law.position((1.0 - 0.125 / 2.0) * TAU);
+    near(half_way, first + 0.5 * pitch);
+}
+
+#[test]
+fn without_room_for_half_a_turn_every_other_layer_has_a_turn_less() {
+    let narrow = BOBBIN.replace("14.5", "14.1").replace("-6.9", "-6.7");
+    let text = format!("{narrow}mode = 'orthocyclic'");
+    let scene = parse(&text).unwrap().build().unwrap();
+    assert_eq!(scene.nozzle_law.turns(), 59.0);
+    let pitch = (14.1e-3 - 0.7e-3) / 19.0;
+    let second = scene.nozzle_law.position(20.0 * TAU);
+    assert!((second - (6.7e-3 - 0.5 * pitch)).abs() < 1e-12, "{second}");
+}
+
+#[test]
+fn an_even_traverse_goes_to_and_fro_and_dwells() {
+    let law = law("mode = 'helical'\ndwell_turns = 0.5");
+    let pitch = (14.5e-3 - 0.7e-3) / 19.5;
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12, "{a} {b}");
+    near(law.position(0.0), -6.9e-3);
+    near(law.position(10.0 * TAU), -6.9e-3 + 10.0 * pitch);
+    near(law.position(19.5 * TAU), 6.9e-3);
+    near(law.position(20.0 * TAU), 6.9e-3);
+    near(law.position(21.0 * TAU), 6.9e-3 - pitch);
+    assert_eq!(law.sense(), 1.0);
+    let down = BOBBIN.replace("-6.9", "6.9").replace("layers = 3", "layers = 3\ndirection = '-y'");
+    let down = parse(&format!("{down}mode = 'helical'")).unwrap().build().unwrap();
+    near(down.nozzle_law.position(10.0 * TAU), 6.9e-3 - 10.0 * pitch);
+    assert_eq!(down.nozzle_law.sense(), -1.0);
+}
+
+#[test]
+fn a_nozzle_ahead_of_its_law_is_where_the_law_would_be_later() {
+    let plain = law("mode = 'orthocyclic'");
+    let ahead = law("mode = 'orthocyclic'\nadvance_deg = 90");
+    for k in 0..200 {
+        let angle = 0.3 * f64::from(k);
+        let later = plain.position(angle + 0.25 * TAU);
+        assert!((ahead.position(angle) - later).abs() < 1e-15);
+    }
+    assert_eq!(ahead.turns(), plain.turns());
+    assert_eq!(ahead.start(), plain.position(0.25 * TAU));
+}
+
+#[test]
+fn a_lead_goes_with_the_direction_of_the_layer() {
+    let plain = law("mode = 'orthocyclic'");
+    let led = law("mode = 'orthocyclic'\nlead_mm = 0.5");
+    for (turn, lead) in [(3.5, 0.5e-3), (25.5, -0.5e-3), (45.5, 0.5e-3)] {
+        let more = led.position(turn * TAU) - plain.position(turn * TAU);
+        assert!((more - lead).abs() < 1e-12, "{turn}: {more}");
+    }
+}
+
+#[test]
+fn a_table_gives_the_way() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("way.csv", "angle_deg, y_mm\n# from flange to flange\n0, -3\n720, 3\n1080, 3\n");
+    write("turns.csv", "turns,y\n0,-0.003\n2,0.003\n3,0.003\n");
+    let scene = |file: &str| {
+        let text = format!("[traverse]\nmode = 'table'\nfile = '{file}'\n");
+        let settings = SceneSettings::from_toml_str(&text, "scene.toml", folder.path()).unwrap();
+        settings.build()
+    };
+    let law = scene("way.csv").unwrap().nozzle_law;
+    assert_eq!(law.turns(), 3.0);
+    for (turns, y) in [(0.0, -3e-3), (1.0, 0.0), (2.0, 3e-3), (2.5, 3e-3), (9.0, 3e-3)] {
+        assert!((law.position(turns * TAU) - y).abs() < 1e-15);
+    }
+    assert_eq!(scene("turns.csv").unwrap().nozzle_law.turns(), 3.0);
+
+    for (text, says) in [
+        ("angle_deg,y_mm\n0,0\n360,1\n180,2\n", "line 4: the angle does not rise"),
+        ("angle_deg,y_mm\n10,0\n360,1\n", "line 2: the first angle is not 0"),
+        ("angle_deg,y_mm\n0,0\n360,x\n", "line 3: \"x\" is no number"),
+        ("angle_deg,y_mm\n0,0\n", "less than two rows"),
+        ("time,y_mm\n0,0\n", "its columns are time, y_mm"),
+        ("angle_deg,y_mm\n0,0\n360,90\n", "past an end of the core"),
+    ] {
+        write("bad.csv", text);
+        assert_says(&scene("bad.csv").unwrap_err().to_string(), &["traverse.file", says]);
+    }
+    let missing = scene("none.csv").unwrap_err().to_string();
+    assert_says(&missing, &["traverse.file", "cannot be opened"]);
+}
+
+#[test]
+fn what_cannot_be_wound_is_refused_with_the_key_to_change() {
+    let with = |from: &str, to: &str| refused(&format!("{}mode = 'orthocyclic'", BOBBIN.replace(from, to)));
+    for (from, to, says) in [
+        (
+            "inner_distance_mm = 14.5",
+            "inner_distance_mm = 0.5",
+            &["core.flange.inner_distance", "the wire is wider than the flanges are apart", "at least 0.0007 m"][..],
+        ),
+        (
+            "height_mm = 4",
+            "height_mm = 4\nedge_radius_mm = 2",
+            &["core.flange.edge_radius", "0 to 0.0005 m"],
+        ),
+        (
+            "layers = 3",
+            "layers = 3\nturns_per_layer = 40",
+            &["winding.turns_per_layer", "0.028 m", "at most 20"],
+        ),
+        ("layers = 3", "layers = 2.5", &["winding.layers", "not a whole number"]),
+        ("layers = 3", "layers = 3\npitch_mm = 0.5", &["winding.pitch", "0.0007 to 0.0014 m"]),
+        ("layers = 3", "layers = 90", &["nozzle.distance", "the coil meets the nozzle in layer 74"]),
+        (
+            "y_start_mm = -6.9",
+            "y_start_mm = 0",
+            &["nozzle.y_start", "past a flange", "-0.0069 to -0.0069 m"],
+        ),
+        ("clamp_y_mm = -6.9", "clamp_y_mm = -7.2", &["start.clamp_y", "clamped in a flange"]),
+        ("[core.flange]", "[core.flanje]", &["core.flanje"]),
+        ("height_mm = 4", "heigth_mm = 4", &["core.flange.heigth_mm", "core.flange.height"]),
+    ] {
+        assert_says(&with(from, to), says);
+    }
+    let open = "[traverse]\nmode = 'helical'";
+    assert_says(&refused(open), &["winding.turns_per_layer", "no flanges"]);
+}
+
+#[test]
+fn keys_of_another_way_are_told() {
+    let text = "[traverse]\nmode = 'by-angle'\ncrossover_deg = 30\n[winding]\nlayers = 2\n";
+    let (_, warnings) = parse(text).unwrap().build_with_warnings().unwrap();
+    let keys: Vec<_> = warnings.iter().map(|w| w.key).collect();
+    assert_eq!(keys, ["traverse.crossover", "winding.layers"]);
+    let high = BOBBIN.replace("layers = 3", "layers = 9");
+    let (_, warnings) = parse(&format!("{high}mode = 'helical'\n")).unwrap().build_with_warnings().unwrap();
+    assert!(warnings.iter().any(|w| w.key == "core.flange.height"), "{warnings:?}");
+}
