@@ -133,7 +133,7 @@ fn coil(wire: &Centreline) -> Coil {
     });
     for node in 0..wire.frozen {
         coil.settle(SettledNode {
-                flange: None,
+            flange: None,
             position: wire.points[node],
             arc: wire.arc[node],
             height: 0.0,

@@ -155,7 +155,11 @@ pub fn flanged(
     }
     if chords == 0 {
         // both quarters are a corner
-        wall = vec![[inner, 0.0], [inner, flanges.height], [outer, flanges.height]];
+        wall = vec![
+            [inner, 0.0],
+            [inner, flanges.height],
+            [outer, flanges.height],
+        ];
     }
     let mirrored = wall.iter().rev().map(|&[y, s]| [-y, s]);
     let profile: Vec<[f64; 2]> = mirrored.chain(wall.iter().copied()).collect();

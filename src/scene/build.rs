@@ -45,9 +45,9 @@ impl SceneSettings {
         let wire = problems.note(section(self));
         let core = self.core(&mut problems);
         let core = problems.note(core);
-        let law = core.as_ref().and_then(|(_, extent)| {
-            self.nozzle_law(self.wire.diameter, extent, &mut problems)
-        });
+        let law = core
+            .as_ref()
+            .and_then(|(_, extent)| self.nozzle_law(self.wire.diameter, extent, &mut problems));
         self.check_motion_and_friction(law.as_ref(), &mut problems);
         if let (Some(wire), Some((_, extent))) = (&wire, &core) {
             self.check_core(wire, extent, &mut problems);

@@ -63,7 +63,10 @@ impl SceneSettings {
             (low, high) = (-0.5 * width, 0.5 * width);
         }
         let rounding = 1e-9 * wire.diameter;
-        let (low, high) = (low + wire.radius() - rounding, high - wire.radius() + rounding);
+        let (low, high) = (
+            low + wire.radius() - rounding,
+            high - wire.radius() + rounding,
+        );
         if !(low..=high).contains(&self.start.clamp_y) {
             problems.add(self.impossible(
                 "start.clamp_y",

@@ -1,11 +1,11 @@
 //! The checked scene of a run, in SI units; nothing changes it while the run goes on.
 
+use super::nozzle_law::NozzleLaw;
 use crate::measure::DefectLimits;
 use crate::rod::{Section, Twist};
 use crate::settings::{
     Contact, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse, Winding,
 };
-use super::nozzle_law::NozzleLaw;
 use std::path::PathBuf;
 
 /// The description of a run, which does not change while it runs.

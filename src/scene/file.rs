@@ -173,7 +173,10 @@ fn leaves<'t, 'i>(name: &str, section: &'t DeTable<'i>) -> Vec<(String, usize, &
 
 /// Whether some leaves stand in a part of a section of this name.
 fn is_part(path: &str) -> bool {
-    let inside = |name: &str| name.strip_prefix(path).is_some_and(|rest| rest.starts_with('.'));
+    let inside = |name: &str| {
+        name.strip_prefix(path)
+            .is_some_and(|rest| rest.starts_with('.'))
+    };
     table().iter().any(|v| inside(v.name))
 }
 

@@ -161,9 +161,7 @@ impl NozzleLaw {
     fn range(&self) -> [f64; 2] {
         let end = self.end();
         let within = self.pieces.iter().filter(|piece| piece.from <= end);
-        let ends = within
-            .map(|piece| piece.y)
-            .chain([self.position(end)]);
+        let ends = within.map(|piece| piece.y).chain([self.position(end)]);
         ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], y| {
             [low.min(y), high.max(y)]
         })
@@ -224,7 +222,11 @@ impl SceneSettings {
                 true => "neighbouring turns would lie in each other",
                 false => "another wire has room between neighbouring turns",
             };
-            let allowed = format!("{} to {} m (one to two diameters), or 0", si(d), si(2.0 * d));
+            let allowed = format!(
+                "{} to {} m (one to two diameters), or 0",
+                si(d),
+                si(2.0 * d)
+            );
             problems.add(self.impossible("winding.pitch", reason, allowed));
             return None;
         }
@@ -276,7 +278,11 @@ impl SceneSettings {
     fn stacked(&self, turns: u32, pitch: f64, has_half: bool) -> Layers {
         let mut layers = Vec::new();
         let mut first = self.nozzle.y_start;
-        let mut sense = if self.winding.direction == "-y" { -1.0 } else { 1.0 };
+        let mut sense = if self.winding.direction == "-y" {
+            -1.0
+        } else {
+            1.0
+        };
         for number in 0..self.winding.layers as u32 {
             let between_flanges = number % 2 == 1 && !has_half;
             let turns = turns - u32::from(between_flanges);
@@ -290,7 +296,11 @@ impl SceneSettings {
                 turns,
                 sense,
             });
-            let on = if number % 2 == 0 && !has_half { -0.5 } else { 0.5 };
+            let on = if number % 2 == 0 && !has_half {
+                -0.5
+            } else {
+                0.5
+            };
             first = last + on * pitch * sense;
             sense = -sense;
         }
@@ -305,7 +315,8 @@ impl SceneSettings {
             .iter()
             .flat_map(|layer| {
                 let lead = self.traverse.lead;
-                let place = move |turn| layer.first + layer.sense * (f64::from(turn) * pitch + lead);
+                let place =
+                    move |turn| layer.first + layer.sense * (f64::from(turn) * pitch + lead);
                 (0..layer.turns).map(place)
             })
             .collect();
@@ -355,8 +366,14 @@ impl SceneSettings {
             let meets = (1..=count).find(|&number| top(number) + d >= self.nozzle.distance);
             problems.add(self.impossible(
                 "nozzle.distance",
-                format!("the coil meets the nozzle in layer {}", meets.unwrap_or(count)),
-                format!("more than {} m, or fewer winding.layers", si(top(count) + d)),
+                format!(
+                    "the coil meets the nozzle in layer {}",
+                    meets.unwrap_or(count)
+                ),
+                format!(
+                    "more than {} m, or fewer winding.layers",
+                    si(top(count) + d)
+                ),
             ));
         }
     }
@@ -418,7 +435,10 @@ impl SceneSettings {
             .comment(Some(b'#'))
             .from_path(Path::new(&self.traverse.file))
             .map_err(|e| problem(format!("the table cannot be opened ({e})")))?;
-        let header = reader.headers().map_err(|e| problem(e.to_string()))?.clone();
+        let header = reader
+            .headers()
+            .map_err(|e| problem(e.to_string()))?
+            .clone();
         let columns = [
             column(&header, "angle", "rad").or_else(|| {
                 let turns = header.iter().position(|name| name == "turns")?;
@@ -441,7 +461,8 @@ impl SceneSettings {
             let cell = |(index, scale): (usize, Scale)| {
                 let text = record.get(index).unwrap_or_default();
                 let number: Option<f64> = text.parse().ok().filter(|x: &f64| x.is_finite());
-                let number = number.ok_or_else(|| problem(format!("line {line}: {text:?} is no number")))?;
+                let number =
+                    number.ok_or_else(|| problem(format!("line {line}: {text:?} is no number")))?;
                 Ok(scaled(number, scale))
             };
             let point = [cell(angle)? / per_turn, cell(y)?];

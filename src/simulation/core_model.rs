@@ -42,10 +42,8 @@ pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
         }
         Core::Cylinder {
             radius, length_y, ..
-        } => {
-            cylinder(*radius, *length_y, segments_for_sagitta(*radius, SAGITTA))
-                .map_err(|e| fail(e.to_string()))?
-        }
+        } => cylinder(*radius, *length_y, segments_for_sagitta(*radius, SAGITTA))
+            .map_err(|e| fail(e.to_string()))?,
         Core::Mesh { path, unit } => {
             let file = std::fs::File::open(path)
                 .map_err(|e| fail(format!("cannot open {}: {e}", path.display())))?;

@@ -57,10 +57,15 @@ impl System {
         self.state.spindle.acceleration = drive.acceleration;
         self.state.set_tension = drive.tension;
         self.state.set_rate = drive.tension_rate;
-        if let NozzleDrive::Even(velocity) = drive.nozzle {
-            // speeds may jump here: held nodes take theirs over before the nozzle sets off
-            self.place_supports();
-            self.state.support[1].velocity = V3::new(0.0, velocity, 0.0);
+        match drive.nozzle {
+            NozzleDrive::Even(velocity) => {
+                // speeds may jump here: held nodes take theirs over before the nozzle sets off
+                self.place_supports();
+                self.state.support[1].velocity = V3::new(0.0, velocity, 0.0);
+            }
+            // nobody steers it: it stands, whatever it did in the interval before
+            NozzleDrive::WithSpindle(0.0) => self.state.support[1].velocity = V3::zeros(),
+            NozzleDrive::WithSpindle(_) => {}
         }
     }
 

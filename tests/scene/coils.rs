@@ -11,7 +11,10 @@ const BOBBIN: &str = "[core]\nshape = 'cylinder'\nradius_mm = 8\n[core.flange]\n
 
 fn bobbin(more: &str) -> Scene {
     let text = format!("{BOBBIN}{more}");
-    parse(&text).expect("a scene").build().expect("it can be wound")
+    parse(&text)
+        .expect("a scene")
+        .build()
+        .expect("it can be wound")
 }
 
 fn law(more: &str) -> NozzleLaw {
@@ -34,7 +37,10 @@ fn a_part_of_a_section_is_read_and_written() {
     assert_eq!(again.build().unwrap().nozzle_law, scene.nozzle_law);
     assert_eq!(again.build().unwrap().core, scene.core);
     // as written without a heading of its own
-    let dotted = BOBBIN.replace("[core.flange]\ninner_distance_mm", "flange.inner_distance_mm");
+    let dotted = BOBBIN.replace(
+        "[core.flange]\ninner_distance_mm",
+        "flange.inner_distance_mm",
+    );
     let dotted = dotted.replace("\nheight_mm", "\nflange.height_mm");
     let dotted = parse(&dotted).unwrap().build().unwrap();
     assert_eq!(dotted.core, scene.core);
@@ -85,8 +91,13 @@ fn an_even_traverse_goes_to_and_fro_and_dwells() {
     near(law.position(20.0 * TAU), 6.9e-3);
     near(law.position(21.0 * TAU), 6.9e-3 - pitch);
     assert_eq!(law.sense(), 1.0);
-    let down = BOBBIN.replace("-6.9", "6.9").replace("layers = 3", "layers = 3\ndirection = '-y'");
-    let down = parse(&format!("{down}mode = 'helical'")).unwrap().build().unwrap();
+    let down = BOBBIN
+        .replace("-6.9", "6.9")
+        .replace("layers = 3", "layers = 3\ndirection = '-y'");
+    let down = parse(&format!("{down}mode = 'helical'"))
+        .unwrap()
+        .build()
+        .unwrap();
     near(down.nozzle_law.position(10.0 * TAU), 6.9e-3 - 10.0 * pitch);
     assert_eq!(down.nozzle_law.sense(), -1.0);
 }
@@ -118,7 +129,10 @@ fn a_lead_goes_with_the_direction_of_the_layer() {
 fn a_table_gives_the_way() {
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
-    write("way.csv", "angle_deg, y_mm\n# from flange to flange\n0, -3\n720, 3\n1080, 3\n");
+    write(
+        "way.csv",
+        "angle_deg, y_mm\n# from flange to flange\n0, -3\n720, 3\n1080, 3\n",
+    );
     write("turns.csv", "turns,y\n0,-0.003\n2,0.003\n3,0.003\n");
     let scene = |file: &str| {
         let text = format!("[traverse]\nmode = 'table'\nfile = '{file}'\n");
@@ -127,21 +141,36 @@ fn a_table_gives_the_way() {
     };
     let law = scene("way.csv").unwrap().nozzle_law;
     assert_eq!(law.turns(), 3.0);
-    for (turns, y) in [(0.0, -3e-3), (1.0, 0.0), (2.0, 3e-3), (2.5, 3e-3), (9.0, 3e-3)] {
+    for (turns, y) in [
+        (0.0, -3e-3),
+        (1.0, 0.0),
+        (2.0, 3e-3),
+        (2.5, 3e-3),
+        (9.0, 3e-3),
+    ] {
         assert!((law.position(turns * TAU) - y).abs() < 1e-15);
     }
     assert_eq!(scene("turns.csv").unwrap().nozzle_law.turns(), 3.0);
 
     for (text, says) in [
-        ("angle_deg,y_mm\n0,0\n360,1\n180,2\n", "line 4: the angle does not rise"),
-        ("angle_deg,y_mm\n10,0\n360,1\n", "line 2: the first angle is not 0"),
+        (
+            "angle_deg,y_mm\n0,0\n360,1\n180,2\n",
+            "line 4: the angle does not rise",
+        ),
+        (
+            "angle_deg,y_mm\n10,0\n360,1\n",
+            "line 2: the first angle is not 0",
+        ),
         ("angle_deg,y_mm\n0,0\n360,x\n", "line 3: \"x\" is no number"),
         ("angle_deg,y_mm\n0,0\n", "less than two rows"),
         ("time,y_mm\n0,0\n", "its columns are time, y_mm"),
         ("angle_deg,y_mm\n0,0\n360,90\n", "past an end of the core"),
     ] {
         write("bad.csv", text);
-        assert_says(&scene("bad.csv").unwrap_err().to_string(), &["traverse.file", says]);
+        assert_says(
+            &scene("bad.csv").unwrap_err().to_string(),
+            &["traverse.file", says],
+        );
     }
     let missing = scene("none.csv").unwrap_err().to_string();
     assert_says(&missing, &["traverse.file", "cannot be opened"]);
@@ -149,12 +178,20 @@ fn a_table_gives_the_way() {
 
 #[test]
 fn what_cannot_be_wound_is_refused_with_the_key_to_change() {
-    let with = |from: &str, to: &str| refused(&format!("{}mode = 'orthocyclic'", BOBBIN.replace(from, to)));
+    let with = |from: &str, to: &str| {
+        let text = format!("{}mode = 'orthocyclic'", BOBBIN.replace(from, to));
+        let built = parse(&text).and_then(|settings| settings.build());
+        built.expect_err("must be refused").to_string()
+    };
     for (from, to, says) in [
         (
             "inner_distance_mm = 14.5",
             "inner_distance_mm = 0.5",
-            &["core.flange.inner_distance", "the wire is wider than the flanges are apart", "at least 0.0007 m"][..],
+            &[
+                "core.flange.inner_distance",
+                "the wire is wider than the flanges are apart",
+                "at least 0.0007 m",
+            ][..],
         ),
         (
             "height_mm = 4",
@@ -166,17 +203,37 @@ fn what_cannot_be_wound_is_refused_with_the_key_to_change() {
             "layers = 3\nturns_per_layer = 40",
             &["winding.turns_per_layer", "0.028 m", "at most 20"],
         ),
-        ("layers = 3", "layers = 2.5", &["winding.layers", "not a whole number"]),
-        ("layers = 3", "layers = 3\npitch_mm = 0.5", &["winding.pitch", "0.0007 to 0.0014 m"]),
-        ("layers = 3", "layers = 90", &["nozzle.distance", "the coil meets the nozzle in layer 74"]),
+        (
+            "layers = 3",
+            "layers = 2.5",
+            &["winding.layers", "not a whole number"],
+        ),
+        (
+            "layers = 3",
+            "layers = 3\npitch_mm = 0.5",
+            &["winding.pitch", "0.0007 to 0.0014 m"],
+        ),
+        (
+            "layers = 3",
+            "layers = 90",
+            &["nozzle.distance", "the coil meets the nozzle in layer 74"],
+        ),
         (
             "y_start_mm = -6.9",
             "y_start_mm = 0",
             &["nozzle.y_start", "past a flange", "-0.0069 to -0.0069 m"],
         ),
-        ("clamp_y_mm = -6.9", "clamp_y_mm = -7.2", &["start.clamp_y", "clamped in a flange"]),
+        (
+            "clamp_y_mm = -6.9",
+            "clamp_y_mm = -7.2",
+            &["start.clamp_y", "clamped in a flange"],
+        ),
         ("[core.flange]", "[core.flanje]", &["core.flanje"]),
-        ("height_mm = 4", "heigth_mm = 4", &["core.flange.heigth_mm", "core.flange.height"]),
+        (
+            "height_mm = 4",
+            "heigth_mm = 4",
+            &["core.flange.heigth_mm", "core.flange.height"],
+        ),
     ] {
         assert_says(&with(from, to), says);
     }
@@ -191,6 +248,12 @@ fn keys_of_another_way_are_told() {
     let keys: Vec<_> = warnings.iter().map(|w| w.key).collect();
     assert_eq!(keys, ["traverse.crossover", "winding.layers"]);
     let high = BOBBIN.replace("layers = 3", "layers = 9");
-    let (_, warnings) = parse(&format!("{high}mode = 'helical'\n")).unwrap().build_with_warnings().unwrap();
-    assert!(warnings.iter().any(|w| w.key == "core.flange.height"), "{warnings:?}");
+    let (_, warnings) = parse(&format!("{high}mode = 'helical'\n"))
+        .unwrap()
+        .build_with_warnings()
+        .unwrap();
+    assert!(
+        warnings.iter().any(|w| w.key == "core.flange.height"),
+        "{warnings:?}"
+    );
 }

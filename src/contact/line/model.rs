@@ -52,7 +52,8 @@ impl LineModel {
     /// Signed distance of a point from core and flanges, core frame, m.
     pub fn distance(&self, p: V3) -> f64 {
         let core = self.shape.nearness(p).distance;
-        self.flange(p).map_or(core, |flange| flange.distance.min(core))
+        self.flange(p)
+            .map_or(core, |flange| flange.distance.min(core))
     }
 
     /// What contact of live wire with live wire goes by, `step` (s) after the last accepted instant; it may take the friction

@@ -131,8 +131,7 @@ impl LineContact<'_> {
             if slot >= WIRE && point.has_passage_before(slot, touch.start) {
                 continue;
             }
-            let (depth, normal, _) =
-                depth_at(self.model, &self.scratch.tube, slot, touch.start, p);
+            let (depth, normal, _) = depth_at(self.model, &self.scratch.tube, slot, touch.start, p);
             if depth > 0.0 {
                 let there = TouchState {
                     depth,

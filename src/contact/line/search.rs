@@ -32,7 +32,11 @@ pub(super) fn depth_at(
         },
         _ => {
             let foot = tube.foot(p, start);
-            return (foot.depth(model.radius + tube.radius()), foot.normal, foot.segment);
+            return (
+                foot.depth(model.radius + tube.radius()),
+                foot.normal,
+                foot.segment,
+            );
         }
     };
     (model.radius - solid.distance, solid.normal, start)
@@ -79,8 +83,13 @@ impl LineContact<'_> {
         self.look_up_if_moved(k, to, own);
         let point = &self.state.points[k];
         let touch_at = |slot: usize, p: V3| {
-            let (depth, normal, _) =
-                depth_at(self.model, &self.scratch.tube, slot, point.touch[slot].start, p);
+            let (depth, normal, _) = depth_at(
+                self.model,
+                &self.scratch.tube,
+                slot,
+                point.touch[slot].start,
+                p,
+            );
             (depth, normal)
         };
         let mut share: f64 = 1.0;

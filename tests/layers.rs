@@ -1,0 +1,144 @@
+//! Whole coils between flanges: layers are counted, lie in grooves, and stay out of flange and each other.
+
+use coilwind::measure::{DefectKind, STATIONS_PER_TURN};
+use coilwind::settings::SceneSettings;
+use coilwind::simulation::Simulation;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Six turns and half a turn's room on a small bobbin, three layers.
+const BOBBIN: &str = "
+[core]
+shape = 'cylinder'
+radius_mm = 6
+[core.flange]
+inner_distance_mm = 4.65
+height_mm = 3
+thickness_mm = 1
+edge_radius_mm = 0.3
+[nozzle]
+distance_mm = 25
+y_start_mm = -1.975
+[start]
+clamp_y_mm = -1.975
+[tensioner]
+tension = 20
+[spindle]
+speed = 100
+[solver]
+tolerance_um = 5
+[traverse]
+mode = 'orthocyclic'
+crossover_deg = 60
+advance_deg = 90
+[winding]
+layers = 3
+";
+const DIAMETER: f64 = 0.7e-3;
+const TURNS: usize = 6;
+/// Polar angles between crossovers, degrees.
+const STRAIGHT: std::ops::Range<usize> = 45..200;
+
+fn started(text: &str) -> Simulation {
+    let settings = SceneSettings::from_toml_str(text, "bobbin.toml", Path::new("")).expect("reads");
+    Simulation::new(&settings.build().expect("a scene")).expect("starts")
+}
+
+fn wound(sim: &mut Simulation, turns: f64) {
+    let end = sim.motion_profile().time_at(turns * TAU);
+    sim.advance_profile(end - sim.time())
+        .expect("the run goes on");
+}
+
+#[test]
+fn three_layers_lie_in_their_grooves_between_the_flanges() {
+    let mut sim = started(BOBBIN);
+    let law_turns = sim.scene().nozzle_law.turns();
+    assert_eq!(law_turns, 18.0);
+    // a state on the way, with wire in the corner between core and flange
+    wound(&mut sim, 6.4);
+    let saved = sim.to_bytes().expect("a state");
+    wound(&mut sim, 7.0);
+    let mut other = Simulation::from_bytes(sim.scene(), &saved).expect("restores");
+    wound(&mut other, 7.0);
+    assert!(
+        other.to_bytes().unwrap() == sim.to_bytes().unwrap(),
+        "goes on to the bit"
+    );
+    wound(&mut sim, law_turns);
+
+    for turn in sim.turns().iter().filter(|turn| turn.settled == 1.0) {
+        let (layer, in_layer) = (
+            (turn.turn as usize - 1) / TURNS + 1,
+            (turn.turn as usize - 1) % TURNS + 1,
+        );
+        assert_eq!(
+            (turn.layer as usize, turn.turn_in_layer as usize),
+            (layer, in_layer),
+            "{turn:?}"
+        );
+    }
+    // the climb to the next layer is none of these, nor is wire beside a flange a gap
+    let wrong = |kind| {
+        kind == DefectKind::Overlap || kind == DefectKind::Bulge || kind == DefectKind::Slack
+    };
+    let defects = sim.defects();
+    assert!(
+        !defects.iter().any(|defect| wrong(defect.kind)),
+        "{defects:?}"
+    );
+
+    // in the grooves of a layer whose turns lie a pitch apart
+    let pitch = sim.scene().nozzle_law.position(TAU) - sim.scene().nozzle_law.position(0.5 * TAU);
+    let rise = (DIAMETER * DIAMETER - 0.25 * pitch * pitch).sqrt();
+    let mut seen = 0;
+    for (index, station) in sim.coil().stations().enumerate() {
+        let (turn, degree) = (index / STATIONS_PER_TURN, index % STATIONS_PER_TURN);
+        let (layer, in_layer) = (turn / TURNS, turn % TURNS);
+        if !STRAIGHT.contains(&degree) || in_layer == 0 || in_layer == TURNS - 1 {
+            continue;
+        }
+        let off = (station.height - layer as f64 * rise) / DIAMETER;
+        assert!(
+            off.abs() < 0.05,
+            "turn {}, {degree} degrees: {off} d beside its groove",
+            turn + 1
+        );
+        seen += 1;
+    }
+    assert!(seen > 1500, "{seen}");
+
+    let window = 0.5 * (4.65e-3 - DIAMETER);
+    for station in sim.coil().stations() {
+        assert!(
+            station.position.y.abs() < window + 0.02 * DIAMETER,
+            "in the flange: {station:?}"
+        );
+    }
+    let summary = sim.summary();
+    let energy = &summary.energy;
+    assert!(
+        summary.penetration.largest_over_d < 0.02,
+        "{:?}",
+        summary.penetration
+    );
+    assert!(energy.residual_over_dissipated.abs() < 0.005, "{energy:?}");
+    let remeshing = energy.remeshing_J / energy.plastic_J;
+    assert!(
+        remeshing.abs() < 0.005 && energy.numerical_over_dissipated.abs() < 0.005,
+        "{energy:?}"
+    );
+}
+/// A nozzle that stood after a step across went on as fast as it had come.
+#[test]
+fn the_nozzle_is_where_its_law_says_however_long_the_steps_are() {
+    for turns in [&[0.5, 1.0, 1.5][..], &[1.5]] {
+        let mut sim = started(BOBBIN);
+        for &end in turns {
+            wound(&mut sim, end);
+            let law = sim.scene().nozzle_law.position(sim.outputs().spindle_angle);
+            let off = sim.inputs().nozzle_position - law;
+            assert!(off.abs() < 1e-12, "{off} m beside the law after {end} turns");
+        }
+    }
+}
