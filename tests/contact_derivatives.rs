@@ -4,7 +4,7 @@
 mod parts;
 
 use coilwind::contact::{ContactLaw, ContactResponse};
-use coilwind::geometry::Shape;
+use coilwind::geometry::{Flanges, Shape};
 use coilwind::math::V3;
 use parts::Parts;
 use proptest::prelude::*;
@@ -36,7 +36,14 @@ fn contact(mu: f64) -> Parts {
         half_y: 8e-3,
         corner_radius: 2e-3,
     };
-    let mut line = Parts::new(shape, law, RADIUS, 1);
+    let mut line = Parts::new(shape.clone(), law, RADIUS, 1);
+    line.model.flanges = Some(Flanges {
+        core: shape,
+        half_inner: 7e-3,
+        height: 4e-3,
+        thickness: 1e-3,
+        edge_radius: 0.3e-3,
+    });
     // one turn round a cylinder far off the box, edges of 0.8 mm
     for i in 0..40 {
         let a = 0.1 * f64::from(i);
@@ -46,11 +53,12 @@ fn contact(mu: f64) -> Parts {
     line
 }
 
-/// Surfaces to touch: flat, corner arc, frozen wire.
+/// Surfaces to touch: flat, corner arc, flange, frozen wire.
 #[derive(Clone, Copy, Debug)]
 enum On {
     Flat,
     Corner,
+    Flange,
     Wire,
 }
 
@@ -68,6 +76,11 @@ fn ground(on: On, at: f64) -> [V3; 3] {
             let axis = V3::new(4e-3, 5e-3 * (at - 0.5), 8e-3);
             [axis + out * (2e-3 + RADIUS), out, V3::y()]
         }
+        On::Flange => [
+            V3::new(8e-3, RADIUS - 7e-3, 3e-3 * at),
+            V3::y(),
+            V3::new(0.8, 0.0, 0.6),
+        ],
         On::Wire => {
             let line = contact(0.0);
             let (a, b) = (0.3 + 3.0 * at, 6.2 * at);
@@ -85,9 +98,9 @@ fn ground(on: On, at: f64) -> [V3; 3] {
     }
 }
 
-/// Any of the three surfaces.
+/// Any of these surfaces.
 fn on() -> impl Strategy<Value = On> {
-    prop_oneof![Just(On::Flat), Just(On::Corner), Just(On::Wire)]
+    prop_oneof![Just(On::Flat), Just(On::Corner), Just(On::Flange), Just(On::Wire)]
 }
 
 fn at(line: &mut Parts, p: V3) -> ContactResponse {
@@ -214,11 +227,28 @@ proptest! {
     }
 }
 
+/// The nearest surface alone left wire in the corner to rattle between both.
+#[test]
+fn wire_in_the_corner_is_pushed_by_core_and_flange() {
+    let corner = V3::new(6e-3 + RADIUS, 7e-3 - RADIUS, 1e-3);
+    for [into_core, into_flange] in [[2e-6, 3e-6], [20e-6, 1e-6], [5e-6, -1e-6]] {
+        let inwards = V3::new(-into_core, into_flange, 0.0);
+        let both = at(&mut contact(0.0), corner + inwards);
+        let core = at(&mut contact(0.0), corner + V3::new(-into_core, -1e-3, 0.0));
+        let flange = at(&mut contact(0.0), corner + V3::new(1e-3, into_flange, 0.0));
+        assert!(core.energy > 0.0 && (flange.energy > 0.0) == (into_flange > 0.0));
+        let off = (both.energy - core.energy - flange.energy).abs();
+        assert!(off <= 1e-12 * both.energy, "{off}");
+        let off = both.gradient - core.gradient - flange.gradient;
+        assert!(off.norm() <= 1e-12 * both.gradient.norm(), "{off}");
+    }
+}
+
 /// A guess may lie deep in what it touches, and an update lead out of it; without the touch the next update may lead
 /// nowhere. Then the push at the guess counts again, or the guess would stand as the solution.
 #[test]
 fn a_look_ahead_comes_back() {
-    for on in [On::Flat, On::Corner, On::Wire] {
+    for on in [On::Flat, On::Corner, On::Flange, On::Wire] {
         let mut line = contact(MU);
         let [place, out, _] = ground(on, 0.4);
         let p = place - out * 60e-6;
