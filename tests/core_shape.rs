@@ -1,7 +1,7 @@
 //! Contact geometry against analytic distances and against its own slow twins.
 
 use coilwind::geometry::generate::{cylinder, rounded_box, sagitta};
-use coilwind::geometry::{Nearest, Surface, Touch, TriMesh};
+use coilwind::geometry::{Bvh, Nearest, Surface, Touch, TriMesh};
 use coilwind::math::V3;
 use proptest::prelude::*;
 
@@ -307,7 +307,9 @@ proptest! {
     }
 
     #[test]
-    fn search_tree_agrees_with_asking_everyone(u in unit(), radius in 0.0..0.02f64, shape in 0usize..4) {
+    fn search_tree_agrees_with_asking_everyone(
+        u in unit(), radius in 0.0..0.02f64, shape in 0usize..4, guess in 0u32..2000,
+    ) {
         let surface = [box_surface, angle_iron, channel, bobbin][shape]();
         let p = in_bounds(&surface, 0.005, u);
         let (mut fast, mut slow) = (Vec::new(), Vec::new());
@@ -316,6 +318,8 @@ proptest! {
         prop_assert_eq!(&fast, &slow);
         let (fast, slow): (Nearest, Nearest) = (surface.nearest(p), surface.mesh().nearest_brute(p));
         prop_assert_eq!(fast, slow);
+        let tree = Bvh::new(surface.mesh());
+        prop_assert_eq!(tree.nearest_from(surface.mesh(), p, guess).0, slow);
     }
 
     #[test]

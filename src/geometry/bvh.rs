@@ -85,9 +85,18 @@ impl Bvh {
 
     /// Signed distance, closest point and normal of a point `p`, core frame, m.
     pub fn nearest(&self, mesh: &TriMesh, p: V3) -> Nearest {
-        let mut best = (f64::INFINITY, 0);
+        self.nearest_from(mesh, p, u32::MAX).0
+    }
+
+    /// [`Self::nearest`] and its triangle. A guess of that triangle, if there is one of that number, spares most of the search
+    /// and changes nothing about what is found.
+    pub fn nearest_from(&self, mesh: &TriMesh, p: V3, guess: u32) -> (Nearest, u32) {
+        let mut best = match (guess as usize) < mesh.len() {
+            true => (mesh.closest(guess, p).distance_sq, guess),
+            false => (f64::INFINITY, 0),
+        };
         nearest_walk(&self.nodes, mesh, p, 0, &mut best);
-        mesh.nearest_on(p, best.1)
+        (mesh.nearest_on(p, best.1), best.1)
     }
 
     /// The triangle whose section at the level of `p` (core frame, m) is nearest, the first of several; none above and

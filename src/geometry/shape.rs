@@ -85,6 +85,22 @@ impl Shape {
         }
     }
 
+    /// [`Self::nearness`] and, on a mesh, the triangle that is nearest; the search begins at the triangle `guess`.
+    #[inline]
+    pub(crate) fn nearness_from(&self, p: V3, guess: u32) -> (Nearness, u32) {
+        match self {
+            Self::Mesh(surface) => {
+                let (nearest, triangle) = surface.nearest_from(p, guess);
+                let near = Nearness {
+                    distance: nearest.distance,
+                    normal: nearest.normal,
+                };
+                (near, triangle)
+            }
+            Self::RoundedBox { .. } | Self::Cylinder { .. } => (self.nearness(p), guess),
+        }
+    }
+
     /// Signed distance of `p` (core frame, m) from the outline of the core in x-z. A mesh counts as the rectangle that it
     /// fits in.
     #[inline]

@@ -75,6 +75,11 @@ impl Surface {
         self.bvh.nearest(&self.mesh, p)
     }
 
+    /// [`Self::nearest`] and its triangle, looked for from a triangle that may be it.
+    pub(crate) fn nearest_from(&self, p: V3, guess: u32) -> (Nearest, u32) {
+        self.bvh.nearest_from(&self.mesh, p, guess)
+    }
+
     /// The section at the level of `p` (core frame, m) that is nearest, and its triangle.
     pub(crate) fn nearest_at_level(&self, p: V3) -> Option<(LevelNearest, u32)> {
         self.bvh.nearest_at_level(&self.mesh, p)

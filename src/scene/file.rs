@@ -18,6 +18,7 @@ const PACKED: &[(&str, &str)] = &[
     ("fig8_gap", include_str!("packed/fig8_gap.toml")),
     ("tooth", include_str!("packed/tooth.toml")),
     ("bobbin", include_str!("packed/bobbin.toml")),
+    ("fine", include_str!("packed/fine.toml")),
 ];
 
 /// Names of the packed scenes.

@@ -266,7 +266,7 @@ fn scenes_that_are_not_there() {
         &message,
         &[
             "fig9",
-            "packed scene (fig8, fig8_gap, tooth, bobbin)",
+            "packed scene (fig8, fig8_gap, tooth, bobbin, fine)",
             "did you mean fig8?",
         ],
     );

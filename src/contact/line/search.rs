@@ -14,8 +14,8 @@ const SKIN: f64 = 0.15;
 /// Passages whose segments are nearer along the wire than this are one passage at successive searches.
 const SAME_PASSAGE: u32 = 6;
 
-/// Depth (m) of the wire at `p` (m) in what a slot is with, unit normal towards `p`, and for frozen wire the segment of the
-/// foot, which is looked for from segment `start` on.
+/// Depth (m) of the wire at `p` (m) in what a slot is with, unit normal towards `p`, and where that was found: the segment of
+/// frozen wire or the triangle of a mesh, which is looked for from `start` on.
 #[inline(always)]
 pub(super) fn depth_at(
     model: &LineModel,
@@ -24,22 +24,21 @@ pub(super) fn depth_at(
     start: u32,
     p: V3,
 ) -> (f64, V3, u32) {
-    let solid = match slot {
-        CORE => model.shape.nearness(p),
+    match slot {
+        CORE => {
+            let (near, triangle) = model.shape.nearness_from(p, start);
+            (model.radius - near.distance, near.normal, triangle)
+        }
         FLANGE => match model.flange(p) {
-            Some(near) => near,
-            None => return (f64::NEG_INFINITY, V3::zeros(), start),
+            Some(near) => (model.radius - near.distance, near.normal, start),
+            None => (f64::NEG_INFINITY, V3::zeros(), start),
         },
         _ => {
             let foot = tube.foot(p, start);
-            return (
-                foot.depth(model.radius + tube.radius()),
-                foot.normal,
-                foot.segment,
-            );
+            let depth = foot.depth(model.radius + tube.radius());
+            (depth, foot.normal, foot.segment)
         }
-    };
-    (model.radius - solid.distance, solid.normal, start)
+    }
 }
 
 impl LineContact<'_> {
@@ -122,14 +121,18 @@ impl LineContact<'_> {
         point.centre = p;
         point.clear_within = 0.0;
         let core = self.model.shape.lower_bound(p);
-        let core = if core > skin + self.model.radius {
-            core
+        let (core, triangle) = if core > skin + self.model.radius {
+            (core, u32::MAX)
         } else {
-            self.model.shape.nearness(p).distance
+            let guess = point.touch[CORE].start;
+            let (near, triangle) = self.model.shape.nearness_from(p, guess);
+            (near.distance, triangle)
         };
         let core_room = core - self.model.radius;
         point.core_near = core_room < skin;
-        if !point.core_near {
+        if point.core_near {
+            point.touch[CORE].start = triangle;
+        } else {
             point.touch[CORE] = TouchState::UNUSED;
         }
         let flange_room = match self.model.flange(p) {

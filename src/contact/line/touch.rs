@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// State of one touch, present or possible, of a contact point; core frame.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct TouchState {
-    /// segment of frozen wire at which to begin the search for the closest point
+    /// segment of frozen wire, or triangle of a mesh, at which to begin the search for the closest point
     pub(super) start: u32,
     /// it touched at the last accepted instant, and `anchor` holds
     pub(super) anchored: bool,
