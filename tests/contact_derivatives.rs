@@ -100,7 +100,12 @@ fn ground(on: On, at: f64) -> [V3; 3] {
 
 /// Any of these surfaces.
 fn on() -> impl Strategy<Value = On> {
-    prop_oneof![Just(On::Flat), Just(On::Corner), Just(On::Flange), Just(On::Wire)]
+    prop_oneof![
+        Just(On::Flat),
+        Just(On::Corner),
+        Just(On::Flange),
+        Just(On::Wire)
+    ]
 }
 
 fn at(line: &mut Parts, p: V3) -> ContactResponse {

@@ -138,7 +138,40 @@ fn the_nozzle_is_where_its_law_says_however_long_the_steps_are() {
             wound(&mut sim, end);
             let law = sim.scene().nozzle_law.position(sim.outputs().spindle_angle);
             let off = sim.inputs().nozzle_position - law;
-            assert!(off.abs() < 1e-12, "{off} m beside the law after {end} turns");
+            assert!(
+                off.abs() < 1e-12,
+                "{off} m beside the law after {end} turns"
+            );
         }
     }
+}
+
+/// Wire piled up in one place until it met the nozzle: energy was off by a sixth, wire 0.2 diameters deep in wire, and the run said
+/// that the wire broke.
+#[test]
+fn a_coil_that_grows_into_the_nozzle_ends_the_run() {
+    let text = "[core]\nshape = 'cylinder'\nradius_mm = 3\n[core.flange]\ninner_distance_mm = 1.5\nheight_mm = 1\n\
+                [nozzle]\ndistance_mm = 5.6\ny_start_mm = -0.4\n[start]\nclamp_y_mm = -0.4\n\
+                [spindle]\nspeed = 100\nturns = 22\n[traverse]\nper_turn_mm = 0\n[solver]\ntolerance_um = 5\n";
+    let mut sim = started(text);
+    let end = sim.motion_profile().end();
+    let error = sim
+        .advance_profile(end)
+        .expect_err("the coil is in the way");
+    assert!(
+        error.reason.contains("the coil has grown into the nozzle"),
+        "{error}"
+    );
+    let summary = sim.summary();
+    assert!(summary.turns_wound > 2.0, "{}", summary.turns_wound);
+    assert!(
+        summary.penetration.largest_over_d < 0.02,
+        "{:?}",
+        summary.penetration
+    );
+    assert!(
+        summary.energy.residual_over_dissipated.abs() < 0.005,
+        "{:?}",
+        summary.energy
+    );
 }

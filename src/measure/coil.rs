@@ -3,10 +3,9 @@
 use super::defect::{BulgeLimit, DefectKind, DefectLimits};
 use super::passes::Passes;
 use super::profile::Profile;
-use super::row::Row;
+use super::row::{Row, RowPlace};
 use super::runs::{Run, stations_for};
 use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
-use super::support::RowPlace;
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::PersistentVec;
 use crate::math::V3;

@@ -2,7 +2,7 @@
 
 use super::coil::{Coil, Record};
 use super::passes::Pass;
-use super::row::Row;
+use super::row::{Row, RowPlace};
 
 /// Axial distance up to which wire of an earlier row lies below a wire, diameters: cos 30 degrees, the largest at
 /// which wire that rests on it stands half a diameter above it.
@@ -24,32 +24,6 @@ pub(crate) struct Support {
     pub(crate) is_wire: bool,
     /// one more than the layer of the wire below, 1 where there is none
     pub(crate) layer: u32,
-}
-
-/// Where the wire of the next station lies.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RowPlace {
-    /// winding angle, rad
-    pub(crate) angle: f64,
-    /// of its polar angle and its place along y
-    pub(crate) bucket: (usize, i64),
-    /// m
-    pub(crate) y: f64,
-    /// over the core, m
-    pub(crate) height: f64,
-    /// way along y to the face of the flange beside it, m
-    pub(crate) flange: Option<f64>,
-}
-
-impl RowPlace {
-    /// Whether a flange leaves no room for another turn of the row: wire that climbs here does so because it has to.
-    ///
-    /// Wire that lies half a diameter beside the turn that it climbs on, a diameter from the flange, has just as much room beside
-    /// that turn as a turn needs.
-    pub(crate) fn has_no_room_in(&self, row: Row, diameter: f64) -> bool {
-        self.flange
-            .is_some_and(|flange| flange * row.sense > 0.0 && flange.abs() < diameter)
-    }
 }
 
 impl Coil {

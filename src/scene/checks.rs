@@ -1,6 +1,7 @@
 //! Leaves that contradict each other, each told with the leaf to change.
 
-use super::build::{COARSEST, Extent, FINEST};
+use super::build::{COARSEST, FINEST};
+use super::extent::Extent;
 use super::impossible::si;
 use super::problems::Problems;
 use super::{Integrator, NozzleLaw, SceneError, Solver};

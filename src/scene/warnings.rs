@@ -1,7 +1,7 @@
 //! Values that are possible but perhaps not meant.
 
-use super::build::Extent;
 use super::error::Warning;
+use super::extent::Extent;
 use super::impossible::si;
 use super::{Core, Integrator, NozzleLaw, Solver};
 use crate::rod::{Section, Twist};

@@ -116,7 +116,7 @@ impl MotionProfile {
                     ..drive
                 });
                 let begin = from.max(ramp);
-                let goes_on = (to > begin).then(|| Drive {
+                let goes_on = (to > begin).then_some(Drive {
                     duration: to - begin,
                     ..drive
                 });

@@ -446,6 +446,7 @@ mod tests {
         scene.core = Core::Cylinder {
             radius: 10e-3,
             length_y: 20e-3,
+            flange: None,
         };
         let profile = profile(&scene, &surface, 15.0).expect("a helix");
         assert_eq!(profile.at(1.0), 0.0);

@@ -369,6 +369,28 @@ impl Simulation {
         if left > 0.0 { 0 } else { i }
     }
 
+    /// The coil must not reach the nozzle: no wire could leave it freely there.
+    fn check_clearance(&self) -> Result<(), SimError> {
+        let node = self.lift_off();
+        let x = self.sys.state.rod.x[node];
+        let reach = libm::hypot(x.x, x.z) + self.scene.wire.radius();
+        let distance = self.scene.nozzle.distance;
+        if node == 0 || node + 1 == self.sys.state.rod.nodes() || reach < distance {
+            return Ok(());
+        }
+        let (angle, _) = self.wound_to(node);
+        Err(SimError {
+            time: self.sys.state.time,
+            node: Some(node),
+            reason: format!(
+                "the coil has grown into the nozzle: wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm; set nozzle.distance to more, or let the nozzle travel so that fewer turns lie on each other",
+                (angle.max(0.0) / std::f64::consts::TAU) as u32 + 1,
+                1e3 * reach,
+                1e3 * distance
+            ),
+        })
+    }
+
     /// Values must be finite, the wire below its strength and where it was sent.
     fn check_health(&mut self) -> Result<(), SimError> {
         for (i, (x, v)) in self
@@ -392,6 +414,7 @@ impl Simulation {
             }
         }
         self.check_feed()?;
+        self.check_clearance()?;
         let strength = self.scene.wire.strength;
         if let Some((j, t)) = self
             .sys

@@ -320,10 +320,10 @@ table! {
     native(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per turn of the native programme; the sign is its direction along y");
     native(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
     native_text(1602, "traverse.mode", (traverse.mode), ["by-angle", "orthocyclic", "helical", "table"], "nozzle travel: even with the core's angle; layers with a straight part and a step in each turn; layers of even travel; from a table");
-    native(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.28, 1.0, "orthocyclic: core angle of the step to the next turn");
+    native(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the step to the next turn");
     native(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: turns that the nozzle stands at the end of a layer");
     native_text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file");
-    native(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.28, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
+    native(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
 
     native(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
     native(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");

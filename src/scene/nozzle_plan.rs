@@ -1,0 +1,372 @@
+//! The nozzle's way that follows from a scene: even travel, layers between flanges, or a table.
+//!
+//! Layered laws follow from turns, layers, pitch and the window between the flanges; each layer lies in the grooves of the one
+//! below, half a pitch aside.
+
+use super::SceneError;
+use super::extent::Extent;
+use super::impossible::si;
+use super::nozzle_law::NozzleLaw;
+use super::problems::Problems;
+use crate::settings::SceneSettings;
+use crate::variables::{Scale, scaled, split_suffix};
+use std::f64::consts::TAU;
+use std::path::Path;
+
+/// Turns of a run by the law `by-angle` that does not say how many.
+const TURNS: f64 = 2.5;
+
+/// Share of a length by which sums of pitches may miss it.
+const ROUNDING: f64 = 1e-9;
+
+/// A layer as the nozzle winds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Layer {
+    /// place of its first turn, m
+    first: f64,
+    /// place of its last turn, m
+    last: f64,
+    /// its turns
+    turns: u32,
+    /// direction along y
+    sense: f64,
+}
+
+/// Turns side by side in layers.
+#[derive(Clone, Debug, PartialEq)]
+struct Layers {
+    /// from the core outwards, one at least
+    layers: Vec<Layer>,
+    /// distance of neighbouring turns, m
+    pitch: f64,
+}
+
+impl SceneSettings {
+    /// Whether the nozzle's way follows from turns and layers.
+    pub(super) fn winds_layers(&self) -> bool {
+        matches!(self.traverse.mode.as_str(), "orthocyclic" | "helical")
+    }
+
+    /// The nozzle's way, and what is wrong with it.
+    pub(super) fn nozzle_law(
+        &self,
+        diameter: f64,
+        extent: &Extent,
+        problems: &mut Problems,
+    ) -> Option<NozzleLaw> {
+        let t = &self.traverse;
+        let law = match t.mode.as_str() {
+            "table" => problems.note(self.law_of_table())?,
+            "orthocyclic" => self.orthocyclic(&self.layers(diameter, extent, problems)?),
+            "helical" => self.helical(&self.layers(diameter, extent, problems)?),
+            _ => {
+                let travel = t.per_turn / TAU * self.spindle.speed.signum();
+                let turns = match self.spindle.turns {
+                    0.0 => TURNS,
+                    turns => turns,
+                };
+                return Some(NozzleLaw::even(self.nozzle.y_start + t.lead, travel, turns));
+            }
+        };
+        let law = law.advanced(t.advance);
+        self.check_way(&law, diameter, extent, problems);
+        let turns = match self.spindle.turns {
+            0.0 => law.turns(),
+            turns => turns,
+        };
+        Some(law.for_turns(turns))
+    }
+
+    /// The layers that the nozzle winds, from the window between the flanges.
+    fn layers(&self, d: f64, extent: &Extent, problems: &mut Problems) -> Option<Layers> {
+        let w = &self.winding;
+        let window = extent.window;
+        for (key, count) in [
+            ("winding.layers", w.layers),
+            ("winding.turns_per_layer", w.turns_per_layer),
+        ] {
+            if count.fract() != 0.0 {
+                problems.add(self.impossible(key, "not a whole number", "whole numbers"));
+                return None;
+            }
+        }
+        if w.pitch != 0.0 && !(d * (1.0 - ROUNDING)..=2.0 * d).contains(&w.pitch) {
+            let reason = match w.pitch < d {
+                true => "neighbouring turns would lie in each other",
+                false => "another wire has room between neighbouring turns",
+            };
+            let allowed = format!(
+                "{} to {} m (one to two diameters), or 0",
+                si(d),
+                si(2.0 * d)
+            );
+            problems.add(self.impossible("winding.pitch", reason, allowed));
+            return None;
+        }
+        let least = w.pitch.max(d);
+        let most = window.map(|width| ((width - d) / least * (1.0 + ROUNDING)).floor() + 1.0);
+        let turns = match (w.turns_per_layer, most) {
+            (0.0, None) => {
+                problems.add(self.impossible(
+                    "winding.turns_per_layer",
+                    "there are no flanges that would say how many turns fit",
+                    "1 or more, or core.flange.inner_distance",
+                ));
+                return None;
+            }
+            (0.0, Some(most)) => most,
+            (turns, Some(most)) if turns > most => {
+                let reason = format!(
+                    "so many turns {} m apart need {} m; there are {} m between the flanges",
+                    si(least),
+                    si(d + (turns - 1.0) * least),
+                    si(window.unwrap_or_default())
+                );
+                let allowed = format!("at most {most}, or a larger core.flange.inner_distance");
+                problems.add(self.impossible("winding.turns_per_layer", reason, allowed));
+                return None;
+            }
+            (turns, _) => turns,
+        };
+        if turns < 1.0 {
+            // flanges so near to each other are told already
+            return None;
+        }
+        let room = window.map(|width| width * (1.0 + ROUNDING) - d);
+        // with room for half a pitch more every layer has as many turns
+        let has_half = |pitch: f64| room.is_none_or(|room| (turns - 0.5) * pitch <= room);
+        let pitch = match (w.pitch, window) {
+            (0.0, Some(width)) if has_half(d) => ((width - d) / (turns - 0.5)).min(2.0 * d),
+            (0.0, Some(width)) if turns > 1.0 => (width - d) / (turns - 1.0),
+            (0.0, _) => d,
+            (pitch, _) => pitch,
+        };
+        let layers = self.stacked(turns as u32, pitch, has_half(pitch * (1.0 - ROUNDING)));
+        self.check_coil(&layers, d, extent, problems);
+        Some(layers)
+    }
+
+    /// Layers over each other, each half a pitch aside of the one below. Where there is no room for half a pitch more, every
+    /// other layer has a turn less.
+    fn stacked(&self, turns: u32, pitch: f64, has_half: bool) -> Layers {
+        let mut layers = Vec::new();
+        let mut first = self.nozzle.y_start;
+        let mut sense = if self.winding.direction == "-y" {
+            -1.0
+        } else {
+            1.0
+        };
+        for number in 0..self.winding.layers as u32 {
+            let between_flanges = number % 2 == 1 && !has_half;
+            let turns = turns - u32::from(between_flanges);
+            if turns == 0 {
+                break;
+            }
+            let last = first + sense * f64::from(turns - 1) * pitch;
+            layers.push(Layer {
+                first,
+                last,
+                turns,
+                sense,
+            });
+            let on = if number % 2 == 0 && !has_half {
+                -0.5
+            } else {
+                0.5
+            };
+            first = last + on * pitch * sense;
+            sense = -sense;
+        }
+        Layers { layers, pitch }
+    }
+
+    /// Straight in its place for most of a turn, a step to the next in the rest.
+    ///
+    /// The step ends at the clamp's angle, where the next turn begins.
+    fn orthocyclic(&self, Layers { layers, pitch }: &Layers) -> NozzleLaw {
+        let places: Vec<f64> = layers
+            .iter()
+            .flat_map(|layer| {
+                let lead = self.traverse.lead;
+                let place =
+                    move |turn| layer.first + layer.sense * (f64::from(turn) * pitch + lead);
+                (0..layer.turns).map(place)
+            })
+            .collect();
+        let mut points = vec![[0.0, places[0]]];
+        for (turn, pair) in places.windows(2).enumerate() {
+            let end = (turn + 1) as f64;
+            points.push([end - self.traverse.crossover / TAU, pair[0]]);
+            points.push([end, pair[1]]);
+        }
+        points.push([places.len() as f64, places[places.len() - 1]]);
+        NozzleLaw::through(&points)
+    }
+
+    /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there.
+    fn helical(&self, Layers { layers, pitch }: &Layers) -> NozzleLaw {
+        let (lead, dwell) = (self.traverse.lead, self.traverse.dwell_turns);
+        let mut points = vec![[0.0, layers[0].first + layers[0].sense * lead]];
+        let mut go_to = |y: f64, least: f64| {
+            let [turns, before] = points[points.len() - 1];
+            let turned = ((y - before).abs() / pitch).max(least);
+            if turned > 0.0 {
+                points.push([turns + turned, y]);
+            }
+        };
+        for (number, layer) in layers.iter().enumerate() {
+            let lead = layer.sense * lead;
+            go_to(layer.last + lead, 0.0);
+            match layers.get(number + 1) {
+                Some(next) => {
+                    go_to(next.first + lead, 0.0);
+                    go_to(next.first + lead, dwell);
+                    go_to(next.first - lead, 0.0);
+                }
+                // the last turn has to be laid as well
+                None => go_to(layer.last + lead, 1.0),
+            }
+        }
+        NozzleLaw::through(&points)
+    }
+
+    /// The coil has to stay clear of the nozzle in every layer.
+    fn check_coil(&self, layers: &Layers, d: f64, extent: &Extent, problems: &mut Problems) {
+        // where wire crosses wire a layer is a diameter high
+        let top = |number: usize| extent.winding_radius + number as f64 * d;
+        let count = layers.layers.len();
+        if top(count) + d >= self.nozzle.distance {
+            let meets = (1..=count).find(|&number| top(number) + d >= self.nozzle.distance);
+            problems.add(self.impossible(
+                "nozzle.distance",
+                format!(
+                    "the coil meets the nozzle in layer {}",
+                    meets.unwrap_or(count)
+                ),
+                format!(
+                    "more than {} m, or fewer winding.layers",
+                    si(top(count) + d)
+                ),
+            ));
+        }
+    }
+
+    /// A layered way stays in the window; the nozzle may lead beyond it.
+    fn check_way(&self, law: &NozzleLaw, d: f64, extent: &Extent, problems: &mut Problems) {
+        let (low, high) = match extent.window {
+            Some(width) => (-0.5 * width, 0.5 * width),
+            None => (extent.y_min, extent.y_max),
+        };
+        let lead = self.traverse.lead.abs() + ROUNDING * (high - low);
+        let [least, largest] = law.range();
+        let ends = [low + 0.5 * d - lead, high - 0.5 * d + lead];
+        if least >= ends[0] && largest <= ends[1] {
+            return;
+        }
+        let what = match extent.window {
+            Some(_) => "a flange",
+            None => "an end of the core",
+        };
+        let reason = format!(
+            "the nozzle goes from {} to {} m, past {what}",
+            si(least),
+            si(largest)
+        );
+        let room = (ends[1] - ends[0]) - (largest - least);
+        let start = law.start();
+        let allowed = match room >= 0.0 {
+            true => format!(
+                "{} to {} m",
+                si(ends[0] + (start - least)),
+                si(ends[1] - (largest - start))
+            ),
+            false => format!("a way of {} m at most", si(ends[1] - ends[0])),
+        };
+        let key = match (self.traverse.mode.as_str(), room >= 0.0) {
+            ("table", _) => "traverse.file",
+            (_, true) => "nozzle.y_start",
+            (_, false) => "winding.turns_per_layer",
+        };
+        problems.add(self.impossible(key, reason, allowed));
+    }
+
+    /// The law in the file of a table: a column of angles, `angle_deg`, `angle_rad` or `turns`, from 0 on and rising, and one of
+    /// nozzle positions, `y_mm` or `y_m`.
+    fn law_of_table(&self) -> Result<NozzleLaw, SceneError> {
+        let problem = |reason: String| {
+            self.impossible(
+                "traverse.file",
+                reason,
+                "a CSV file, relative to the scene file, with the columns angle_deg (or angle_rad, turns) and y_mm (or y_m)",
+            )
+        };
+        if self.traverse.file.is_empty() {
+            return Err(problem("traverse.mode = table needs a file".to_owned()));
+        }
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .comment(Some(b'#'))
+            .from_path(Path::new(&self.traverse.file))
+            .map_err(|e| problem(format!("the table cannot be opened ({e})")))?;
+        let header = reader
+            .headers()
+            .map_err(|e| problem(e.to_string()))?
+            .clone();
+        let columns = [
+            column(&header, "angle", "rad").or_else(|| {
+                let turns = header.iter().position(|name| name == "turns")?;
+                Some((turns, Scale::Tens(0)))
+            }),
+            column(&header, "y", "m"),
+        ];
+        let [Some(angle), Some(y)] = columns else {
+            let found: Vec<&str> = header.iter().collect();
+            return Err(problem(format!("its columns are {}", found.join(", "))));
+        };
+        let per_turn = match header.iter().any(|name| name == "turns") {
+            true => 1.0,
+            false => TAU,
+        };
+        let mut points: Vec<[f64; 2]> = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(|e| problem(e.to_string()))?;
+            let line = record.position().map_or(0, csv::Position::line);
+            let cell = |(index, scale): (usize, Scale)| {
+                let text = record.get(index).unwrap_or_default();
+                let number: Option<f64> = text.parse().ok().filter(|x: &f64| x.is_finite());
+                let number =
+                    number.ok_or_else(|| problem(format!("line {line}: {text:?} is no number")))?;
+                Ok(scaled(number, scale))
+            };
+            let point = [cell(angle)? / per_turn, cell(y)?];
+            match points.last() {
+                None if point[0] != 0.0 => {
+                    return Err(problem(format!("line {line}: the first angle is not 0")));
+                }
+                Some(last) if point[0] <= last[0] => {
+                    return Err(problem(format!(
+                        "line {line}: the angle does not rise, {} turns after {}",
+                        si(point[0]),
+                        si(last[0])
+                    )));
+                }
+                _ => points.push([point[0], point[1] + self.traverse.lead]),
+            }
+        }
+        if points.len() < 2 {
+            return Err(problem("the table has less than two rows".to_owned()));
+        }
+        Ok(NozzleLaw::through(&points))
+    }
+}
+
+/// The column of a quantity, with its unit in the name or none where it is SI, and how its numbers become SI.
+fn column(header: &csv::StringRecord, stem: &str, unit: &str) -> Option<(usize, Scale)> {
+    header.iter().enumerate().find_map(|(index, name)| {
+        if name == stem {
+            return Some((index, Scale::Tens(0)));
+        }
+        let (found, of, scale) = split_suffix(name)?;
+        (found == stem && of == unit).then_some((index, scale))
+    })
+}
