@@ -250,6 +250,19 @@ table! {
     output(127, fill_factor, "1", "", 0.0, 10.0, 1.0, "wire section over the winding section it takes up, settled wire");
     output(128, wire_strain, "1", "", -10.0, 10.0, 1e-2, "largest plastic stretch of the last settled turn");
 
+    count(Output, 129, defect_count_bulge, "bulges found so far");
+    count(Output, 130, defect_count_gap, "gaps found so far");
+    count(Output, 131, defect_count_overlap, "overlaps found so far");
+    count(Output, 132, defect_count_break, "breaks so far");
+    count(Output, 133, defect_count_slack, "how often the wire went slack so far");
+    count(Output, 134, defect_kind, "kind of the last defect, as in defect_code; 0: none so far");
+    output(135, defect_time, "s", "", -1e9, 1e9, 1.0, "time of the last defect since the start of the run");
+    output(136, defect_size, "m", "mm", -10.0, 10.0, 1e-4, "size of the last bulge, gap or overlap where it was found; 0 for a break and for slack");
+    output(137, tensioner_position, "m", "mm", -1e6, 1e6, 0.1, "wire let go by the tensioner since the start");
+    output(138, tensioner_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire at the tensioner");
+    output(139, nozzle_angle, "rad", "deg", -1.6, 1.6, 0.1, "angle at the nozzle between the free span and the plane across the axis; positive towards larger y");
+    output(140, wire_length, "m", "", 0.0, 1e6, 1.0, "wire from the clamp to where it meets the coil, unstretched");
+
     local(200, solver_steps, "1", "", 0.0, 1e18, 1e5, "time steps taken");
     local(201, solver_rejects, "1", "", 0.0, 1e18, 1.0, "time steps rejected");
     count(Local, 202, live_nodes, "nodes still computed");
