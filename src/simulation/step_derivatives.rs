@@ -11,6 +11,8 @@ use crate::signals::{Inputs, Outputs};
 
 /// Change of the core's angle over the step that a difference is taken over, rad, ...
 const TURN: f64 = 3e-5;
+/// ... as a share of the speed where that is less, but no less than a tenth, ...
+const SPEED: f64 = 0.01;
 /// ... of the nozzle's position, m, for wire of 0.7 mm, ...
 const WAY: f64 = 1e-6;
 /// ... and of the set tension, as a share of it.
@@ -85,8 +87,10 @@ type Smooth = [f64; Outputs::SMOOTH.len()];
 fn reach(scene: &Scene, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
     let diameter = scene.wire.diameter;
     let least = scaled(scaled(LEAST_PULL, diameter), diameter);
+    let turn = TURN / dt;
+    let share = (SPEED * inputs.spindle_speed.abs()).max(0.1 * turn);
     let most = [
-        (along.spindle_speed, TURN / dt),
+        (along.spindle_speed, turn.min(share)),
         (along.nozzle_position, scaled(WAY, diameter)),
         (
             along.tension_setpoint,
