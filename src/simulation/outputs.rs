@@ -18,7 +18,7 @@ impl Simulation {
             .max(0.0)
     }
 
-    /// Begins extremes and flags of a communication step anew, with what holds now.
+    /// Starts the extremes and flags of a communication step with what holds now.
     pub(super) fn reset_extremes(&mut self) {
         let t = if self.run.broken {
             0.0

@@ -21,20 +21,16 @@ impl Simulation {
         self.run.rates.fed_length = o.feed_speed;
         // More wire laid than was fed: a stretch landed at once, which says nothing about the next step.
         let laid = (o.wire_length - before.wire_length).abs();
-        if laid > LANDED * (o.fed_length - before.fed_length).abs() {
-            return;
+        if laid <= LANDED * (o.fed_length - before.fed_length).abs() {
+            self.run.rates.free_length = (o.free_length - before.free_length) / dt;
         }
-        self.run.rates.turns_wound = (o.turns_wound - before.turns_wound) / dt;
-        self.run.rates.free_length = (o.free_length - before.free_length) / dt;
-        self.run.rates.layon_position = (o.layon_position - before.layon_position) / dt;
-        self.run.rates.layon_angle = (o.layon_angle - before.layon_angle) / dt;
     }
 
     /// Returns the first time derivatives of the outputs at the last communication point, per s.
     ///
     /// - `spindle_angle` and `fed_length`: the speeds themselves.
-    /// - `free_length`, `layon_*`, `turns_wound`: the change over the communication step; 0 where a stretch of wire
-    ///   landed in it.
+    /// - `free_length`: the change over the communication step; 0 where a stretch of wire landed in it.
+    /// - `layon_*`, `turns_wound`: 0. Wire swings about a corner and lands on the next, so that these go in jumps.
     /// - `wire_tension`, `spindle_torque`, `feed_speed`: 0. The free span rings at a period of a millisecond, so that
     ///   a slope of now misses the next communication point by more than the value held.
     /// - All others: 0, because they change only when wire comes to rest.

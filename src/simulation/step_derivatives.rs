@@ -19,8 +19,8 @@ const WAY: f64 = 1e-6;
 const PULL: f64 = 3e-3;
 /// Least change of the set tension, N, for wire of 0.7 mm.
 const LEAST_PULL: f64 = 1e-3;
-/// Sizes of a difference over those above. A landing, or a step of the solver more or less, makes one of them jump; the
-/// middle of the three slopes is then another one. Chosen.
+/// Sizes of a difference over those above. A landing, or a step of the solver more or less, makes some of them jump; the
+/// middle of the slopes is then another one. Chosen.
 const SIZES: [f64; 3] = [0.3, 1.0, 3.0];
 
 impl Simulation {
@@ -117,7 +117,7 @@ fn slope(outcome: &impl Fn(f64) -> Result<Outputs, SimError>, by: f64) -> Result
     }
 }
 
-/// The middle of up to three slopes, output by output; of two, the mean.
+/// The middle of the slopes, output by output; of an even number, the mean of the middle two.
 fn middle(slopes: &[Smooth]) -> Smooth {
     std::array::from_fn(|k| {
         let mut values: Vec<f64> = slopes.iter().map(|slope| slope[k]).collect();
