@@ -293,7 +293,7 @@ table! {
     fixed(1103, "core.length_y", core.length_y, "m", "mm", 1e-4, 10.0, 1e-2, "rounded box and cylinder: full length along the axis");
     fixed(1104, "core.corner_radius", core.corner_radius, "m", "mm", 0.0, 1.0, 1e-3, "rounded box: radius of the four long edges");
     fixed(1105, "core.radius", core.radius, "m", "mm", 5e-5, 1.0, 1e-2, "cylinder: radius");
-    text(1106, "core.file", (core.file), [], "mesh: STL file, relative to the scene file; axis along y");
+    text(1106, "core.file", (core.file), [], "mesh: STL file, relative to the scene file, set in the FMU relative to its resources or as given; axis along y");
     text(1107, "core.unit", (core.unit), ["m", "mm", "um", "inch"], "mesh: unit of the STL file");
 
     fixed(1200, "nozzle.distance", nozzle.distance, "m", "mm", 1e-3, 10.0, 0.1, "nozzle exit from the core axis, on +x");
