@@ -94,6 +94,31 @@ pub struct Outputs {
     pub fill_factor: f64,
     /// largest plastic stretch of the last settled turn
     pub wire_strain: f64,
+    /// bulges found so far
+    pub defect_count_bulge: i32,
+    /// gaps found so far
+    pub defect_count_gap: i32,
+    /// overlaps found so far
+    pub defect_count_overlap: i32,
+    /// breaks so far
+    pub defect_count_break: i32,
+    /// how often the wire went slack so far
+    pub defect_count_slack: i32,
+    /// kind of the last defect, as in `defect_code`; 0: none so far
+    pub defect_kind: i32,
+    /// time of the last defect since the start of the run, s
+    pub defect_time: f64,
+    /// size of the last bulge, gap or overlap where it was found, m; 0 for a break and for slack
+    pub defect_size: f64,
+    /// wire let go by the tensioner since the start, m
+    pub tensioner_position: f64,
+    /// speed of the wire at the tensioner, m/s
+    pub tensioner_speed: f64,
+    /// angle at the nozzle between the free span and the plane across the core's axis, rad; positive: the wire goes to
+    /// larger y than the nozzle's
+    pub nozzle_angle: f64,
+    /// wire from the clamp to where it meets the coil, unstretched, m
+    pub wire_length: f64,
     /// time steps taken
     pub solver_steps: f64,
     /// time steps rejected
@@ -104,6 +129,32 @@ pub struct Outputs {
     pub penetration_max: f64,
     /// error of the energy balance since the start, J
     pub energy_residual: f64,
+}
+
+/// The outputs that follow the inputs of a communication step smoothly, wherever no wire lands and none comes to rest in it.
+macro_rules! smooth {
+    ($($field:ident),* $(,)?) => {
+        impl Outputs {
+            /// Names of the outputs that have derivatives by the inputs of the last communication step.
+            pub const SMOOTH: &'static [&'static str] = &[$(stringify!($field)),*];
+
+            /// Values of [`Self::SMOOTH`], in its order and in the units of the outputs.
+            pub(crate) fn smooth(&self) -> [f64; Self::SMOOTH.len()] {
+                [$(self.$field),*]
+            }
+
+            /// Outputs with these values of [`Self::SMOOTH`]; all others are 0.
+            pub(crate) fn of_smooth([$($field),*]: [f64; Self::SMOOTH.len()]) -> Self {
+                Self { $($field,)* ..Self::default() }
+            }
+        }
+    };
+}
+
+smooth! {
+    wire_tension, wire_tension_min, wire_tension_max, turns_wound, spindle_angle, spindle_torque,
+    feed_speed, fed_length, free_length, layon_position, layon_angle, tensioner_position,
+    tensioner_speed, nozzle_angle,
 }
 
 /// What kind of thing happened.

@@ -91,6 +91,14 @@ pub(crate) enum Error {
     /// A parameter is not valid, or the scene made of all of them is not.
     #[error("{0}")]
     Scene(Box<SceneError>),
+    /// The file of a mesh is in none of the places where it may be.
+    #[error("core.file = {file} is not there; looked in {places}")]
+    NoMesh {
+        /// The importer's name of the file.
+        file: String,
+        /// The folders that were looked in, in words.
+        places: String,
+    },
     /// The scene has no valid start.
     #[error("start: {0}")]
     Start(SimError),
@@ -147,9 +155,15 @@ pub(crate) enum Error {
         /// What is available instead.
         reason: &'static str,
     },
-    /// The step that the directional derivatives belong to has no solution.
+    /// No step near the one that the directional derivatives belong to has a solution.
     #[error("directional derivative: {0}")]
     NoTangent(SimError),
+    /// Directional derivatives are those of the last step, which failed.
+    #[error(
+        "directional derivatives are those of the last communication step, and that failed; \
+         set a saved state or call fmi2Reset"
+    )]
+    NoLastStep,
     /// The importer's derivative is not finite.
     #[error("derivative of {name} = {value} is not a finite number")]
     DerivativeNotFinite {

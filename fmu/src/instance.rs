@@ -1,8 +1,9 @@
 //! One instance of the FMU in safe Rust.
 //!
 //! This file holds what an instance consists of. What the FMI functions do to it stands in
-//! `phases`, `values`, `step`, `derivatives` and `restore`.
+//! `phases`, `values`, `step`, `demonstration`, `derivatives` and `restore`.
 
+mod demonstration;
 mod derivatives;
 mod files;
 mod phases;
@@ -20,6 +21,7 @@ use crate::message::Message;
 use crate::parameters::Parameters;
 use crate::resources;
 use coilwind_model_description::guid;
+pub(crate) use run::LastStep;
 use run::{InputValues, Run};
 use std::ffi::CString;
 use std::path::PathBuf;
@@ -42,6 +44,8 @@ pub(crate) struct Instance {
     start_inputs: InputValues,
     /// Derivatives of inputs that the importer set before the start, per s.
     start_rates: InputValues,
+    /// Whether the FMU demonstrates the scene's motion; decided where the start ends.
+    demonstrates: bool,
     /// The simulation. Initialization mode makes it when a value of it is first needed, and drops
     /// it when a variable is set there.
     ///
@@ -97,6 +101,7 @@ impl Instance {
             parameters: Parameters::new(),
             start_inputs: InputValues::new(),
             start_rates: InputValues::new(),
+            demonstrates: false,
             run: None,
             strings: Vec::new(),
             filter: Filter::new(identity.logging_on),
@@ -170,6 +175,8 @@ impl Instance {
         let run = match self.run.take() {
             Some(run) => run,
             None => {
+                self.parameters
+                    .find_mesh(self.identity.resources.as_deref())?;
                 let (scene, warnings) = self.parameters.scene()?;
                 let inputs = self.parameters.start_inputs();
                 let run = Run::start(&scene, inputs, &self.start_inputs, &self.start_rates)?;

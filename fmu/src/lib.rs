@@ -40,6 +40,8 @@ mod guard;
 mod instance;
 mod lifecycle;
 mod logger;
+#[cfg(test)]
+mod masters;
 mod message;
 mod parameters;
 mod pointers;

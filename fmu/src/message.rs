@@ -14,8 +14,8 @@ pub(crate) struct Message {
 }
 
 impl Message {
-    /// Returns the message about an event of the simulation.
-    pub(crate) fn of_event(event: &Event) -> Self {
+    /// Returns the message about an event of a simulation that began at `start`, s of the experiment.
+    pub(crate) fn of_event(event: &Event, start: f64) -> Self {
         let (status, category) = match event.kind {
             EventKind::Turn | EventKind::Defect | EventKind::Note => (Status::Ok, Category::Events),
             // The wire is still computed, but a machine would have stopped.
@@ -26,7 +26,11 @@ impl Message {
         Self {
             status,
             category,
-            text: event.to_string(),
+            text: Event {
+                time: start + event.time,
+                ..event.clone()
+            }
+            .to_string(),
         }
     }
 

@@ -2,8 +2,9 @@
 
 use crate::error::Error;
 use crate::resources;
+use coilwind::measure::DefectLimits;
 use coilwind::scene::{Scene, Warning};
-use coilwind::settings::SceneSettings;
+use coilwind::settings::{Friction, Origin, SceneSettings};
 use coilwind::signals::Inputs;
 use coilwind::variables::{Access, Value, Variable, by_reference};
 use std::collections::BTreeMap;
@@ -11,6 +12,8 @@ use std::path::Path;
 
 /// Name of the parameter that names the scene under all others.
 const SCENE_FILE: &str = "scene.file";
+/// Name of the parameter that names the surface of a core.
+const MESH_FILE: &str = "core.file";
 
 /// What a saved state holds of parameters: `scene.file`, the scene that it held, and what was set
 /// explicitly, by value reference.
@@ -38,20 +41,18 @@ impl Parameters {
         (self.file.clone(), self.base.clone(), self.explicit.clone())
     }
 
-    /// Returns the parameters of a saved state. The scene is the one that `scene.file` held when
-    /// it was read; the file itself is not read again.
+    /// Returns the parameters of a saved state, for an FMU that is unpacked with its `resources` there. The scene is
+    /// the one that `scene.file` held when it was read; the file itself is not read again.
     ///
     /// # Errors
     ///
     /// If a reference is unknown or a value is not valid.
-    pub(crate) fn restored(saved: SavedParameters) -> Result<Self, Error> {
+    pub(crate) fn restored(
+        saved: SavedParameters,
+        resources: Option<&Path>,
+    ) -> Result<Self, Error> {
         let (file, base, explicit) = saved;
-        let mut settings = base.clone();
-        for (reference, value) in &explicit {
-            let reference = *reference;
-            let variable = by_reference(reference).ok_or(Error::UnknownReference { reference })?;
-            settings.set(variable.name, value.clone())?;
-        }
+        let settings = laid_over(&base, &explicit, resources)?;
         Ok(Self {
             file,
             base,
@@ -95,12 +96,7 @@ impl Parameters {
         } else if next.file != self.file {
             next.base = SceneSettings::load(&resources::scene(&next.file, resources))?;
         }
-        next.settings = next.base.clone();
-        for (reference, value) in &next.explicit {
-            if let Some(variable) = by_reference(*reference) {
-                next.settings.set(variable.name, value.clone())?;
-            }
-        }
+        next.settings = laid_over(&next.base, &next.explicit, resources)?;
         Ok(next)
     }
 
@@ -110,7 +106,10 @@ impl Parameters {
             Access::Parameter { .. } if variable.name == SCENE_FILE => {
                 Some(Value::String(self.file.clone()))
             }
-            Access::Parameter { get, .. } => Some(get(&self.settings)),
+            Access::Parameter { get, .. } => match self.explicit.get(&variable.reference) {
+                Some(value) => Some(value.clone()),
+                None => Some(get(&self.settings)),
+            },
             Access::Input { .. } | Access::Output(_) => None,
         }
     }
@@ -118,6 +117,86 @@ impl Parameters {
     /// Returns every setting of the scene, the explicit ones laid over.
     pub(crate) fn settings(&self) -> &SceneSettings {
         &self.settings
+    }
+
+    /// Returns the parameters that may change between steps: friction and limits of defects.
+    pub(crate) fn tunable(&self) -> (Friction, DefectLimits) {
+        (self.settings.friction, self.settings.defects)
+    }
+
+    /// Returns what was set explicitly, by value reference, apart from `scene.file`.
+    pub(crate) fn explicit(&self) -> impl Iterator<Item = (u32, &Value)> {
+        self.explicit
+            .iter()
+            .map(|(reference, value)| (*reference, value))
+    }
+
+    /// Tells whether `scene.file` is empty.
+    pub(crate) fn names_no_scene(&self) -> bool {
+        self.file.is_empty()
+    }
+
+    /// Returns a text for every parameter that was set to another value than the scene file gives it.
+    ///
+    /// Importers that write every start value overrule the file without meaning to.
+    pub(crate) fn contradictions(&self) -> Vec<String> {
+        let differing = self.explicit.iter().filter_map(|(reference, value)| {
+            let variable = by_reference(*reference)?;
+            let Access::Parameter { get, .. } = variable.access else {
+                return None;
+            };
+            let Origin::File { file, .. } = self.base.origin(variable.name) else {
+                return None;
+            };
+            let scene = get(&self.base);
+            let (name, unit) = (variable.name, unit_of(variable));
+            (scene != *value).then(|| {
+                format!(
+                    "{name} = {value}{unit} was set and holds; scene.file {file} has {scene}{unit}"
+                )
+            })
+        });
+        differing.collect()
+    }
+
+    /// Returns a text if a `value` of an input at the start is another than the scene's parameter for it.
+    pub(crate) fn contradiction_of_input(&self, input: &Variable, value: f64) -> Option<String> {
+        let scene = match input.access {
+            Access::Input { get, .. } => get(&self.settings.start_inputs()),
+            _ => return None,
+        };
+        let parameter = match input.name {
+            "tension_setpoint" => "tensioner.tension",
+            "nozzle_position" => "nozzle.y_start",
+            _ => return None,
+        };
+        let given = self.settings.origin(parameter) != Origin::Default;
+        let (name, unit) = (input.name, unit_of(input));
+        (given && value != scene).then(|| {
+            format!("{name} = {value}{unit} was set and holds; the scene starts it at {scene}{unit}, by {parameter}")
+        })
+    }
+
+    /// Checks that the file of a mesh is there, among the resources or where it is given.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::NoMesh`] with the places that were looked in.
+    pub(crate) fn find_mesh(&self, resources: Option<&Path>) -> Result<(), Error> {
+        let core = &self.settings.core;
+        if core.shape != "mesh" || core.file.is_empty() || Path::new(&core.file).is_file() {
+            return Ok(());
+        }
+        let shown = |path: &Path| path.display().to_string();
+        let mut places = Vec::new();
+        if !Path::new(&core.file).is_absolute() {
+            places.extend(resources.map(shown));
+            places.extend(std::env::current_dir().ok().as_deref().map(shown));
+        }
+        Err(Error::NoMesh {
+            file: core.file.clone(),
+            places: places.join(" and in "),
+        })
     }
 
     /// Builds the scene of all parameters, with warnings about it.
@@ -132,5 +211,34 @@ impl Parameters {
     /// Returns the inputs of that scene at the start.
     pub(crate) fn start_inputs(&self) -> Inputs {
         self.settings.start_inputs()
+    }
+}
+
+/// Returns `base` with what was set explicitly. A mesh is taken from the FMU's resources where they have it.
+fn laid_over(
+    base: &SceneSettings,
+    explicit: &BTreeMap<u32, Value>,
+    resources: Option<&Path>,
+) -> Result<SceneSettings, Error> {
+    let mut settings = base.clone();
+    for (reference, value) in explicit {
+        let reference = *reference;
+        let variable = by_reference(reference).ok_or(Error::UnknownReference { reference })?;
+        let value = match value {
+            Value::String(file) if variable.name == MESH_FILE => {
+                Value::String(resources::mesh(file, resources))
+            }
+            value => value.clone(),
+        };
+        settings.set(variable.name, value)?;
+    }
+    Ok(settings)
+}
+
+/// Returns the unit of a variable with a space before it, or nothing where it has none.
+fn unit_of(variable: &Variable) -> String {
+    match variable.unit {
+        "" | "1" => String::new(),
+        unit => format!(" {unit}"),
     }
 }

@@ -35,9 +35,11 @@ impl Recording {
             move |source| RecordError::Folder { path, source }
         };
         std::fs::create_dir_all(&directory).map_err(folder(&directory))?;
+        // First what another run may hold, so that nothing of its is overwritten.
+        let history = History::create(&directory.join("history.csv"))?;
         std::fs::write(&scene, settings.to_toml()).map_err(folder(&scene))?;
         Ok(Self {
-            history: Some(History::create(&directory.join("history.csv"))?),
+            history: Some(history),
             directory,
             snapshot,
             computed: Duration::ZERO,

@@ -56,6 +56,16 @@ pub(crate) fn scene(name: &str, resources: Option<&Path>) -> String {
         .to_owned()
 }
 
+/// Returns what to load for a `core.file` of that name: the file of that name in `resources` if there is one, else the
+/// name itself.
+pub(crate) fn mesh(name: &str, resources: Option<&Path>) -> String {
+    resources
+        .map(|resources| resources.join(name))
+        .filter(|path| !name.is_empty() && path.is_file())
+        .and_then(|path| path.to_str().map(str::to_owned))
+        .unwrap_or_else(|| name.to_owned())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -51,7 +51,7 @@ fn bytes(snapshot: &Snapshot) -> Vec<u8> {
 }
 
 fn read(data: &[u8]) -> Result<Snapshot, Error> {
-    Snapshot::from_bytes(data, guid().expect("a description"))
+    Snapshot::from_bytes(data, guid().expect("a description"), None)
 }
 
 #[test]
@@ -129,8 +129,8 @@ fn other_bytes_are_refused_with_the_reason() {
     assert!(matches!(
         changed(8),
         BytesError::Version {
-            found: 3,
-            expected: 2
+            found: 2,
+            expected: 3
         }
     ));
     assert!(matches!(changed(20), BytesError::Guid { .. }));

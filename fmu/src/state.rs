@@ -16,6 +16,7 @@
 
 use crate::clock::Clock;
 use crate::error::{BytesError, Error};
+use crate::instance::LastStep;
 use crate::lifecycle::State;
 use crate::parameters::{Parameters, SavedParameters};
 use coilwind::output::Mark;
@@ -23,10 +24,12 @@ use coilwind::signals::Inputs;
 use coilwind::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"\x89CoilFMU";
 /// Version of the format. It changes whenever the bytes of the same state do.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Bytes of a GUID with its braces.
 const GUID: usize = 38;
 const HEADER: usize = 8 + 4 + GUID + 8 + 4;
@@ -41,6 +44,8 @@ pub(crate) struct Snapshot {
     pub(crate) start_inputs: BTreeMap<u32, f64>,
     /// Derivatives of inputs set before the start, per s, by value reference.
     pub(crate) start_rates: BTreeMap<u32, f64>,
+    /// Whether the FMU demonstrates the scene's motion, since nothing was set.
+    pub(crate) demonstrates: bool,
     pub(crate) run: Option<SavedRun>,
 }
 
@@ -50,6 +55,8 @@ pub(crate) struct SavedRun {
     pub(crate) simulation: Simulation,
     pub(crate) inputs: Inputs,
     pub(crate) rates: Inputs,
+    /// The last step as it began, if there was one.
+    pub(crate) last: Option<Arc<LastStep>>,
     /// Place in the history, if one is written.
     pub(crate) mark: Option<Mark>,
 }
@@ -62,7 +69,19 @@ struct Contents {
     parameters: SavedParameters,
     start_inputs: BTreeMap<u32, f64>,
     start_rates: BTreeMap<u32, f64>,
-    run: Option<(Vec<u8>, Inputs, Inputs, Option<Mark>)>,
+    demonstrates: bool,
+    run: Option<RunBytes>,
+}
+
+/// A [`SavedRun`] in the form that is encoded.
+#[derive(Serialize, Deserialize)]
+struct RunBytes {
+    simulation: Vec<u8>,
+    inputs: Inputs,
+    rates: Inputs,
+    /// The last step: the simulation as it began, inputs, their derivatives, length.
+    last: Option<(Vec<u8>, Inputs, Inputs, f64)>,
+    mark: Option<Mark>,
 }
 
 impl Snapshot {
@@ -74,8 +93,20 @@ impl Snapshot {
     pub(crate) fn to_bytes(&self, guid: &str) -> Result<Vec<u8>, Error> {
         let run = match &self.run {
             Some(run) => {
-                let simulation = run.simulation.to_bytes()?;
-                Some((simulation, run.inputs, run.rates, run.mark))
+                let last = match run.last.as_deref() {
+                    Some(last) => {
+                        let simulation = last.simulation.to_bytes()?;
+                        Some((simulation, last.inputs, last.rates, last.step))
+                    }
+                    None => None,
+                };
+                Some(RunBytes {
+                    simulation: run.simulation.to_bytes()?,
+                    inputs: run.inputs,
+                    rates: run.rates,
+                    last,
+                    mark: run.mark,
+                })
             }
             None => None,
         };
@@ -85,6 +116,7 @@ impl Snapshot {
             parameters: self.parameters.saved(),
             start_inputs: self.start_inputs.clone(),
             start_rates: self.start_rates.clone(),
+            demonstrates: self.demonstrates,
             run,
         })
         .map_err(BytesError::Code)?;
@@ -98,13 +130,17 @@ impl Snapshot {
         Ok(bytes)
     }
 
-    /// Returns the state of bytes that an FMU with this GUID wrote. [`Self::to_bytes`] is the
-    /// inverse.
+    /// Returns the state of bytes that an FMU with this GUID wrote, for one whose resources are unpacked in
+    /// `resources`. [`Self::to_bytes`] is the inverse.
     ///
     /// # Errors
     ///
     /// If the bytes are not a state of this FMU, or one that no instance is ever in.
-    pub(crate) fn from_bytes(bytes: &[u8], guid: &'static str) -> Result<Self, Error> {
+    pub(crate) fn from_bytes(
+        bytes: &[u8],
+        guid: &'static str,
+        resources: Option<&Path>,
+    ) -> Result<Self, Error> {
         let contents = open(bytes, guid)?;
         let (contents, rest) =
             postcard::take_from_bytes::<Contents>(contents).map_err(BytesError::Code)?;
@@ -118,15 +154,25 @@ impl Snapshot {
         if needs_run.contains(&contents.state) && contents.run.is_none() {
             return Err(BytesError::Impossible("it has steps behind it, but no wire").into());
         }
-        let parameters = Parameters::restored(contents.parameters)?;
+        let parameters = Parameters::restored(contents.parameters, resources)?;
         let run = match contents.run {
-            Some((simulation, inputs, rates, mark)) => {
+            Some(run) => {
                 let (scene, _) = parameters.scene()?;
+                let last = match run.last {
+                    Some((simulation, inputs, rates, step)) => Some(Arc::new(LastStep {
+                        simulation: Simulation::from_bytes(&scene, &simulation)?,
+                        inputs,
+                        rates,
+                        step,
+                    })),
+                    None => None,
+                };
                 Some(SavedRun {
-                    simulation: Simulation::from_bytes(&scene, &simulation)?,
-                    inputs,
-                    rates,
-                    mark,
+                    simulation: Simulation::from_bytes(&scene, &run.simulation)?,
+                    inputs: run.inputs,
+                    rates: run.rates,
+                    last,
+                    mark: run.mark,
                 })
             }
             None => None,
@@ -137,6 +183,7 @@ impl Snapshot {
             parameters,
             start_inputs: contents.start_inputs,
             start_rates: contents.start_rates,
+            demonstrates: contents.demonstrates,
             run,
         })
     }

@@ -3,7 +3,7 @@
 /// A category of log messages, which an importer can switch on by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
-    /// What happens to the wire: a turn laid, a layer closed, a defect found.
+    /// What happens to the wire: a turn has come to rest, a defect was found.
     Events,
     /// A call was served, and something about scene, wire, solver or files needs a look.
     Warning,
@@ -22,7 +22,7 @@ pub(crate) const CATEGORIES: [(Category, &str, &str); 6] = [
     (
         Category::Events,
         "logEvents",
-        "Turns laid, layers closed, defects found",
+        "Turns that have come to rest, defects found",
     ),
     (
         Category::Warning,

@@ -1,18 +1,22 @@
 //! `ModelStructure`: which variables are outputs and what they depend on.
 
 use crate::variables::variables;
+use coilwind::signals::Outputs;
 use coilwind::variables::{Causality, Variable};
 use quick_xml::Writer;
 use std::io;
 
 /// Writes the element `ModelStructure`.
 ///
-/// In step mode an output is a result of the last step. An input that is set at a communication
-/// point changes no output before the next step. `dependencies` is therefore empty, and importers
-/// need not look for algebraic loops through the FMU. At the start every output may follow from
-/// the inputs and from every parameter of the scene.
+/// In step mode an output is a result of the last step. The outputs that follow its inputs smoothly depend on them, as
+/// `fmi2GetDirectionalDerivative` says; the others change only when wire comes to rest and declare no dependency. At the
+/// start every output may follow from the inputs and from every parameter of the scene.
 pub(crate) fn write(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
     let outputs = indices(|variable| variable.causality == Causality::Output);
+    let smooth = indices(|variable| Outputs::SMOOTH.contains(&variable.name));
+    let inputs = indices(|variable| variable.causality == Causality::Input);
+    let by_inputs = join(&inputs, ToString::to_string);
+    let of_inputs = join(&inputs, |_| "dependent".to_owned());
     let knowns = indices(shapes_the_start);
     let dependencies = join(&knowns, ToString::to_string);
     let kinds = join(&knowns, |_| "dependent".to_owned());
@@ -23,7 +27,10 @@ pub(crate) fn write(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
                 .create_element("Outputs")
                 .write_inner_content(|writer| {
                     for index in &outputs {
-                        write_unknown(writer, *index, "", "")?;
+                        match smooth.contains(index) {
+                            true => write_unknown(writer, *index, &by_inputs, &of_inputs)?,
+                            false => write_unknown(writer, *index, "", "")?,
+                        }
                     }
                     Ok(())
                 })?;

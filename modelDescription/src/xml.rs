@@ -16,6 +16,9 @@ use std::io;
 /// Functions of a binary FMU 2.0 carry no prefix, so that their names do not contain it.
 pub(crate) const MODEL_IDENTIFIER: &str = "CoilWinding";
 
+/// End of the default experiment, s: an importer that only simulates sees the demonstration to its end.
+pub const DEFAULT_STOP_TIME: f64 = 0.2;
+
 /// What the FMU can do, as attributes of `CoSimulation`.
 ///
 /// They announce what the C boundary does. A flag becomes true in the same commit as the code
@@ -69,12 +72,13 @@ pub(crate) fn render(guid: &str) -> Result<String, DescriptionError> {
                 .write_empty()?;
             units::write(writer)?;
             write_categories(writer)?;
-            // Two turns at 30 rad/s take 0.42 s; a millisecond is 0.03 rad there.
+            // A millisecond is at most 0.1 rad of the demonstration.
+            let stop = number(DEFAULT_STOP_TIME);
             writer
                 .create_element("DefaultExperiment")
                 .with_attributes([
                     ("startTime", "0"),
-                    ("stopTime", "0.42"),
+                    ("stopTime", stop.as_str()),
                     ("stepSize", "0.001"),
                 ])
                 .write_empty()?;

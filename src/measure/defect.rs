@@ -73,6 +73,17 @@ impl DefectKind {
     /// Those measured on settled wire.
     pub(crate) const MEASURED: [Self; 3] = [Self::Bulge, Self::Gap, Self::Overlap];
 
+    /// Its bit in `defect_code`.
+    pub fn code(self) -> i32 {
+        match self {
+            Self::Bulge => 1,
+            Self::Gap => 2,
+            Self::Overlap => 4,
+            Self::Break => 8,
+            Self::Slack => 16,
+        }
+    }
+
     /// The word for it, as in `defects.csv`.
     pub fn as_str(self) -> &'static str {
         match self {
@@ -128,6 +139,10 @@ pub struct DefectFlags {
 /// Where a defect was found: the end of the first run long enough to count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DefectPlace {
+    /// what was found
+    pub kind: DefectKind,
+    /// bulge, gap or overlap depth there, m
+    pub size: f64,
     /// turn, from 1
     pub turn: u32,
     /// polar angle from the clamp within that turn, rad in 0..2 pi

@@ -38,7 +38,15 @@ impl Coil {
     /// Where the latest defect was found; `None` before the first.
     pub fn last_defect(&self) -> Option<DefectPlace> {
         let index = self.records.last()?.last_defect?;
+        let raised = self.records[index].raised;
+        let before = index
+            .checked_sub(1)
+            .map_or([0; 3], |k| self.records[k].raised);
+        let mut kinds = DefectKind::MEASURED.into_iter();
+        let kind = kinds.find(|kind| raised[*kind as usize] > before[*kind as usize])?;
         Some(DefectPlace {
+            kind,
+            size: self.defect_at(kind, index).size_m.unwrap_or(0.0),
             turn: (index / STATIONS_PER_TURN) as u32 + 1,
             angle: (index % STATIONS_PER_TURN) as f64 * super::STATION_STEP,
             time: self.records[index].station.time,
@@ -190,7 +198,8 @@ impl Coil {
             .unwrap_or(Verdict::Unsettled)
     }
 
-    fn raised(&self) -> [u32; 3] {
+    /// How many bulges, gaps and overlaps there are in the settled wire.
+    pub(crate) fn raised(&self) -> [u32; 3] {
         self.records.last().map_or([0; 3], |record| record.raised)
     }
 

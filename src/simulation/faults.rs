@@ -2,7 +2,7 @@
 
 use super::{SLACK, Simulation};
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
-use crate::measure::{Defect, DefectKind, TurnMeasures, Verdict};
+use crate::measure::{Defect, DefectKind, DefectPlace, TurnMeasures, Verdict};
 use crate::signals::EventKind;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -87,22 +87,25 @@ impl Simulation {
         )
     }
 
-    /// Turn and polar angle (rad) of the defect that was found last.
-    pub(super) fn last_defect(&self) -> Option<(u32, f64)> {
-        let fault = self.run.faults.last();
-        let fault = fault.map(|f| {
-            (
-                f.until_s.unwrap_or(f.time_s),
-                f.turn,
-                f.angle_deg.to_radians(),
-            )
+    /// The defect that was found last, at the place where it was found: that of settled wire, or slack or a break.
+    pub(super) fn last_defect(&self) -> Option<DefectPlace> {
+        let fault = self.run.faults.last().map(|fault| DefectPlace {
+            kind: fault.kind,
+            size: 0.0,
+            turn: fault.turn,
+            angle: fault.angle_deg.to_radians(),
+            time: fault.until_s.unwrap_or(fault.time_s),
         });
-        let laid = self.coil.last_defect().map(|d| (d.time, d.turn, d.angle));
-        let last = match (laid, fault) {
-            (Some(laid), Some(fault)) if laid.0 > fault.0 => Some(laid),
+        match (self.coil.last_defect(), fault) {
+            (Some(laid), Some(fault)) if laid.time > fault.time => Some(laid),
             (laid, fault) => fault.or(laid),
-        };
-        last.map(|(_, turn, angle)| (turn, angle))
+        }
+    }
+
+    /// How many times the wire failed in this way.
+    pub(super) fn faults_of(&self, kind: DefectKind) -> usize {
+        let faults = self.run.faults.iter();
+        faults.filter(|fault| fault.kind == kind).count()
     }
 
     /// Every defect so far, in the order of their times: those of settled wire, slack, and a break.

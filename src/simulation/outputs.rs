@@ -2,7 +2,7 @@
 
 use super::{Centreline, Simulation};
 use crate::math::{Spin, V3, turn_about_y};
-use crate::measure::{Coil, SettledNode};
+use crate::measure::{Coil, DefectKind, SettledNode};
 
 impl Simulation {
     pub(super) fn wire_tension(&self) -> f64 {
@@ -17,10 +17,37 @@ impl Simulation {
             .max(0.0)
     }
 
+    /// Starts the extremes and flags of a communication step with what holds now.
     pub(super) fn reset_extremes(&mut self) {
-        let t = self.wire_tension();
-        self.run.outputs.wire_tension_min = t;
-        self.run.outputs.wire_tension_max = t;
+        let t = if self.run.broken {
+            0.0
+        } else {
+            self.wire_tension()
+        };
+        let flags = self.coil.flags();
+        let o = &mut self.run.outputs;
+        (o.wire_tension_min, o.wire_tension_max) = (t, t);
+        (o.defect_bulge, o.defect_gap, o.defect_overlap) = (flags.bulge, flags.gap, flags.overlap);
+        o.defect_slack = self.run.was_slack;
+    }
+
+    /// Raises the flags of what is wrong now: one that falls again within the communication step is up at its end.
+    pub(super) fn raise_flags(&mut self) {
+        let flags = self.coil.flags();
+        let o = &mut self.run.outputs;
+        o.defect_bulge |= flags.bulge;
+        o.defect_gap |= flags.gap;
+        o.defect_overlap |= flags.overlap;
+        o.defect_slack |= self.run.was_slack;
+        let up = [
+            (DefectKind::Bulge, o.defect_bulge),
+            (DefectKind::Gap, o.defect_gap),
+            (DefectKind::Overlap, o.defect_overlap),
+            (DefectKind::Break, self.run.broken),
+            (DefectKind::Slack, o.defect_slack),
+        ];
+        let codes = up.iter().filter(|(_, up)| *up).map(|(kind, _)| kind.code());
+        o.defect_code = codes.sum();
     }
 
     /// The settled wire and, taken as if it were settled, the live wire up to lift-off.
@@ -81,56 +108,67 @@ impl Simulation {
             .unwrap_or(0)
     }
 
+    /// Angle at the nozzle between the free span and the plane across the axis, rad; positive towards larger y.
+    fn nozzle_angle(&self) -> f64 {
+        let x = &self.sys.state.rod.x;
+        let along = x[x.len() - 2] - x[x.len() - 1];
+        libm::atan2(along.y, along.x.hypot(along.z))
+    }
+
     pub(super) fn update_outputs(&mut self) {
         if self.run.broken && self.run.outputs.defect_break {
             return self.update_broken();
         }
-        let lift = self.lift_off();
-        let rod = &self.sys.state.rod;
-        let laid = self.wound_to(lift).0;
-        let free: f64 = (lift..rod.edges())
-            .map(|j| (rod.x[j + 1] - rod.x[j]).norm())
-            .sum();
+        self.raise_flags();
+        let layon = self.layon();
         let residual = self
             .sys
             .energy_residual(self.stepper.is_staggered().then_some(self.run.last_step));
         let feed = self.sys.state.feed.unwrap_or_default();
-        let flags = self.coil.flags();
         let worst = self.coil.worst();
         let tension = self.wire_tension();
         let count = self.coil.defect_count() as usize + self.run.faults.len();
         let last_defect = self.last_defect();
+        let raised = self.coil.raised();
+        let breaks = self.faults_of(DefectKind::Break);
+        let slacks = self.faults_of(DefectKind::Slack);
+        let nozzle_angle = self.nozzle_angle();
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
         o.wire_tension = tension;
-        o.defect_bulge = flags.bulge;
-        o.defect_gap = flags.gap;
-        o.defect_overlap = flags.overlap;
         o.defect_break = self.run.broken;
-        o.defect_slack = self.run.was_slack;
-        o.defect_code = i32::from(flags.bulge)
-            + 2 * i32::from(flags.gap)
-            + 4 * i32::from(flags.overlap)
-            + 8 * i32::from(self.run.broken)
-            + 16 * i32::from(self.run.was_slack);
         o.defect_count = count as i32;
-        if let Some((turn, angle)) = last_defect {
-            o.defect_turn = f64::from(turn);
-            o.defect_angle = angle;
+        [
+            o.defect_count_bulge,
+            o.defect_count_gap,
+            o.defect_count_overlap,
+        ] = raised.map(|count| count as i32);
+        o.defect_count_break = breaks as i32;
+        o.defect_count_slack = slacks as i32;
+        if let Some(last) = last_defect {
+            o.defect_kind = last.kind.code();
+            o.defect_turn = f64::from(last.turn);
+            o.defect_angle = last.angle;
+            o.defect_time = last.time;
+            o.defect_size = last.size;
         }
         o.bulge_height = worst.bulge_height;
         o.gap_width = worst.gap_width;
         o.overlap_depth = worst.overlap_depth;
-        o.turns_wound = laid.max(0.0) / std::f64::consts::TAU;
+        o.turns_wound = layon.angle.max(0.0) / std::f64::consts::TAU;
         o.turns_settled = self.coil.turns_settled();
         o.layer = self.coil.layer().max(1) as i32;
         o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
         o.spindle_torque = self.sys.state.torque_on_core;
         o.feed_speed = feed.rate;
         o.fed_length = feed.fed;
-        o.free_length = free;
-        o.layon_position = rod.x[lift].y;
-        o.layon_angle = laid;
+        o.free_length = layon.free_length;
+        o.layon_position = layon.position;
+        o.layon_angle = layon.angle;
+        o.tensioner_position = feed.paid - self.run.paid0;
+        o.tensioner_speed = feed.paid_rate;
+        o.nozzle_angle = nozzle_angle;
+        o.wire_length = layon.arc;
         o.coil_width = self.coil.coil_width();
         o.mean_pitch = self.coil.mean_pitch();
         o.fill_factor = self.coil.fill_factor();

@@ -6,19 +6,6 @@ use crate::measure::Defect;
 use crate::signals::{Event, Outputs};
 use serde::{Deserialize, Serialize};
 
-/// Outputs that change smoothly from one step of the method to the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Instant {
-    /// time of the wire, s
-    pub(super) time: f64,
-    /// tension at the nozzle, N
-    pub(super) tension: f64,
-    /// moment of the wire on the core about +y, N m
-    pub(super) torque: f64,
-    /// speed of the wire leaving the nozzle, m/s
-    pub(super) feed_speed: f64,
-}
-
 /// State of a run but for that of wire, coil and method; a saved state holds it as it is.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct RunState {
@@ -43,8 +30,6 @@ pub(super) struct RunState {
     pub(super) outputs: Outputs,
     /// per s, see [`super::Simulation::output_rates`]
     pub(super) rates: Outputs,
-    /// before the last step of the method
-    pub(super) instant: Instant,
     /// what happened since events were last taken
     pub(super) events: Vec<Event>,
     /// deepest penetration of wire when it came to rest, m
@@ -57,6 +42,8 @@ pub(super) struct RunState {
     pub(super) slack_at: Option<f64>,
     /// how long core, nozzle, tensioner and wire have been still, s
     pub(super) quiet: f64,
+    /// what the tensioner has let go at the start, m
+    pub(super) paid0: f64,
     /// farthest that the spindle has been from where it started, rad
     pub(super) farthest: f64,
     pub(super) traverse: Traverse,

@@ -4,7 +4,7 @@ use super::core_model::{core_flanges, core_shape, core_surface};
 use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_way::Traverse;
-use super::run_state::{Instant, RunState};
+use super::run_state::RunState;
 use super::{MotionProfile, SimError, Simulation};
 use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec, LineWire};
@@ -261,7 +261,6 @@ impl Simulation {
             work: 0,
             outputs: Outputs::default(),
             rates: Outputs::default(),
-            instant: Instant::default(),
             events: Vec::new(),
             rest_depth: 0.0,
             broken: false,
@@ -269,6 +268,7 @@ impl Simulation {
             faults: Vec::new(),
             slack_at: None,
             quiet: 0.0,
+            paid0: sys.state.feed.map_or(0.0, |feed| feed.paid),
             farthest: 0.0,
             traverse: Traverse::new(inputs.nozzle_position),
             yardstick_tension: yardstick_tension(scene, &inputs),

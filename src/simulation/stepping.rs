@@ -34,7 +34,6 @@ impl Simulation {
                 continue;
             }
             self.sys.guide_nozzle(drive, step);
-            self.run.instant = self.instant();
             self.sys.state.set_tension = self.sys.set_tension_after(step);
             self.step(step)?;
         }
@@ -51,7 +50,6 @@ impl Simulation {
             if let Some(course) = &course {
                 course.steer(&mut self.sys, left.min(self.stepper.next()));
             }
-            self.run.instant = self.instant();
             let taken = self.step(left.min(self.longest_return()))?;
             left = if taken >= left { 0.0 } else { left - taken };
             if self.run.broken {
@@ -108,6 +106,7 @@ impl Simulation {
         self.watch_tension();
         self.remesh(taken)?;
         self.follow_traverse();
+        self.raise_flags();
         if self.run.work > self.most_work {
             return Err(SimError {
                 time: self.sys.state.time,

@@ -265,6 +265,19 @@ table! {
     output(127, fill_factor, "1", "", 0.0, 10.0, 1.0, "wire section over the winding section it takes up, settled wire");
     output(128, wire_strain, "1", "", -10.0, 10.0, 1e-2, "largest plastic stretch of the last settled turn");
 
+    count(Output, 129, defect_count_bulge, "bulges found so far");
+    count(Output, 130, defect_count_gap, "gaps found so far");
+    count(Output, 131, defect_count_overlap, "overlaps found so far");
+    count(Output, 132, defect_count_break, "breaks so far");
+    count(Output, 133, defect_count_slack, "how often the wire went slack so far");
+    count(Output, 134, defect_kind, "kind of the last defect, as in defect_code; 0: none so far");
+    output(135, defect_time, "s", "", -1e9, 1e9, 1.0, "time of the last defect since the start of the run");
+    output(136, defect_size, "m", "mm", -10.0, 10.0, 1e-4, "size of the last bulge, gap or overlap where it was found; 0 for a break and for slack");
+    output(137, tensioner_position, "m", "mm", -1e6, 1e6, 0.1, "wire let go by the tensioner since the start");
+    output(138, tensioner_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire at the tensioner");
+    output(139, nozzle_angle, "rad", "deg", -1.6, 1.6, 0.1, "angle at the nozzle between the free span and the plane across the axis; positive towards larger y");
+    output(140, wire_length, "m", "", 0.0, 1e6, 1.0, "wire from the clamp to where it meets the coil, unstretched");
+
     local(200, solver_steps, "1", "", 0.0, 1e18, 1e5, "time steps taken");
     local(201, solver_rejects, "1", "", 0.0, 1e18, 1.0, "time steps rejected");
     count(Local, 202, live_nodes, "nodes still computed");
@@ -295,7 +308,7 @@ table! {
     fixed(1103, "core.length_y", core.length_y, "m", "mm", 1e-4, 10.0, 1e-2, "rounded box and cylinder: full length along the axis");
     fixed(1104, "core.corner_radius", core.corner_radius, "m", "mm", 0.0, 1.0, 1e-3, "rounded box: radius of the four long edges");
     fixed(1105, "core.radius", core.radius, "m", "mm", 5e-5, 1.0, 1e-2, "cylinder: radius");
-    text(1106, "core.file", (core.file), [], "mesh: STL file, relative to the scene file; axis along y");
+    text(1106, "core.file", (core.file), [], "mesh: STL file, relative to the scene file, set in the FMU relative to its resources or as given; axis along y");
     text(1107, "core.unit", (core.unit), ["m", "mm", "um", "inch"], "mesh: unit of the STL file");
     fixed(1108, "core.flange.inner_distance", core.flange.inner_distance, "m", "mm", 0.0, 10.0, 1e-2, "rounded box and cylinder: distance of the inner faces of two flanges; 0: no flanges");
     fixed(1109, "core.flange.height", core.flange.height, "m", "mm", 1e-5, 1.0, 1e-3, "how far the rim of the flanges stands above the core");

@@ -51,9 +51,11 @@ def test_slopes_are_those_of_the_outputs(slave):
     slave.fmu.doStep(40 * 1e-4, tiny)
     slopes = slave.fmu.getRealOutputDerivatives(references, [1] * len(names))
     after = [slave.get(name) for name in names]
-    # the solver makes one step of a step that short, so changes over either are the same
-    for name, slope, old, new in list(zip(names, slopes, before, after))[:7]:
-        assert slope == pytest.approx((new - old) / tiny, rel=1e-6, abs=1e-6), name
+    # the free span rings: held, these are predicted best
+    assert slopes[:3] == [0.0, 0.0, 0.0]
+    # the free span goes on as in the last step; where wire is laid goes in jumps
+    assert slopes[3] == pytest.approx((after[3] - before[3]) / tiny, rel=1e-6, abs=1e-6)
+    assert slopes[4:7] == [0.0, 0.0, 0.0]
     assert slopes[7:] == [slave.get("spindle_speed"), slave.get("feed_speed"), 0.0]
     state = slave.fmu.getFMUstate()
     slave.fmu.doStep(40 * 1e-4 + tiny, tiny)
@@ -87,40 +89,78 @@ OUTPUTS = [
 ]
 
 
-@pytest.mark.parametrize("steps", (20, 150))
-def test_directional_derivatives_against_saved_states(slave, steps):
-    """Every output by every input, and along a direction, against steps from the same state."""
-    size = 1e-5
-    # a step of the solver per communication step, solved so well that differences mean something
-    slave.start(scene__file="fig8", solver__step=size, solver__tolerance=1e-9)
+def wind(slave, steps, size):
     for k in range(steps):
         slave.set(spindle_speed=RATE * k * size)
         slave.fmu.doStep(k * size, size)
-    now = steps * size
-    base = {name: slave.get(name) for name in ("spindle_speed", "nozzle_position", "tension_setpoint")}
+
+
+SOLVED_WELL = {"solver__tolerance": 1e-9, "solver__step": 1e-5}
+"""Differences over short steps mean something only where the steps are solved far better than by default."""
+LAY_ON = {"free_length", "layon_position", "layon_angle", "turns_wound"}
+"""The place where wire is laid has a kink where it passes a node."""
+
+
+@pytest.mark.parametrize("steps, size, solver", ((20, 1e-5, SOLVED_WELL), (60, 5e-5, SOLVED_WELL), (6, 1e-3, {})))
+def test_directional_derivatives_are_those_of_the_last_step(slave, steps, size, solver):
+    """Every output by every input, and along a direction, against steps from the saved state before."""
+    slave.start(scene__file="fig8", **solver)
+    wind(slave, steps, size)
+    now, speed = steps * size, RATE * steps * size
+    base = {name: slave.get(name) for name in ("nozzle_position", "tension_setpoint")} | {"spindle_speed": speed}
     state = slave.fmu.getFMUstate()
 
     def after(changes):
         slave.fmu.setFMUstate(state)
-        slave.set(**{name: base[name] + by for name, by in changes.items()})
+        slave.set(**{name: base[name] + changes.get(name, 0.0) for name in base})
         slave.fmu.doStep(now, size)
         return [slave.get(name) for name in OUTPUTS]
 
     directions = [
-        {"spindle_speed": 0.05},
-        {"nozzle_position": 2e-7},
-        {"tension_setpoint": 0.05},
-        {"spindle_speed": 0.02, "nozzle_position": -1e-7, "tension_setpoint": 0.03},
+        {"spindle_speed": min(2e-5 / size, 0.02 * speed)},
+        {"nozzle_position": 5e-7},
+        {"tension_setpoint": 0.03},
+        {"spindle_speed": min(1e-5 / size, 0.01 * speed), "nozzle_position": -1e-7, "tension_setpoint": 0.03},
     ]
+    missed, count = [], 0
     for changes in directions:
-        slave.fmu.setFMUstate(state)
+        after({})
         known = slave.references(list(changes))
         got = slave.fmu.getDirectionalDerivative(slave.references(OUTPUTS), known, list(changes.values()))
         plus, minus = after(changes), after({name: -by for name, by in changes.items()})
         for name, slope, up, down in zip(OUTPUTS, got, plus, minus):
-            want = (up - down) / 2
-            assert slope == pytest.approx(want, rel=5e-3, abs=2e-9 * (1 + abs(up))), (name, changes)
+            count += 1
+            if slope != pytest.approx((up - down) / 2, rel=0.02, abs=1e-12 * (1 + abs(up))):
+                missed.append(name)
         assert got[-1] == 0.0
-        if changes.get("tension_setpoint", 0.0) > 0.0:
-            assert got[0] > 0.0
+        assert got[OUTPUTS.index("spindle_angle")] == pytest.approx(changes.get("spindle_speed", 0.0) * size, rel=1e-6, abs=1e-12)
+    assert len(missed) <= (0.15 if solver else 0.1) * count, missed
+    assert not solver or set(missed) <= LAY_ON, missed
     slave.fmu.freeFMUstate(state)
+
+
+def test_directional_derivatives_of_the_start(slave):
+    slave.fmu.setupExperiment()
+    slave.set(scene__file="fig8")
+    slave.fmu.enterInitializationMode()
+    unknowns = slave.references(["wire_tension", "wire_tension_min", "spindle_angle"])
+    for _ in range(2):
+        got = slave.fmu.getDirectionalDerivative(unknowns, slave.references(["tension_setpoint"]), [1.0])
+        assert got == pytest.approx([1.0, 1.0, 0.0])
+        slave.set(tension_setpoint=9.0)
+    slave.fmu.exitInitializationMode()
+
+
+def test_a_step_that_is_taken_has_derivatives(slave):
+    """Shaken tension at full speed, where one in a hundred was refused."""
+    slave.start(scene__file="fig8")
+    unknown, known = slave.references(["wire_tension"]), slave.references(["tension_setpoint"])
+    size = 1e-4
+    for k in range(200):
+        speed = min(500.0, 5e4 * k * size)
+        slave.set(spindle_speed=speed, tension_setpoint=15.0 + 3.0 * math.sin(0.7 * k))
+        slave.fmu.doStep(k * size, size)
+        if k % 4 == 0:
+            (slope,) = slave.fmu.getDirectionalDerivative(unknown, known, [1.0])
+            assert math.isfinite(slope)
+    assert not [entry for entry in slave.log if entry[1] == ERROR]

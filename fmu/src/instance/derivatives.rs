@@ -5,7 +5,8 @@ use super::run::write_input;
 use crate::error::Error;
 use crate::lifecycle::State;
 use crate::scalar::{find, wrong_type};
-use coilwind::signals::{Inputs, Outputs};
+use coilwind::signals::Inputs;
+use coilwind::simulation::Simulation;
 use coilwind::variables::{Access, Causality, Value};
 
 impl Instance {
@@ -39,6 +40,7 @@ impl Instance {
                 return Err(Error::DerivativeNotFinite { name, value });
             }
         }
+        self.demonstrates &= references.is_empty();
         for (reference, value) in references.iter().zip(values) {
             match self
                 .run
@@ -83,13 +85,13 @@ impl Instance {
         .collect()
     }
 
-    /// `fmi2GetDirectionalDerivative` over the solver's next step: the change of each unknown when
-    /// the knowns change by `changes`, in the units of the variables.
+    /// `fmi2GetDirectionalDerivative` over the last communication step: the change of each unknown at its end if
+    /// the knowns had been off by `changes` for all of the step, in the units of the variables. Before the first step the
+    /// knowns are the inputs of the start.
     ///
     /// # Errors
     ///
-    /// If an unknown is not a Real output, a known is not an input, a change is not finite, or the
-    /// solver's next step has no solution.
+    /// If an unknown is not a Real output, a known is not an input, a change is not finite, or the last step failed.
     pub(crate) fn directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -123,25 +125,28 @@ impl Instance {
         if asked.is_empty() || direction == Inputs::HELD {
             return Ok(vec![0.0; asked.len()]);
         }
+        let failed = self.state == State::StepFailed;
         let run = self.start()?;
-        let slopes = run.simulation.sensitivities(run.inputs);
-        let slopes = slopes.map_err(Error::NoTangent)?;
-        let along = [
-            direction.spindle_speed,
-            direction.nozzle_position,
-            direction.tension_setpoint,
-        ];
-        let of = |(variable, get): (_, fn(&Outputs) -> Value)| {
-            let mut sum = 0.0;
-            for (slope, change) in slopes.iter().zip(along) {
-                match get(slope) {
-                    Value::Real(x) => sum += x * change,
-                    _ => return Err(wrong_type::<f64>(variable)),
-                }
+        let simulation = &run.simulation;
+        let slopes = match &run.last {
+            Some(last) => {
+                let (inputs, rates) = (last.inputs, last.rates);
+                last.simulation
+                    .step_derivative(inputs, rates, last.step, direction)
             }
-            Ok(sum)
+            None if failed || simulation.time() > 0.0 => return Err(Error::NoLastStep),
+            None => {
+                Simulation::start_derivative(simulation.scene(), simulation.inputs(), direction)
+            }
         };
-        asked.into_iter().map(of).collect()
+        let slopes = slopes.map_err(Error::NoTangent)?;
+        asked
+            .into_iter()
+            .map(|(variable, get)| match get(&slopes) {
+                Value::Real(x) => Ok(x),
+                _ => Err(wrong_type::<f64>(variable)),
+            })
+            .collect()
     }
 }
 

@@ -4,7 +4,9 @@ use super::Instance;
 use crate::clock::Clock;
 use crate::error::Error;
 use crate::lifecycle::State;
+use crate::message::Message;
 use coilwind::output::Ending;
+use coilwind::variables::by_reference;
 
 impl Instance {
     /// `fmi2SetupExperiment`, times in s. A step controls its own error, so that the importer's
@@ -32,9 +34,22 @@ impl Instance {
     /// If the scene is not valid or has no valid start.
     pub(crate) fn exit_initialization_mode(&mut self) -> Result<(), Error> {
         self.start()?;
+        self.warn_of_contradictions();
+        self.begin_demonstration();
         self.record();
         self.state = State::StepComplete;
         Ok(())
+    }
+
+    /// Tells the importer where what it set is not what the scene says.
+    fn warn_of_contradictions(&mut self) {
+        let mut texts = self.parameters.contradictions();
+        for (reference, value) in &self.start_inputs {
+            let input = by_reference(*reference);
+            let text = input.and_then(|row| self.parameters.contradiction_of_input(row, *value));
+            texts.extend(text);
+        }
+        self.messages.extend(texts.iter().map(Message::warning));
     }
 
     /// `fmi2Terminate`. Never fails.

@@ -26,6 +26,7 @@ impl Instance {
                 simulation: run.simulation.clone(),
                 inputs: run.inputs,
                 rates: run.rates,
+                last: run.last.clone(),
                 mark,
             }
         });
@@ -36,6 +37,7 @@ impl Instance {
             parameters: self.parameters.clone(),
             start_inputs: self.start_inputs.clone(),
             start_rates: self.start_rates.clone(),
+            demonstrates: self.demonstrates,
             run,
         }
     }
@@ -56,6 +58,7 @@ impl Instance {
         self.parameters = saved.parameters;
         self.start_inputs = saved.start_inputs;
         self.start_rates = saved.start_rates;
+        self.demonstrates = saved.demonstrates;
         self.run = saved.run.map(|run| {
             let settings = self.parameters.settings();
             let recording = run.mark.and_then(|mark| {
@@ -76,6 +79,7 @@ impl Instance {
                 simulation: run.simulation,
                 inputs: run.inputs,
                 rates: run.rates,
+                last: run.last,
                 recording,
             })
         });
@@ -85,8 +89,9 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// If the state cannot be encoded.
+    /// If the state cannot be encoded, or parameters that were set contradict each other.
     pub(crate) fn bytes_of(&self, saved: &Snapshot) -> Result<Vec<u8>, Error> {
+        saved.parameters.scene()?;
         saved.to_bytes(guid()?)
     }
 
@@ -96,7 +101,7 @@ impl Instance {
     ///
     /// [`Error::Bytes`] or [`Error::State`] if the bytes are not a state of this FMU.
     pub(crate) fn snapshot_from(&self, bytes: &[u8]) -> Result<Snapshot, Error> {
-        Snapshot::from_bytes(bytes, guid()?)
+        Snapshot::from_bytes(bytes, guid()?, self.identity.resources.as_deref())
     }
 }
 

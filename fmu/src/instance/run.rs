@@ -7,9 +7,22 @@ use coilwind::signals::Inputs;
 use coilwind::simulation::Simulation;
 use coilwind::variables::{Access, Value, by_reference};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Values of inputs, or of their derivatives per s, by value reference.
 pub(super) type InputValues = BTreeMap<u32, f64>;
+
+/// The last communication step as it began, for derivatives of what it led to.
+#[derive(Clone, Debug)]
+pub(crate) struct LastStep {
+    pub(crate) simulation: Simulation,
+    /// Inputs at its start.
+    pub(crate) inputs: Inputs,
+    /// Their derivatives, per s.
+    pub(crate) rates: Inputs,
+    /// Its length, s.
+    pub(crate) step: f64,
+}
 
 /// A simulation with what the importer set since its last communication point.
 #[derive(Debug)]
@@ -19,6 +32,8 @@ pub(super) struct Run {
     pub(super) inputs: Inputs,
     /// Derivatives of the inputs in the next step, per s.
     pub(super) rates: Inputs,
+    /// The last step, if it went through. Saved states share it.
+    pub(super) last: Option<Arc<LastStep>>,
     /// Files of the run, from the first communication point on, where `output.directory` names a
     /// folder.
     pub(super) recording: Option<Recording>,
@@ -49,6 +64,7 @@ impl Run {
             simulation,
             inputs,
             rates: slopes,
+            last: None,
             recording: None,
         })
     }

@@ -1,6 +1,7 @@
 //! The communication step and its statuses.
 
 use super::Instance;
+use super::run::LastStep;
 use crate::error::Error;
 use crate::ffi::{LAST_SUCCESSFUL_TIME, STATUS_KINDS, TERMINATED};
 use crate::lifecycle::State;
@@ -9,6 +10,7 @@ use coilwind::output::Ending;
 use coilwind::signals::Inputs;
 use coilwind::simulation::SimError;
 use coilwind::variables::{Access, Value};
+use std::sync::Arc;
 use std::time::Instant;
 
 impl Instance {
@@ -20,8 +22,21 @@ impl Instance {
     /// [`Error::NotANumber`] leave the instance in the step-failed state.
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<(), Error> {
         let end = self.clock.end_of(point, step)?;
+        let offset = self.clock.experiment_time(0.0);
+        let demonstrates = self.demonstrates;
+        self.start()?.check_inputs(step)?;
+        self.retune()?;
         let run = self.start()?;
-        run.check_inputs(step)?;
+        if demonstrates {
+            run.demonstrate(step);
+        }
+        let last = LastStep {
+            simulation: run.simulation.clone(),
+            inputs: run.inputs,
+            rates: run.rates,
+            step,
+        };
+        run.last = None;
         let began = Instant::now();
         let result = run.simulation.advance_ramped(run.inputs, run.rates, step);
         if let Some(recording) = &mut run.recording {
@@ -29,8 +44,10 @@ impl Instance {
         }
         let events = run.simulation.drain_events();
         let simulated = run.simulation.time();
-        self.messages.extend(events.iter().map(Message::of_event));
-        if let Err(reason) = result {
+        let messages = events.iter().map(|event| Message::of_event(event, offset));
+        self.messages.extend(messages);
+        if let Err(mut reason) = result {
+            reason.time += offset;
             let reached = self.clock.experiment_time(simulated);
             return Err(self.fail(point, step, reached, reason));
         }
@@ -38,6 +55,7 @@ impl Instance {
         if let Some(run) = &mut self.run {
             run.inputs = run.inputs.after(&run.rates, step);
             run.rates = Inputs::HELD;
+            run.last = Some(Arc::new(last));
         }
         if let Err(error) = self.check_outputs(end) {
             let reason = error.to_string();

@@ -110,25 +110,39 @@ impl Instance {
         })
     }
 
-    /// Sets parameters. At a communication point the simulation takes over the tunable ones,
-    /// earlier it is built once more.
+    /// Sets parameters. At a communication point the next step takes over the tunable ones, since each of them
+    /// may come in a call of its own; earlier the simulation is built once more.
     fn set_parameters(&mut self, changes: &[Change]) -> Result<(), Error> {
         let parameters = self
             .parameters
             .with(changes, self.identity.resources.as_deref())?;
-        if self.state == State::StepComplete {
-            let (scene, _) = parameters.scene()?;
-            if let Some(run) = self.run.as_mut() {
-                run.simulation.retune(&scene);
-            }
-        } else {
+        if self.state != State::StepComplete {
             self.run = None;
         }
         self.parameters = parameters;
         Ok(())
     }
 
+    /// Lets the simulation take over tunable parameters that were set since the last step.
+    ///
+    /// # Errors
+    ///
+    /// If the parameters contradict each other.
+    pub(super) fn retune(&mut self) -> Result<(), Error> {
+        let Some(run) = self.run.as_mut() else {
+            return Ok(());
+        };
+        let (friction, defects) = self.parameters.tunable();
+        let scene = run.simulation.scene();
+        if scene.friction != friction || scene.defects != defects {
+            let (scene, _) = self.parameters.scene()?;
+            run.simulation.retune(&scene);
+        }
+        Ok(())
+    }
+
     fn set_inputs(&mut self, changes: &[Change]) {
+        self.demonstrates &= changes.is_empty();
         for (variable, value) in changes {
             let Value::Real(value) = value else { continue };
             match self

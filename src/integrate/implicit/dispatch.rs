@@ -2,7 +2,6 @@
 //!
 //! It is made once a step, here. Within a step everything is known to the compiler.
 
-use super::sensitivity::{INPUTS, OutputSensitivity};
 use super::unknowns::Unknowns;
 use super::work::Work;
 use super::{Implicit, StepError};
@@ -21,15 +20,6 @@ pub(super) trait AnyWork {
         sys: &mut System,
         most: f64,
     ) -> Result<f64, StepError>;
-
-    /// See [`Implicit::tangent`].
-    fn tangent(
-        &mut self,
-        method: &Implicit,
-        sys: &mut System,
-        h: f64,
-        lift: usize,
-    ) -> Result<(OutputSensitivity, [OutputSensitivity; INPUTS]), StepError>;
 
     /// See [`Implicit::equilibrate`]; returns the solver's steps.
     fn equilibrium(
@@ -63,16 +53,6 @@ impl<const D: usize, U: Unknowns<D>> AnyWork for Work<D, U> {
         most: f64,
     ) -> Result<f64, StepError> {
         method.step_with(self, sys, most)
-    }
-
-    fn tangent(
-        &mut self,
-        method: &Implicit,
-        sys: &mut System,
-        h: f64,
-        lift: usize,
-    ) -> Result<(OutputSensitivity, [OutputSensitivity; INPUTS]), StepError> {
-        method.tangent_with(self, sys, h, lift)
     }
 
     fn equilibrium(

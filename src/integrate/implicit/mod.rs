@@ -22,7 +22,6 @@ mod probe;
 mod ramp;
 mod rolls;
 mod scheme;
-mod sensitivity;
 mod statics;
 mod step;
 mod step_control;
@@ -32,7 +31,6 @@ mod work;
 
 pub use error::StepError;
 pub use scheme::Scheme;
-pub use sensitivity::OutputSensitivity;
 
 use places::Places;
 use places_and_rolls::PlacesAndRolls;

@@ -1,0 +1,104 @@
+//! What moves the machine where the importer sets nothing: a calm programme from the scene's own motion.
+//!
+//! An importer that only simulates shall see a coil. One that sets anything drives the machine itself.
+
+use super::Instance;
+use super::run::Run;
+use crate::ffi::Status;
+use crate::message::Message;
+use coilwind::settings::{SceneSettings, Spindle};
+use coilwind::signals::Inputs;
+use coilwind::variables::{Value, by_reference};
+use coilwind_model_description::Category;
+use std::f64::consts::TAU;
+
+/// Speed of the demonstration, rad/s, where the scene's is not lower: turns lie close, and a second of
+/// computing winds the coil.
+const SPEED: f64 = 100.0;
+
+impl Instance {
+    /// Demonstrates the scene's motion if nothing was set to another value than that in `modelDescription.xml`.
+    pub(super) fn begin_demonstration(&mut self) {
+        let default = SceneSettings::default();
+        let starts_so = |reference: u32, given: &Value| {
+            by_reference(reference)
+                .and_then(|row| row.start(&default))
+                .as_ref()
+                == Some(given)
+        };
+        let inputs = self.start_inputs.iter();
+        self.demonstrates = self.start_rates.is_empty()
+            && self.parameters.names_no_scene()
+            && inputs
+                .map(|(r, x)| (*r, Value::Real(*x)))
+                .all(|(r, x)| starts_so(r, &x))
+            && self.parameters.explicit().all(|(r, x)| starts_so(r, x));
+        if self.demonstrates {
+            let text = "no input and no parameter was set, so the FMU demonstrates: spindle and nozzle \
+                        follow a programme of its own; set spindle_speed or nozzle_position to drive them";
+            self.messages.push(Message {
+                status: Status::Ok,
+                category: Category::Events,
+                text: text.to_owned(),
+            });
+        }
+    }
+}
+
+impl Run {
+    /// Makes spindle speed and nozzle position those of the demonstration over the next `step`, s.
+    pub(super) fn demonstrate(&mut self, step: f64) {
+        let scene = self.simulation.scene();
+        let (spindle, per_turn) = (scene.spindle, scene.traverse.per_turn);
+        let time = self.simulation.time();
+        let speed = demonstrated(spindle, time);
+        let after = demonstrated(spindle, time + step);
+        let turned = 0.5 * (speed + after) * step / TAU;
+        self.inputs.spindle_speed = speed;
+        self.rates = Inputs {
+            spindle_speed: (after - speed) / step,
+            nozzle_position: per_turn * turned / step,
+            tension_setpoint: 0.0,
+        };
+    }
+}
+
+/// Speed of the demonstration at a time of the run, s, in rad/s: as many turns as the scene's programme has, with its
+/// ramp at both ends.
+fn demonstrated(spindle: Spindle, time: f64) -> f64 {
+    let speed = spindle.speed.abs().min(SPEED);
+    let ramp = 2.0 * ramp_turns(spindle) * TAU / speed;
+    let share = (time / ramp).min((end(spindle) - time) / ramp);
+    (speed * share.clamp(0.0, 1.0)).copysign(spindle.speed)
+}
+
+/// When the demonstration ends, s.
+fn end(spindle: Spindle) -> f64 {
+    (spindle.turns + 2.0 * ramp_turns(spindle)) * TAU / spindle.speed.abs().min(SPEED)
+}
+
+/// Turns over which the speed rises, and falls again.
+fn ramp_turns(spindle: Spindle) -> f64 {
+    spindle.ramp_turns.min(0.5 * spindle.turns)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use coilwind_model_description::DEFAULT_STOP_TIME;
+
+    #[test]
+    fn the_default_experiment_sees_all_of_it() {
+        let spindle = SceneSettings::default().spindle;
+        let end = end(spindle);
+        assert!(end < DEFAULT_STOP_TIME && end > 0.9 * DEFAULT_STOP_TIME);
+        let step = 1e-5;
+        let steps = (DEFAULT_STOP_TIME / step) as u32;
+        let angle: f64 = (0..steps)
+            .map(|k| step * demonstrated(spindle, f64::from(k) * step))
+            .sum();
+        assert!((angle / TAU - spindle.turns).abs() < 1e-4, "{angle}");
+        assert_eq!(demonstrated(spindle, 0.0), 0.0);
+        assert_eq!(demonstrated(spindle, DEFAULT_STOP_TIME), 0.0);
+    }
+}

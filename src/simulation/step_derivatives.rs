@@ -1,0 +1,131 @@
+//! Derivatives of the outputs by the inputs of a communication step, for importers that solve loops or linearise.
+//!
+//! They are central differences of the step as a whole: the run is copied where the step begins, and the copies take the
+//! step with inputs a little off. The tangent of the solver's last step would be cheaper, but a communication step has
+//! many of those, and what one does to the next is most of the answer.
+
+use super::{SimError, Simulation};
+use crate::math::scaled;
+use crate::scene::Scene;
+use crate::signals::{Inputs, Outputs};
+
+/// Change of the core's angle over the step that a difference is taken over, rad, ...
+const TURN: f64 = 3e-5;
+/// ... as a share of the speed where that is less, but no less than a tenth, ...
+const SPEED: f64 = 0.01;
+/// ... of the nozzle's position, m, for wire of 0.7 mm, ...
+const WAY: f64 = 1e-6;
+/// ... and of the set tension, as a share of it.
+const PULL: f64 = 3e-3;
+/// Least change of the set tension, N, for wire of 0.7 mm.
+const LEAST_PULL: f64 = 1e-3;
+/// Sizes of a difference over those above. A landing, or a step of the solver more or less, makes some of them jump; the
+/// middle of the slopes is then another one. Chosen.
+const SIZES: [f64; 3] = [0.3, 1.0, 3.0];
+
+impl Simulation {
+    /// Derivatives of the outputs at the end of a communication step of `dt`, s, that begins here with `inputs` and
+    /// their `rates` per s, when the inputs change in the direction `along` for all of the step.
+    ///
+    /// Outputs beyond [`Outputs::SMOOTH`] change only when wire comes to rest and have 0. The run stays as it is. It costs
+    /// six such steps.
+    ///
+    /// # Errors
+    ///
+    /// Where no step near this one can be taken.
+    pub fn step_derivative(
+        &self,
+        inputs: Inputs,
+        rates: Inputs,
+        dt: f64,
+        along: Inputs,
+    ) -> Result<Outputs, SimError> {
+        let outcome = |by: f64| {
+            let mut run = self.clone();
+            run.advance_ramped(inputs.after(&along, by), rates, dt)?;
+            Ok(run.run.outputs)
+        };
+        let reach = reach(&self.scene, &inputs, &along, dt);
+        let mut slopes = Vec::with_capacity(SIZES.len());
+        let mut refused = None;
+        for size in SIZES {
+            match slope(&outcome, reach * size) {
+                Ok(slope) => slopes.push(slope),
+                Err(error) => refused = Some(error),
+            }
+        }
+        match refused {
+            Some(error) if slopes.is_empty() => Err(error),
+            _ => Ok(Outputs::of_smooth(middle(&slopes))),
+        }
+    }
+
+    /// Derivatives of the outputs at the start of a run of `scene`, when the inputs of the start change in the direction
+    /// `along` from `inputs`.
+    ///
+    /// # Errors
+    ///
+    /// Where the scene has no valid start near these inputs.
+    pub fn start_derivative(
+        scene: &Scene,
+        inputs: Inputs,
+        along: Inputs,
+    ) -> Result<Outputs, SimError> {
+        let outcome = |by: f64| {
+            let run = Self::starting_with(scene, inputs.after(&along, by))?;
+            Ok(run.run.outputs)
+        };
+        let slope = slope(&outcome, reach(scene, &inputs, &along, 1.0))?;
+        Ok(Outputs::of_smooth(slope))
+    }
+}
+
+/// Values of the outputs that have derivatives.
+type Smooth = [f64; Outputs::SMOOTH.len()];
+
+/// How far to go in the direction `along`, so that no input of a step of `dt`, s, changes by more than its share.
+fn reach(scene: &Scene, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
+    let diameter = scene.wire.diameter;
+    let least = scaled(scaled(LEAST_PULL, diameter), diameter);
+    let turn = TURN / dt;
+    let share = (SPEED * inputs.spindle_speed.abs()).max(0.1 * turn);
+    let most = [
+        (along.spindle_speed, turn.min(share)),
+        (along.nozzle_position, scaled(WAY, diameter)),
+        (
+            along.tension_setpoint,
+            (PULL * inputs.tension_setpoint).max(least),
+        ),
+    ];
+    most.iter()
+        .filter(|(along, _)| *along != 0.0)
+        .map(|(along, most)| most / along.abs())
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// Slope from `by` on both sides; on one side where there is nothing on the other, as below a tension of 0.
+fn slope(outcome: &impl Fn(f64) -> Result<Outputs, SimError>, by: f64) -> Result<Smooth, SimError> {
+    let over = |a: &Outputs, b: &Outputs, way: f64| {
+        let (a, b) = (a.smooth(), b.smooth());
+        std::array::from_fn(|k| (a[k] - b[k]) / way)
+    };
+    match (outcome(by), outcome(-by)) {
+        (Ok(ahead), Ok(behind)) => Ok(over(&ahead, &behind, 2.0 * by)),
+        (Ok(ahead), Err(_)) => Ok(over(&ahead, &outcome(0.0)?, by)),
+        (Err(_), Ok(behind)) => Ok(over(&outcome(0.0)?, &behind, by)),
+        (Err(error), Err(_)) => Err(error),
+    }
+}
+
+/// The middle of the slopes, output by output; of an even number, the mean of the middle two.
+fn middle(slopes: &[Smooth]) -> Smooth {
+    std::array::from_fn(|k| {
+        let mut values: Vec<f64> = slopes.iter().map(|slope| slope[k]).collect();
+        values.sort_by(f64::total_cmp);
+        let half = values.len() / 2;
+        match values.len() % 2 {
+            1 => values[half],
+            _ => 0.5 * (values[half - 1] + values[half]),
+        }
+    })
+}

@@ -1,0 +1,199 @@
+//! What happens within a communication step is seen at its end, and what does not move stays.
+
+use coilwind::settings::SceneSettings;
+use coilwind::signals::Outputs;
+use coilwind::simulation::Simulation;
+use std::f64::consts::TAU;
+
+fn fig8() -> Simulation {
+    let settings = SceneSettings::load("fig8").unwrap();
+    Simulation::new(&settings.build().unwrap()).unwrap()
+}
+
+/// Speeds up to `speed` (rad/s) by 15 rad/s a millisecond, `count` milliseconds in all; the nozzle goes by `pitch`, m a turn.
+fn wound(speed: f64, pitch: f64, count: u32) -> Simulation {
+    let mut sim = fig8();
+    let mut inputs = sim.inputs();
+    for k in 0..count {
+        inputs.spindle_speed = (15.0 * f64::from(k)).min(speed);
+        inputs.nozzle_position += pitch * inputs.spindle_speed * 1e-3 / TAU;
+        sim.advance(inputs, 1e-3).unwrap();
+    }
+    sim
+}
+
+/// 300 rad/s, then -300 for a millisecond: slack came and went, and the end of the step had no word of it.
+#[test]
+fn slack_that_passes_within_a_step_is_seen() {
+    let mut sim = wound(300.0, 0.7e-3, 30);
+    assert!(!sim.outputs().defect_slack);
+    let mut inputs = sim.inputs();
+    inputs.spindle_speed = -300.0;
+    sim.advance(inputs, 1e-3).unwrap();
+    let o = *sim.outputs();
+    assert!(o.wire_tension_min == 0.0 && o.wire_tension > 1.0, "{o:?}");
+    assert!(o.defect_slack);
+    assert_eq!(
+        (o.defect_code, o.defect_count, o.defect_count_slack),
+        (16, 1, 1)
+    );
+    assert_eq!((o.defect_kind, o.defect_turn), (16, 1.0));
+    assert!((0.03..=0.031).contains(&o.defect_time), "{}", o.defect_time);
+    inputs.spindle_speed = 0.0;
+    for _ in 0..20 {
+        sim.advance(inputs, 1e-3).unwrap();
+    }
+    let o = sim.outputs();
+    assert!(
+        o.wire_tension_min > 0.0 && !o.defect_slack && o.defect_code == 0,
+        "{o:?}"
+    );
+    assert_eq!((o.defect_count, o.defect_kind), (1, 16));
+}
+
+#[test]
+fn a_broken_wire_has_no_tension_in_any_output() {
+    let mut sim = wound(100.0, 0.7e-3, 20);
+    let mut inputs = sim.inputs();
+    while !sim.outputs().defect_break {
+        inputs.tension_setpoint += 5.0;
+        sim.advance(inputs, 1e-3).unwrap();
+        assert!(inputs.tension_setpoint < 150.0);
+    }
+    let o = *sim.outputs();
+    assert!(o.wire_tension_max > 50.0);
+    assert_eq!(
+        (o.defect_kind, o.defect_count_break, o.defect_code & 8),
+        (8, 1, 8)
+    );
+    for _ in 0..3 {
+        sim.advance(inputs, 1e-3).unwrap();
+        let o = sim.outputs();
+        assert_eq!(
+            (o.wire_tension, o.wire_tension_min, o.wire_tension_max),
+            (0.0, 0.0, 0.0)
+        );
+        assert_eq!((o.defect_kind, o.defect_count_break), (8, 1));
+    }
+}
+
+#[test]
+fn every_kind_of_defect_has_its_count_and_its_size() {
+    let sim = wound(100.0, 1.2e-3, 160);
+    let o = sim.outputs();
+    assert!(o.defect_gap && o.defect_count_gap > 0, "{o:?}");
+    let counts = [
+        o.defect_count_bulge,
+        o.defect_count_gap,
+        o.defect_count_overlap,
+        o.defect_count_break,
+        o.defect_count_slack,
+    ];
+    assert_eq!(counts.iter().sum::<i32>(), o.defect_count);
+    let last = sim.coil().last_defect().unwrap();
+    assert_eq!(
+        (o.defect_kind, o.defect_time),
+        (last.kind.code(), last.time)
+    );
+    assert!(
+        (0.15..1.0).contains(&(o.defect_size / 0.7e-3)),
+        "{}",
+        o.defect_size
+    );
+}
+
+fn lay_on(o: &Outputs) -> [f64; 5] {
+    [
+        o.turns_wound,
+        o.free_length,
+        o.layon_position,
+        o.layon_angle,
+        o.wire_length,
+    ]
+}
+
+/// Nothing moved, and the place where the wire leaves the core went from one end of the face to the other.
+#[test]
+fn the_place_where_wire_is_laid_stands_with_the_spindle() {
+    let mut sim = fig8();
+    let inputs = sim.inputs();
+    let start = lay_on(sim.outputs());
+    for _ in 0..50 {
+        sim.advance(inputs, 1e-3).unwrap();
+        for (now, start) in lay_on(sim.outputs()).into_iter().zip(start) {
+            assert!((now - start).abs() < 1e-5, "{now} {start}");
+        }
+    }
+    let mut sim = wound(100.0, 0.7e-3, 60);
+    let mut inputs = sim.inputs();
+    inputs.spindle_speed = 0.0;
+    sim.advance(inputs, 0.05).unwrap();
+    let stopped = lay_on(sim.outputs());
+    for _ in 0..50 {
+        sim.advance(inputs, 1e-3).unwrap();
+        for (now, stopped) in lay_on(sim.outputs()).into_iter().zip(stopped) {
+            assert!((now - stopped).abs() < 1e-5, "{now} {stopped}");
+        }
+    }
+}
+
+/// The place where wire is laid moves along the wire, not from node to node: between landings by far less than the 0.3 mm
+/// between nodes in a step of the core of 0.03 rad.
+#[test]
+fn the_place_where_wire_is_laid_moves_along_the_wire() {
+    let mut sim = fig8();
+    let mut inputs = sim.inputs();
+    inputs.spindle_speed = 30.0;
+    let (mut before, mut steps) = (sim.outputs().wire_length, Vec::new());
+    for _ in 0..200 {
+        inputs.nozzle_position += 0.7e-3 * 0.03 / TAU;
+        sim.advance(inputs, 1e-3).unwrap();
+        steps.push((sim.outputs().wire_length - before).abs());
+        before = sim.outputs().wire_length;
+    }
+    let jumps = steps.iter().filter(|step| **step > 2.5e-4).count();
+    assert!(jumps < 12, "{jumps} of {}", steps.len());
+}
+
+/// A slope that misses the next value by more than the value held is worse than none. No slope foretells a landing.
+#[test]
+fn slopes_predict_better_than_the_value_held() {
+    let mut sim = wound(100.0, 0.7e-3, 20);
+    let mut inputs = sim.inputs();
+    let seen = |o: &Outputs| {
+        [
+            ("wire_tension", o.wire_tension),
+            ("spindle_torque", o.spindle_torque),
+            ("feed_speed", o.feed_speed),
+            ("fed_length", o.fed_length),
+            ("spindle_angle", o.spindle_angle),
+            ("free_length", o.free_length),
+            ("turns_wound", o.turns_wound),
+            ("layon_angle", o.layon_angle),
+            ("layon_position", o.layon_position),
+        ]
+    };
+    let mut missed = [[0.0_f64; 2]; 9];
+    for _ in 0..100 {
+        let before = *sim.outputs();
+        let (now, rates) = (seen(&before), seen(sim.output_rates()));
+        inputs.nozzle_position += 0.7e-3 * 0.1 / TAU;
+        sim.advance(inputs, 1e-3).unwrap();
+        let o = sim.outputs();
+        if o.wire_length - before.wire_length > 1.5 * (o.fed_length - before.fed_length) {
+            continue;
+        }
+        for (k, (_, next)) in seen(sim.outputs()).into_iter().enumerate() {
+            missed[k][0] += (next - now[k].1).powi(2);
+            missed[k][1] += (next - now[k].1 - 1e-3 * rates[k].1).powi(2);
+        }
+    }
+    for ((name, _), [held, led]) in seen(sim.outputs()).into_iter().zip(missed) {
+        println!(
+            "{name}: held {:.3e} led {:.3e}",
+            (held / 100.0).sqrt(),
+            (led / 100.0).sqrt()
+        );
+        assert!(led <= 1.001 * held, "{name}: {:.3}", (led / held).sqrt());
+    }
+}
