@@ -56,6 +56,9 @@ pub(super) enum Failure {
     /// A result file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// No report can be made.
+    #[error(transparent)]
+    Report(#[from] coilwind::output::ReportError),
     /// The solver gave up on the way.
     #[error("the solver gave up {reason}; what was computed so far is in {directory}")]
     Solver {
@@ -134,6 +137,7 @@ impl Failure {
             | Self::Signals { .. }
             | Self::Write { .. }
             | Self::Output(_)
+            | Self::Report(_)
             | Self::Cases(_)
             | Self::Bench(_)
             | Self::Draw { .. } => 2,

@@ -6,6 +6,7 @@ mod choice;
 mod failure;
 mod frames;
 mod progress;
+mod report;
 mod run;
 mod scene;
 mod signals;
@@ -34,6 +35,8 @@ enum Command {
     /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp
     /// and coil.png
     Run(run::RunArgs),
+    /// Make the page about a run again, or compare two runs, from the files that they left
+    Report(report::ReportArgs),
     /// Validate a scene and say what is wrong, and where
     Check(check::CheckArgs),
     /// List every variable: inputs, outputs, diagnostics, parameters
@@ -50,6 +53,7 @@ enum Command {
 pub(crate) fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Run(args) => run::run(&args),
+        Command::Report(args) => report::report(&args),
         Command::Check(args) => check::check(&args),
         Command::Variables(args) => variables::variables(&args),
         Command::Verify(args) => verify::verify(&args),

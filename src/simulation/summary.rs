@@ -1,7 +1,8 @@
 //! The numbers that describe a whole run.
 
 use super::Simulation;
-use crate::measure::{BulgeLimit, Defect, TurnMeasures};
+use super::product::Product;
+use crate::measure::{BulgeLimit, Defect, TurnMeasures, reasons};
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
 
@@ -36,6 +37,10 @@ pub struct Summary {
     pub fed_length_m: f64,
     /// verdict over all settled turns, and over what the wire met
     pub verdict: String,
+    /// why, in words, the gravest first
+    pub reasons: Vec<String>,
+    /// the coil as a product
+    pub product: Product,
     /// what bulges were judged by
     pub bulge_judged: BulgeLimit,
     /// every defect found, in the order of their times
@@ -130,6 +135,7 @@ impl Simulation {
     /// The run in numbers.
     pub fn summary(&self) -> Summary {
         let d = self.scene.wire.diameter;
+        let (defects, turns) = (self.defects(), self.turns());
         Summary {
             scene: self.scene.name.clone(),
             preset: match self.scene.preset {
@@ -155,8 +161,10 @@ impl Simulation {
             turns_settled: self.run.outputs.turns_settled,
             fed_length_m: self.run.outputs.fed_length,
             verdict: self.verdict().as_str().to_owned(),
+            reasons: reasons(self.verdict(), &defects, &turns, self.bulge_limit(), d),
+            product: self.product(),
             bulge_judged: self.bulge_limit(),
-            defects: self.defects(),
+            defects,
             energy: self.energy(),
             penetration: PenetrationSummary {
                 largest_m: self.sys.state.deepest,
@@ -164,7 +172,7 @@ impl Simulation {
                 largest_over_d: self.sys.state.deepest / d,
                 at_rest_over_d: self.run.rest_depth / d,
             },
-            turns: self.turns(),
+            turns,
         }
     }
 }
