@@ -37,7 +37,7 @@ function chart(title, axis, x, unit, curves, marks, go, note) {
   const tell = (u, value) => (value == null ? "–" : `${digits(value)} ${unit}`);
   const series = curves.map((curve) => ({
     label: curve.label, value: tell, width: curve.width ?? 0.6, points: { show: false },
-    stroke: () => (curve.band ? css("--band") : css("--curve")),
+    stroke: () => css(curve.band ? "--edge" : "--curve"),
   }));
   const options = {
     width: 500, height: 250, axes, cursor: { drag: { x: true, y: false } },

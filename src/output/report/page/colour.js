@@ -64,7 +64,9 @@ function legend(key, colours, values) {
   const { label, unit, scale } = QUANTITIES[key];
   if (colours.range) {
     const stops = RAMP.join(", ");
-    const ends = colours.range.map((value) => `${digits(scale * value)} ${unit}`);
+    const across = scale * (colours.range[1] - colours.range[0]);
+    const count = Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(across))));
+    const ends = colours.range.map((value) => `${(scale * value).toFixed(count)} ${unit}`);
     const lacks = values.some((value) => !Number.isFinite(value));
     return [
       el("div", {}, label),
