@@ -108,6 +108,16 @@ async function look(scheme) {
     });
     check(`${scheme}: its end is the coil`, (await compare(page, before, await shot())).different < 1e-3);
   }
+  const peel = page.locator("input.peel").first();
+  if (await peel.count()) {
+    const before = await shot();
+    await peel.evaluate((input) => {
+      input.value = 2;
+      input.dispatchEvent(new Event("input"));
+    });
+    check(`${scheme}: turns can be taken off`, (await compare(page, before, await shot())).different > 0.02);
+    await page.getByRole("button", { name: "Whole coil" }).first().click();
+  }
   const row = page.locator(".defects tbody tr").first();
   if (await row.count()) {
     const before = await shot();

@@ -45,7 +45,8 @@ function digits(value, count = 3) {
   if (magnitude < -4 || magnitude > 5) return value.toExponential(count - 1).replace("e", " · 10^");
   return value.toFixed(Math.min(8, Math.max(0, count - 1 - magnitude)));
 }
-const fixed = (value, count) => (value == null || !Number.isFinite(value) ? "–" : value.toFixed(count));
+/** A number with so many digits after the point; no minus before a zero. */
+const fixed = (value, count) => (value == null || !Number.isFinite(value) ? "–" : value.toFixed(count).replace(/^-(0\.?0*)$/, "$1"));
 const mm = (metres, count = 3) => `${fixed(1e3 * metres, count)} mm`;
 
 /** A time, s, in a unit that suits it. */

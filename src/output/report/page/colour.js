@@ -66,7 +66,7 @@ function legend(key, colours, values) {
     const stops = RAMP.join(", ");
     const across = scale * (colours.range[1] - colours.range[0]);
     const count = Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(across))));
-    const ends = colours.range.map((value) => `${(scale * value).toFixed(count)} ${unit}`);
+    const ends = colours.range.map((value) => `${fixed(scale * value, count)} ${unit}`);
     const lacks = values.some((value) => !Number.isFinite(value));
     return [
       el("div", {}, label),

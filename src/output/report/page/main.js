@@ -75,12 +75,12 @@ class Run {
     const words = [`turn ${Math.floor(at) + 1}, ${Math.round((at % 1) * STATIONS)}°`, `tension ${digits(tension[k])} N`];
     if (Number.isFinite(gap[k])) words.push(`gap ${mm(gap[k])}`);
     if (Number.isFinite(bulge[k])) words.push(`height ${mm(bulge[k])}`, `layer ${layer[k]}`);
-    this.view.goTo(points.subarray(3 * k, 3 * k + 3), words.join("  ·  "));
+    this.view.goTo(points.subarray(3 * k, 3 * k + 3), words.join("  ·  "), at);
   }
 
   goToDefect(defect) {
     const size = defect.size_m == null ? "" : `  ·  ${mm(defect.size_m)}`;
-    this.view?.renderer && this.view.goTo(defect.place_m, `${defect.kind}  ·  turn ${defect.turn}, ${Math.round(defect.angle_deg)}°${size}`);
+    this.view?.renderer && this.view.goTo(defect.place_m, `${defect.kind}  ·  turn ${defect.turn}, ${Math.round(defect.angle_deg)}°${size}`, defect.turn - 1 + defect.angle_deg / STATIONS);
     const rows = document.querySelectorAll(".defects tbody tr");
     rows.forEach((row) => row.classList.toggle("chosen", row.defect === defect));
   }

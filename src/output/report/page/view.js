@@ -141,7 +141,20 @@ class View {
       this.scene.add(this.wire);
     }
     this.shown = wire;
+    this.peel(this.upTo);
     this.colour(this.key);
+  }
+
+  /** Shows the first turns only, so that lower layers can be seen; no number shows all. */
+  peel(turns) {
+    this.upTo = turns;
+    const nodes = turns == null ? this.tube.nodes : lowerBound(this.run.turnOf, turns);
+    this.tube.geometry.setDrawRange(0, 6 * SIDES * Math.max(0, Math.min(nodes, this.tube.nodes) - 1));
+    if (this.peeler) {
+      this.peeler.value = turns == null ? this.peeler.max : Math.ceil(turns);
+      this.peeled.textContent = turns == null ? "all" : `${Number(turns.toFixed(2))}`;
+    }
+    this.draw();
   }
 
   /** Colours the wire; the range is that of the coil at the end, so that frames can be compared. */
@@ -196,13 +209,19 @@ class View {
     this.move(target, new Vendor.Vector3(x, y, z).normalize().multiplyScalar(distance).add(target), !this.sized);
     this.mark.visible = false;
     this.place.textContent = "";
+    this.peel(null);
   }
 
-  /** Goes to a place of the wire, m, seen from outside. */
-  goTo(point, words) {
+  /** Goes to a place of the wire, m, at so many turns, seen from outside and from the middle of the coil. Wire that was
+   * wound over it later is hidden. */
+  goTo(point, words, turns) {
+    const node = lowerBound(this.run.turnOf, turns);
+    const layers = this.run.wire.layer;
+    const covered = node < layers.length && layers[node] > 0 && layers.subarray(node).some((layer) => layer > layers[node]);
+    this.peel(covered ? Math.min(turns + 1, this.run.turnOf[layers.findIndex((layer, k) => k > node && layer > layers[node])]) : null);
     const target = new Vendor.Vector3(...point).multiplyScalar(SCALE);
     const out = new Vendor.Vector3(target.x, 0, target.z).normalize();
-    out.y = 0.55;
+    out.y = point[1] > this.run.extent.middle[1] ? -0.4 : 0.4;
     const distance = Math.max(22 * SCALE * this.run.diameter, 0.5 * SCALE * this.run.extent.radius);
     this.move(target, out.normalize().multiplyScalar(distance).add(target));
     this.mark.position.copy(target);
@@ -248,8 +267,19 @@ class View {
         .map(([key, text]) => el("button", { type: "button", onclick: () => this.look(...sides[key]) }, text))));
     const card = el("section", { class: "card coil" }, this.renderer ? bar : null, this.box);
     if (this.renderer && this.run.frames.length) card.append(this.slider());
+    if (this.renderer && this.run.turnOf[this.run.laid - 1] > 5) card.append(this.layersSlider());
     card.append(el("p", { class: "note" }, "Drag to turn, wheel to zoom, right button to shift."));
     return card;
+  }
+
+  layersSlider() {
+    const most = Math.ceil(this.run.turnOf[this.run.laid - 1]);
+    this.peeled = el("output", {}, "all");
+    this.peeler = el("input", {
+      type: "range", class: "peel", min: 1, max: most, value: most, "aria-label": "Turns shown",
+      oninput: (event) => this.peel(Number(event.target.value) === most ? null : Number(event.target.value)),
+    });
+    return el("div", { class: "time" }, el("span", { class: "soft" }, "Turns shown"), this.peeler, this.peeled);
   }
 
   slider() {
