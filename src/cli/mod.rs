@@ -2,8 +2,11 @@
 
 mod bench;
 mod check;
+mod checkpoint;
 mod choice;
+mod drive;
 mod failure;
+mod folder;
 mod frames;
 mod progress;
 mod report;
@@ -32,8 +35,8 @@ struct Cli {
 // A new command is a file beside this one with its arguments and a function that runs it.
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp
-    /// and coil.png
+    /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp,
+    /// coil.png and report.html; or go on with a run that was stopped
     Run(run::RunArgs),
     /// Make the page about a run again, or compare two runs, from the files that they left
     Report(report::ReportArgs),

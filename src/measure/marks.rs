@@ -33,7 +33,9 @@ impl Coil {
                 let (_, _, least) = self.criterion(kind, &record.station);
                 if !counts && run.counts(least) {
                     counts = true;
-                    marks[start..index].iter_mut().for_each(|m| *m |= kind.bit());
+                    marks[start..index]
+                        .iter_mut()
+                        .for_each(|m| *m |= kind.bit());
                 }
                 if counts {
                     marks[index] |= kind.bit();

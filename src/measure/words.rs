@@ -117,10 +117,15 @@ mod tests {
         let said = reasons(Verdict::Gap, &defects, &[], judged, 0.7e-3);
         assert_eq!(
             said,
-            ["2 times gap; the gravest: gap of 0.210 mm (0.30 d) in turn 3 (layer 1) at 210 deg, t = 0.020000 s"]
+            [
+                "2 times gap; the gravest: gap of 0.210 mm (0.30 d) in turn 3 (layer 1) at 210 deg, t = 0.020000 s"
+            ]
         );
         let said = reasons(Verdict::Gap, &defects[..1], &[], judged, 0.7e-3);
-        assert!(said[0].starts_with("Gap of 0.140 mm (0.20 d) in turn 2"), "{said:?}");
+        assert!(
+            said[0].starts_with("Gap of 0.140 mm (0.20 d) in turn 2"),
+            "{said:?}"
+        );
     }
 
     #[test]
@@ -132,7 +137,10 @@ mod tests {
             ..TurnMeasures::default()
         };
         let said = reasons(Verdict::Marginal, &[], &[turn], judged, 0.7e-3);
-        assert!(said[0].contains("turn 2 is 0.070 mm rms (0.10 d)"), "{said:?}");
+        assert!(
+            said[0].contains("turn 2 is 0.070 mm rms (0.10 d)"),
+            "{said:?}"
+        );
         assert!(said[1].contains("judged by 0.700 mm"), "{said:?}");
     }
 }

@@ -1,8 +1,8 @@
 //! The files that describe a run where it stands: at its end, or on the way.
 
 use super::{
-    CoreMesh, OutputError, Picture, WireFields, render_png, write_core_vtp, write_defects, write_stations,
-    write_summary, write_turns, write_vtp,
+    CoreMesh, OutputError, Picture, WireFields, render_png, write_core_vtp, write_defects,
+    write_stations, write_summary, write_turns, write_vtp,
 };
 use crate::geometry::Surface;
 use crate::math::V3;
@@ -95,7 +95,9 @@ impl Snapshot {
                 _ => after,
             };
             let station = stations.get(index).filter(|_| arc <= end);
-            let gap = station.and_then(|s| s.neighbour).map_or(f64::NAN, |n| n.gap);
+            let gap = station
+                .and_then(|s| s.neighbour)
+                .map_or(f64::NAN, |n| n.gap);
             fields.gap.push(gap);
             fields.bulge.push(station.map_or(f64::NAN, |s| s.bulge));
             let layer = station.map_or(0, |s| u8::try_from(s.layer).unwrap_or(u8::MAX));

@@ -132,10 +132,22 @@ impl Simulation {
         }
     }
 
+    /// Why the run has its verdict, in words, the gravest first.
+    pub fn reasons(&self) -> Vec<String> {
+        let (defects, turns) = (self.defects(), self.turns());
+        let diameter = self.scene.wire.diameter;
+        reasons(
+            self.verdict(),
+            &defects,
+            &turns,
+            self.bulge_limit(),
+            diameter,
+        )
+    }
+
     /// The run in numbers.
     pub fn summary(&self) -> Summary {
         let d = self.scene.wire.diameter;
-        let (defects, turns) = (self.defects(), self.turns());
         Summary {
             scene: self.scene.name.clone(),
             preset: match self.scene.preset {
@@ -161,10 +173,10 @@ impl Simulation {
             turns_settled: self.run.outputs.turns_settled,
             fed_length_m: self.run.outputs.fed_length,
             verdict: self.verdict().as_str().to_owned(),
-            reasons: reasons(self.verdict(), &defects, &turns, self.bulge_limit(), d),
+            reasons: self.reasons(),
             product: self.product(),
             bulge_judged: self.bulge_limit(),
-            defects,
+            defects: self.defects(),
             energy: self.energy(),
             penetration: PenetrationSummary {
                 largest_m: self.sys.state.deepest,
@@ -172,7 +184,7 @@ impl Simulation {
                 largest_over_d: self.sys.state.deepest / d,
                 at_rest_over_d: self.run.rest_depth / d,
             },
-            turns,
+            turns: self.turns(),
         }
     }
 }

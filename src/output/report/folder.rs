@@ -193,7 +193,10 @@ impl Wire {
 }
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt()
+    (0..3)
+        .map(|axis| (a[axis] - b[axis]).powi(2))
+        .sum::<f64>()
+        .sqrt()
 }
 
 /// Surface of the core: points and corners of triangles. `None` without the file, or where it is too large for a page.

@@ -134,7 +134,9 @@ mod tests {
 
     #[test]
     fn the_page_fetches_nothing() {
-        let page = assemble("a", "{}").replace(VENDOR, "").replace(LICENSES, "");
+        let page = assemble("a", "{}")
+            .replace(VENDOR, "")
+            .replace(LICENSES, "");
         for word in ["http://", "https://", " src=", "<link"] {
             assert!(!page.contains(word), "{word}");
         }

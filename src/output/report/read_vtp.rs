@@ -58,7 +58,12 @@ fn decode(text: &str, kind: &str) -> Result<Vec<f64>, String> {
         return Err("it is shorter than it says".to_owned());
     }
     fn each<const N: usize>(bytes: &[u8], number: fn([u8; N]) -> f64) -> Vec<f64> {
-        bytes.as_chunks::<N>().0.iter().map(|&c| number(c)).collect()
+        bytes
+            .as_chunks::<N>()
+            .0
+            .iter()
+            .map(|&c| number(c))
+            .collect()
     }
     Ok(match kind {
         "Float64" => each(bytes, f64::from_le_bytes),
