@@ -112,7 +112,6 @@ impl Checkpoint {
             file.write_all(MAGIC)?;
             file.write_all(&crc32fast::hash(&body).to_le_bytes())?;
             file.write_all(&body)?;
-            file.sync_data()?;
             fs::rename(&partial, &path)
         };
         let written = write();

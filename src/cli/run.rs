@@ -21,8 +21,8 @@ use std::time::{Duration, Instant};
 
 /// Folder of the results where neither `--out` nor the scene names one.
 const DEFAULT_OUT: &str = "coilwind-out";
-/// A checkpoint is worth at most this share of the time.
-const CHECKPOINT_SHARE: u32 = 50;
+/// Checkpoints take at most one in so many parts of the time.
+const CHECKPOINT_SHARE: u32 = 20;
 
 /// Arguments of `run`.
 #[derive(Args, Debug)]
