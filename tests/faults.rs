@@ -125,7 +125,10 @@ fn a_second_run_into_a_folder_is_refused() {
         assert!(said(&second).contains("another run"), "{}", said(&second));
     }
     assert!(first.try_wait().unwrap().is_none());
-    assert!(folder.path().join("checkpoint.bin").exists(), "it was left alone");
+    assert!(
+        folder.path().join("checkpoint.bin").exists(),
+        "it was left alone"
+    );
     first.kill().unwrap();
     first.wait().unwrap();
     assert!(rows(folder.path()) > 5);

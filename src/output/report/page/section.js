@@ -89,7 +89,12 @@ function drawSection(pen, width, height, run, cut) {
     return;
   }
   const [y0, y1] = [Math.min(...ys) - 2 * d, Math.max(...ys) + 2 * d];
-  const [r0, r1] = [Math.min(...radii) - 1.6 * d, Math.max(...radii) + 1.2 * d];
+  // The core belongs into the picture where wire does not stand too far off.
+  const lowest = Math.min(...radii);
+  const beneath = cut.core.flat().filter(([y, r]) => y > y0 && y < y1 && r < lowest).map(([, r]) => r);
+  const spanning = cut.core.filter(([a, b]) => Math.min(a[0], b[0]) < y0 && Math.max(a[0], b[0]) > y1).map(([a, b]) => Math.min(a[1], b[1]));
+  const surface = Math.max(...beneath, ...spanning.filter((r) => r < lowest), lowest - 6 * d);
+  const [r0, r1] = [Math.min(surface - 0.4 * d, lowest - 1.1 * d), Math.max(...radii) + 1.2 * d];
   const [across, high] = [width - pad.left - pad.right, height - pad.top - pad.bottom];
   const scale = Math.min(across / (y1 - y0), high / (r1 - r0));
   const x = (y) => pad.left + across / 2 + (y - (y0 + y1) / 2) * scale;
