@@ -1,7 +1,7 @@
 //! A run as its folder has it, in the arrays of the page.
 
-use super::ReportError;
 use super::array::Array;
+use super::error::ReportError;
 use super::read_vtp::{self, Arrays};
 use crate::output::vtp::SIDES;
 use serde::Serialize;

@@ -4,14 +4,16 @@
 //! `page/`, other people's code with its licences in `vendor/`, made by `scripts/report/bundle.sh`.
 
 mod array;
+mod error;
 mod folder;
 mod read_vtp;
 
 use super::OutputError;
+pub use error::ReportError;
 use folder::Run;
 use serde::Serialize;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 const PAGE: &str = include_str!("page/index.html");
 const STYLE: &str = include_str!("page/style.css");
@@ -28,33 +30,6 @@ const SCRIPTS: [&str; 7] = [
     include_str!("page/view.js"),
     include_str!("page/main.js"),
 ];
-
-/// No report can be made.
-#[derive(Debug, thiserror::Error)]
-pub enum ReportError {
-    /// the folder does not hold the results of a run
-    #[error(
-        "{} holds no results of a run ({} is missing); wind one with: coilwind run SCENE --out {}",
-        directory.display(), missing, directory.display()
-    )]
-    NoRun {
-        /// the folder
-        directory: PathBuf,
-        /// the file that is looked for first
-        missing: &'static str,
-    },
-    /// a file of the run is not whole
-    #[error("{} is not whole ({reason}); wind the scene again, or go on with: coilwind run --resume {}", path.display(), path.parent().unwrap_or(path).display())]
-    Broken {
-        /// the file
-        path: PathBuf,
-        /// what is wrong with it
-        reason: String,
-    },
-    /// the page cannot be written
-    #[error(transparent)]
-    Output(#[from] OutputError),
-}
 
 #[derive(Serialize)]
 struct Data {

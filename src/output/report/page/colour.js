@@ -62,6 +62,7 @@ function cached(make) {
 /** The legend of a colouring as an element's children. */
 function legend(key, colours, values) {
   const { label, unit, scale } = QUANTITIES[key];
+  if (colours.range && !values.some(Number.isFinite)) return [el("div", {}, label), keys([["not measured", UNKNOWN]])];
   if (colours.range) {
     const stops = RAMP.join(", ");
     const across = scale * (colours.range[1] - colours.range[0]);

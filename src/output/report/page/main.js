@@ -162,5 +162,6 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const page = document.getElementById("page");
 page.classList.toggle("pair", data.runs.length > 1);
 const runs = data.runs.map((one) => new Run(one));
+runs.forEach((run) => (run.all = runs));
 page.append(...runs.map(layOut));
 document.getElementById("made").textContent = `Made by coilwind ${data.version} from the files of the run. Contains three.js and uPlot.`;

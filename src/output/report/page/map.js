@@ -7,9 +7,9 @@ function defectMap(run) {
   const turns = Math.ceil(stations.arc.length / STATIONS);
   const left = 44, bottom = 40, top = 6, right = 14;
   const row = Math.min(30, Math.max(3, 420 / turns));
-  const measure = (key) => {
-    if (key === "layer") return stations.layer;
-    return stations[key].map((value, k) => (stations.measured[k] ? value : NaN));
+  const measure = (key, of = stations) => {
+    if (key === "layer") return of.layer;
+    return of[key].map((value, k) => (of.measured[k] ? value : NaN));
   };
   let key = "gap";
   let values, colours, picture;
@@ -17,9 +17,10 @@ function defectMap(run) {
   const choose = (chosen) => {
     key = chosen;
     values = measure(key);
-    colours = colouring(key, values);
+    const all = run.all.flatMap((one) => (one.stations ? Array.from(measure(key, one.stations)) : []));
+    colours = colouring(key, all);
     picture = image(values, colours, turns);
-    legendBox.replaceChildren(...legend(key, colours, values));
+    legendBox.replaceChildren(...legend(key, colours, all));
   };
   choose(key);
 

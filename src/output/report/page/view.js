@@ -91,7 +91,7 @@ function wireAt(run, frame) {
 class View {
   constructor(run) {
     this.run = run;
-    this.key = run.defects.some((d) => d.size_m != null) ? "defect" : "tension";
+    this.key = run.all.some((one) => one.defects.some((d) => d.size_m != null)) ? "defect" : "tension";
     this.frame = null;
     this.legend = el("div", { class: "legend" });
     this.place = el("div", { class: "place" });
@@ -157,10 +157,10 @@ class View {
     this.draw();
   }
 
-  /** Colours the wire; the range is that of the coil at the end, so that frames can be compared. */
+  /** Colours the wire; the range is that of the coils of all runs at their ends, so that frames and runs can be compared. */
   colour(key) {
     this.key = key;
-    const coil = this.run.wire[key].subarray(0, Math.max(1, this.run.laid));
+    const coil = this.run.all.flatMap((run) => (run.wire ? Array.from(run.wire[key].subarray(0, Math.max(1, run.laid))) : []));
     const colours = colouring(key, coil);
     this.tube.paint(this.shown[key], colours);
     this.legend.replaceChildren(...legend(key, colours, coil));
