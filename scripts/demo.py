@@ -27,6 +27,7 @@ TELL_S = 5.0
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--fmu", type=Path, default=Path("target/fmu/CoilWinding.fmu"))
+    parser.add_argument("--command", type=Path, default=Path("target/release/coilwind"))
     parser.add_argument("--out", type=Path, default=Path("target/demo"))
     parser.add_argument("--turns", type=float, default=2.5, help="turns of the spindle (2.5)")
     parser.add_argument(
@@ -54,7 +55,7 @@ def main():
     started = sum(run.process is not None for run in runs)
     print(f"\n{started} of {len(runs)} runs in {clock(time.monotonic() - began)}\n", flush=True)
 
-    report(arguments.out, [run.directory for run in runs])
+    report(arguments.command, arguments.out, [run.directory for run in runs])
     failed = [run for run in runs if run.failed]
     for run in failed:
         print(f"{run.label} failed: {run.reason()}", file=sys.stderr)
@@ -98,7 +99,7 @@ def tell(runs, jobs, elapsed):
     print(f"{clock(elapsed)}  {';  '.join(parts)};  in all {everything} left", flush=True)
 
 
-def report(out, directories):
+def report(command, out, directories):
     """Table, figures and page of the runs that left something; one failing keeps none back."""
     usable = [str(path) for path in directories if (path / "summary.json").exists()]
     if not usable:
@@ -109,6 +110,9 @@ def report(out, directories):
     script("plot_tension.py", *usable, "-o", out / "tension.png")
     if settled:
         script("section_plot.py", *settled, "-o", out / "sections.png")
+    for path in usable:
+        if subprocess.run([command, "report", path]).returncode != 0:
+            print(f"no report of {path}", file=sys.stderr)
     script("report.py", out)
 
 

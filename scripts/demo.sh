@@ -3,8 +3,8 @@
 #
 #     scripts/demo.sh [--turns T] [--speeds RAD/S...] [--jobs N]
 #
-# Prints progress and the verdict table; leaves CSV, pictures and target/demo/index.html. Needs
-# Rust, a C linker and Python 3.10 or later. --turns 0.5 gives a quick look (the full job is 2.5
+# Prints progress and the verdict table; leaves CSV, pictures, a report of each run (target/demo/SPEED/report.html)
+# and target/demo/index.html, which leads to them. Needs Rust, a C linker and Python 3.10 or later. --turns 0.5 gives a quick look (the full job is 2.5
 # turns, so that the second comes to rest), --speeds fewer or other speeds, --jobs the runs at a
 # time (2). Ctrl-C ends the runs early and reports on what they have wound.
 set -euo pipefail
@@ -20,9 +20,11 @@ esac
 target=${CARGO_TARGET_DIR:-target}
 echo "building the FMU"
 scripts/build_fmu.sh
+echo "building the command, which makes the reports"
+cargo build --locked --release --bin coilwind
 python=$(scripts/venv.sh)
 # Each run is one thread; linear algebra libraries must not spread over the other's core.
 export OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1
 # What an earlier demonstration left would mix with this one.
 rm -rf "$target/demo"
-exec "$python" scripts/demo.py --fmu "$target/fmu/CoilWinding.fmu" --out "$target/demo" "$@"
+exec "$python" scripts/demo.py --fmu "$target/fmu/CoilWinding.fmu" --command "$target/release/coilwind" --out "$target/demo" "$@"

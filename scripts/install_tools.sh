@@ -3,7 +3,7 @@
 #
 #     scripts/install_tools.sh
 #
-# Rust targets through rustup; compilers, wine, valgrind and Node.js through apt-get, as root. What cannot be
+# Rust targets through rustup; compilers, wine, valgrind, Node.js and Chromium through apt-get, as root. What cannot be
 # installed is named, and is no failure: scripts/test.sh says then which stages it skips, and why.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -29,6 +29,7 @@ wants wine "wine is missing" wine64
 wants c "compiler is missing" gcc
 wants site "node is missing" nodejs
 wants site "npm is missing" npm
+wants browser "chromium is missing" chromium
 [ ${#packages[@]} -gt 0 ] || exit 0
 
 if ! command -v apt-get >/dev/null; then

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Says what a stage needs that this machine does not have, one line each; nothing if it can run.
 #
-#     scripts/missing_tools.sh portable | c | sanitizer | valgrind | wine | importers | site
+#     scripts/missing_tools.sh portable | c | sanitizer | valgrind | wine | importers | site | browser
 set -euo pipefail
 
 has() { command -v "$1" >/dev/null 2>&1; }
@@ -52,6 +52,11 @@ case ${1-} in
     site)
         has node || miss node "on Debian and Ubuntu: apt install nodejs"
         has npm || miss npm "on Debian and Ubuntu: apt install npm"
+        ;;
+    browser)
+        has node || miss node "on Debian and Ubuntu: apt install nodejs"
+        has npm || miss npm "on Debian and Ubuntu: apt install npm"
+        has chromium || miss chromium "on Debian and Ubuntu: apt install chromium"
         ;;
     *)
         echo "missing_tools.sh: unknown stage ${1-} (see the top of the script)" >&2

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""One self-contained page about the runs of a directory.
+"""One page about the runs of a directory; it leads to the report of each run where there is one.
 
     report.py target/demo
 
@@ -78,11 +78,11 @@ def main():
     runs = runs_below(arguments.directory)
     if not runs:
         raise SystemExit(f"no summary.json below {arguments.directory}")
-    body = [verdict_table(runs, arguments), figures(arguments.directory), pictures(runs)]
+    output = arguments.output or arguments.directory / "index.html"
+    body = [verdict_table(runs, arguments), figures(arguments.directory), pictures(runs, output.parent)]
     page = PAGE.format(
         title=html.escape(arguments.title), lead=lead(runs), body="\n".join(filter(None, body))
     )
-    output = arguments.output or arguments.directory / "index.html"
     partial = output.with_name(output.name + ".partial")
     partial.write_text(page, encoding="utf-8")
     os.replace(partial, output)
@@ -130,20 +130,28 @@ def figures(directory):
     )
 
 
-def pictures(runs):
+def pictures(runs, directory):
     found = [run for run in runs if (run.directory / "coil.png").exists()]
     if not found:
         return ""
     items = "".join(
         f"<figure>{embed(run.directory / 'coil.png', 'coil at ' + run.label)}"
         f"<figcaption>{html.escape(run.label)}, "
-        f"{run.summary.get('turns_settled', 0):.2f} turns at rest</figcaption></figure>"
+        f"{run.summary.get('turns_settled', 0):.2f} turns at rest{link(run, directory)}</figcaption></figure>"
         for run in found
     )
     return (
         f'<h2>The coil</h2><div class="pair">{items}</div>'
         '<p class="note">Copper: wire at rest. Blue: wire still in motion.</p>'
     )
+
+
+def link(run, directory):
+    """To the report of a run, which turns the coil and shows its defects."""
+    page = run.directory / "report.html"
+    if not page.exists():
+        return ""
+    return f' · <a href="{html.escape(os.path.relpath(page, directory))}">report</a>'
 
 
 def embed(path, text):

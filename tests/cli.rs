@@ -191,7 +191,17 @@ fn run_leaves_its_files() {
         let picture = image::open(out.join(stem).with_extension("png")).unwrap();
         assert_eq!((picture.width(), picture.height()), (1200, 900), "{stem}");
         let wire = std::fs::read_to_string(out.join(stem).with_extension("vtp")).unwrap();
-        for array in ["turn", "frozen", "tension", "height"] {
+        for array in [
+            "turn",
+            "frozen",
+            "tension",
+            "height",
+            "layer",
+            "gap",
+            "bulge",
+            "plastic_strain",
+            "defect",
+        ] {
             assert!(
                 wire.contains(&format!("Name=\"{array}\"")),
                 "{stem}: {array}"
@@ -299,7 +309,7 @@ fn defects_fail_only_where_asked() {
     ];
     finished(&mut short_run(&out, &inputs), 0);
     let mut strict = short_run(&out, &inputs);
-    let output = finished(strict.arg("--fail-on-defect"), 1);
+    let output = finished(strict.args(["--fail-on-defect", "--force"]), 1);
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("break"), "{said}");
 }
@@ -322,8 +332,17 @@ fn a_broken_wire_is_no_success() {
     ];
     let output = finished(&mut short_run(&out, &inputs), 0);
     let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.contains(": break;"), "{said}");
-    assert!(said.contains("the wire broke in turn 1"), "{said}");
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(lines.len(), 3, "verdict, why and where: {said}");
+    assert!(lines[0].starts_with("verdict: break;"), "{said}");
+    assert!(
+        lines[1].starts_with("why: The wire broke in turn 1"),
+        "{said}"
+    );
+    assert_eq!(
+        lines[2],
+        format!("report: {}", out.join("report.html").display())
+    );
     let summary = json(&out.join("summary.json"));
     assert_eq!(summary["verdict"], "break");
     let defect = &summary["defects"][0];

@@ -1,11 +1,13 @@
 //! Files of a made coil, read back.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use coilwind::math::V3;
 use coilwind::measure::DefectLimits;
 use coilwind::measure::{Coil, CoilSpec, SettledNode};
 use coilwind::output::{
-    Colouring, CoreMesh, OutputError, Picture, render, render_png, write_core_vtp, write_stations,
-    write_summary, write_turns, write_vtp,
+    Colouring, CoreMesh, OutputError, Picture, WireFields, render, render_png, write_core_vtp,
+    write_stations, write_summary, write_turns, write_vtp,
 };
 use coilwind::simulation::Centreline;
 use quick_xml::Reader;
@@ -149,6 +151,24 @@ fn kept(name: &str) -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join(name)
 }
 
+/// The numbers of an array in base64, after their length in bytes.
+fn numbers(text: &str, kind: &str) -> Vec<f64> {
+    let bytes = STANDARD.decode(text).unwrap();
+    let (length, bytes) = bytes.split_at(8);
+    assert_eq!(
+        u64::from_le_bytes(length.try_into().unwrap()),
+        bytes.len() as u64
+    );
+    let each = |size: usize, number: fn(&[u8]) -> f64| bytes.chunks(size).map(number).collect();
+    match kind {
+        "Float64" => each(8, |c| f64::from_le_bytes(c.try_into().unwrap())),
+        "Float32" => each(4, |c| f32::from_le_bytes(c.try_into().unwrap()).into()),
+        "Int32" => each(4, |c| i32::from_le_bytes(c.try_into().unwrap()).into()),
+        "UInt8" => each(1, |c| c[0].into()),
+        other => panic!("numbers of type {other}"),
+    }
+}
+
 /// Numbers of each array of a VTK file by name, and the attributes of its piece.
 fn read_vtp(path: &Path) -> (BTreeMap<String, Vec<f64>>, BTreeMap<String, String>) {
     let mut reader = Reader::from_file(path).unwrap();
@@ -163,18 +183,18 @@ fn read_vtp(path: &Path) -> (BTreeMap<String, Vec<f64>>, BTreeMap<String, String
                     .map(|a| (a.key.as_ref().to_owned(), a.value.into_owned()))
                     .collect();
                 match element.name().as_ref() {
-                    "DataArray" => array = Some(attributes["Name"].clone()),
+                    "DataArray" => {
+                        assert_eq!(attributes["format"], "binary");
+                        array = Some((attributes["Name"].clone(), attributes["type"].clone()));
+                    }
+                    "VTKFile" => assert_eq!(attributes["header_type"], "UInt64"),
                     "Piece" => piece = attributes,
                     _ => {}
                 }
             }
             Event::Text(text) => {
-                if let Some(name) = array.take() {
-                    let numbers = text
-                        .split_whitespace()
-                        .map(|n| n.parse().unwrap())
-                        .collect();
-                    arrays.insert(name, numbers);
+                if let Some((name, kind)) = array.take() {
+                    arrays.insert(name, numbers(text.trim(), &kind));
                 }
             }
             Event::Eof => return (arrays, piece),
@@ -189,8 +209,17 @@ fn wire_written_for_paraview_reads_back() {
     let wire = wire(2.3);
     let nodes = wire.points.len();
     let heights: Vec<f64> = (0..nodes).map(|k| 1e-6 * k as f64).collect();
+    let fields = WireFields {
+        height: heights.clone(),
+        layer: (0..nodes).map(|k| (k % 3) as u8).collect(),
+        gap: (0..nodes)
+            .map(|k| if k < 9 { f64::NAN } else { 1e-7 * k as f64 })
+            .collect(),
+        bulge: vec![2e-5; nodes],
+        defect: (0..nodes).map(|k| if k == 20 { 2 } else { 0 }).collect(),
+    };
     let path = kept("coil.vtp");
-    write_vtp(&path, &wire, D / 2.0, Some(&heights)).unwrap();
+    write_vtp(&path, &wire, D / 2.0, Some(&fields), 0.25).unwrap();
     let (arrays, piece) = read_vtp(&path);
 
     let points = arrays["Points"].len() / 3;
@@ -212,6 +241,15 @@ fn wire_written_for_paraview_reads_back() {
         "to the bit"
     );
     assert_eq!(per_node("height"), heights);
+    assert_eq!(per_node("layer")[..4], [0.0, 1.0, 2.0, 0.0]);
+    let gaps = per_node("gap");
+    assert!(gaps[8].is_nan() && gaps[9..] == fields.gap[9..]);
+    assert_eq!(per_node("bulge"), fields.bulge);
+    assert_eq!(
+        per_node("defect").iter().position(|&bits| bits == 2.0),
+        Some(20)
+    );
+    assert_eq!(arrays["TimeValue"], [0.25]);
     assert_eq!(per_node("arc"), wire.arc);
     assert_eq!(
         per_node("frozen").iter().filter(|&&f| f == 1.0).count(),
@@ -252,7 +290,7 @@ fn arrays_that_do_not_match_are_refused() {
     let path = directory.path().join("coil.vtp");
     let mut short = wire(1.0);
     short.tension.pop();
-    let error = write_vtp(&path, &short, D / 2.0, None).unwrap_err();
+    let error = write_vtp(&path, &short, D / 2.0, None, 0.0).unwrap_err();
     assert!(
         matches!(
             error,
@@ -290,10 +328,11 @@ fn wire_that_has_not_begun_makes_valid_files() {
         ..Centreline::default()
     };
     for wire in [&Centreline::default(), &one] {
-        write_vtp(&path, wire, D / 2.0, None).unwrap();
+        write_vtp(&path, wire, D / 2.0, None, 0.0).unwrap();
         let (arrays, piece) = read_vtp(&path);
         assert_eq!(piece["NumberOfPoints"], "0");
-        assert!(arrays.values().all(|values| values.is_empty()));
+        let of_points = arrays.iter().filter(|(name, _)| *name != "TimeValue");
+        assert!(of_points.into_iter().all(|(_, values)| values.is_empty()));
         let picture = Picture {
             size: (40, 30),
             ..Picture::new(None, wire, D / 2.0)
@@ -445,4 +484,28 @@ fn summary_is_replaced_whole_or_not_at_all() {
     assert!(value[0]["gap_mean"].is_null());
     let error = write_summary(&directory.path().join("no/such/summary.json"), &1).unwrap_err();
     assert!(error.to_string().contains("summary.json"), "{error}");
+}
+
+/// Gaps of half a diameter in the second turn are marked on the wire from where they begin to where they end.
+#[test]
+fn a_defect_is_marked_over_its_whole_run() {
+    let coil = coil(&wire(2.8));
+    let marks = coil.defect_marks();
+    assert_eq!(marks.len(), coil.stations().len());
+    let marked: Vec<usize> = (0..marks.len()).filter(|&k| marks[k] & 2 != 0).collect();
+    let gap = |k: usize| {
+        coil.stations()
+            .nth(k)
+            .unwrap()
+            .neighbour
+            .map_or(0.0, |n| n.gap)
+    };
+    assert!(marked.len() >= 36, "{} stations", marked.len());
+    assert!(marked.iter().all(|&k| gap(k) > 0.8 * 0.15 * D));
+    let defects = coil.defects();
+    assert!(!defects.is_empty());
+    for defect in defects {
+        let station = (defect.turn as usize - 1) * 360 + defect.angle_deg.round() as usize;
+        assert!(marks[station] != 0, "{defect:?} is not marked");
+    }
 }

@@ -33,7 +33,7 @@ def compare(command, fmu, quick):
         unzipped = fmpy.extract(str(fmu), str(Path(folder) / "fmu"))
         inputs = Path(folder) / "inputs.csv"
         write_csv(signals, inputs)
-        words = [command, "run", "fig8", "--inputs", inputs, "--step", repr(size), "--out", folder]
+        words = [command, "run", "fig8", "--inputs", inputs, "--step", repr(size), "--force", "--out", folder]
         for _ in range(1 if quick else 5):
             began = time.process_time()
             result = fmpy.simulate_fmu(

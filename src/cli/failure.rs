@@ -56,6 +56,25 @@ pub(super) enum Failure {
     /// A result file cannot be written.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The folder of the results holds a run.
+    #[error("{directory} holds another run; add --force to overwrite it, or --out for another folder{}", if *can_go_on { format!(", or go on with: coilwind run --resume {directory}") } else { String::new() })]
+    Occupied {
+        /// the folder
+        directory: String,
+        /// the run was stopped before its end
+        can_go_on: bool,
+    },
+    /// A run cannot go on.
+    #[error("{directory}: {reason}")]
+    Resume {
+        /// the folder
+        directory: String,
+        /// why, and what to do
+        reason: String,
+    },
+    /// No report can be made.
+    #[error(transparent)]
+    Report(#[from] coilwind::output::ReportError),
     /// The solver gave up on the way.
     #[error("the solver gave up {reason}; what was computed so far is in {directory}")]
     Solver {
@@ -65,7 +84,9 @@ pub(super) enum Failure {
         directory: String,
     },
     /// Ctrl-C.
-    #[error("interrupted at t = {time} s; what was computed so far is in {directory}")]
+    #[error(
+        "interrupted at t = {time} s; what was computed so far is in {directory}; go on with: coilwind run --resume {directory}"
+    )]
     Interrupted {
         /// simulated time, s
         time: f64,
@@ -134,6 +155,9 @@ impl Failure {
             | Self::Signals { .. }
             | Self::Write { .. }
             | Self::Output(_)
+            | Self::Report(_)
+            | Self::Occupied { .. }
+            | Self::Resume { .. }
             | Self::Cases(_)
             | Self::Bench(_)
             | Self::Draw { .. } => 2,

@@ -28,6 +28,16 @@ impl Frames {
         })
     }
 
+    /// Frames written, for [`Self::go_on`].
+    pub(super) fn written(&self) -> u32 {
+        self.written
+    }
+
+    /// Goes on after so many frames.
+    pub(super) fn go_on(&mut self, written: u32) {
+        self.written = written;
+    }
+
     /// Writes the frame that is due, if one is; the last one at the end of the run.
     pub(super) fn update(
         &mut self,

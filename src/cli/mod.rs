@@ -2,10 +2,14 @@
 
 mod bench;
 mod check;
+mod checkpoint;
 mod choice;
+mod drive;
 mod failure;
+mod folder;
 mod frames;
 mod progress;
+mod report;
 mod run;
 mod scene;
 mod signals;
@@ -31,9 +35,11 @@ struct Cli {
 // A new command is a file beside this one with its arguments and a function that runs it.
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp
-    /// and coil.png
+    /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp,
+    /// coil.png and report.html; or go on with a run that was stopped
     Run(run::RunArgs),
+    /// Make the page about a run again, or compare two runs, from the files that they left
+    Report(report::ReportArgs),
     /// Validate a scene and say what is wrong, and where
     Check(check::CheckArgs),
     /// List every variable: inputs, outputs, diagnostics, parameters
@@ -50,6 +56,7 @@ enum Command {
 pub(crate) fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Run(args) => run::run(&args),
+        Command::Report(args) => report::report(&args),
         Command::Check(args) => check::check(&args),
         Command::Variables(args) => variables::variables(&args),
         Command::Verify(args) => verify::verify(&args),

@@ -1,40 +1,63 @@
 //! `coilwind run`: one scene from start to end, natively or on an FMU's communication grid.
 
+use super::checkpoint::{Checkpoint, Plan};
+use super::drive::{Drive, Motion};
 use super::failure::Failure;
+use super::folder;
 use super::frames::Frames;
 use super::progress::Progress;
-use super::scene::SceneArgs;
-use super::signals::{Grid, Signals};
 use super::terminal::{print, stop_flag};
 use clap::Args;
 use coilwind::measure::{Defect, DefectKind, Verdict};
-use coilwind::output::{Ending, History, OutputError, Snapshot, write_results};
-use coilwind::scene::Scene;
+use coilwind::output::{Ending, History, Mark, OutputError, Snapshot, write_report, write_results};
+use coilwind::scene::{Scene, assignment};
 use coilwind::settings::SceneSettings;
-use coilwind::signals::Inputs;
 use coilwind::simulation::{SimError, Simulation};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Folder of the results where neither `--out` nor the scene names one.
 const DEFAULT_OUT: &str = "coilwind-out";
+/// Checkpoints take at most one in so many parts of the time.
+const CHECKPOINT_SHARE: u32 = 20;
 
 /// Arguments of `run`.
 #[derive(Args, Debug)]
 pub(super) struct RunArgs {
-    #[command(flatten)]
-    scene: SceneArgs,
+    /// Scene file (TOML), or the name of a packed scene such as fig8
+    #[arg(required_unless_present = "resume")]
+    scene: Option<String>,
+    /// Set a parameter, with or without its unit: wire.diameter=7e-4, wire.diameter_mm=0.7
+    #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
+    set: Vec<(String, String)>,
     /// Folder of the results; default: output.directory of the scene, else coilwind-out
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Overwrite the run that the folder of the results holds
+    #[arg(long)]
+    force: bool,
+    /// Go on with the run in this folder, which was stopped before its end
+    #[arg(
+        long,
+        value_name = "DIR",
+        conflicts_with_all = ["scene", "set", "out", "force", "frames", "no_geometry", "inputs", "step", "stop_time"]
+    )]
+    resume: Option<PathBuf>,
+    /// Wall time between two checkpoints from which a stopped run could go on, s
+    #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = positive)]
+    checkpoint_every: f64,
     /// Write this many snapshots on the way, in DIR/frames: a picture and the wire as VTP each
     #[arg(long, value_name = "N", default_value_t = 0)]
     frames: u32,
-    /// Leave coil.vtp, core.vtp and coil.png out: many short runs spend most of their time on them
+    /// Leave coil.vtp, core.vtp, coil.png and report.html out: many short runs spend most of their time on them
     #[arg(long, conflicts_with = "frames")]
     no_geometry: bool,
+    /// Leave report.html out
+    #[arg(long)]
+    no_report: bool,
     /// Sampled inputs (CSV with time, spindle_speed, nozzle_position, tension_setpoint) instead of
     /// the scene's spindle and traverse, as the FMU would see them
     #[arg(long, value_name = "FILE", requires = "step")]
@@ -51,6 +74,9 @@ pub(super) struct RunArgs {
     /// No progress, no events, no verdict; errors only
     #[arg(long)]
     quiet: bool,
+    /// Tell also what the solver does and what the program has decided for this scene
+    #[arg(long, conflicts_with = "quiet")]
+    verbose: bool,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -60,36 +86,59 @@ fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Runs a scene.
-pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
-    let (settings, scene, warnings) = args.scene.build()?;
-    if !args.quiet {
-        warnings
-            .iter()
-            .for_each(|warning| eprintln!("warning: {warning}"));
-    }
-    let start_failure = |reason| Failure::Start {
-        scene: args.scene.scene.clone(),
-        reason,
-    };
-    let mut simulation = Simulation::new(&scene).map_err(start_failure)?;
-    let mut drive = Drive::new(args, &scene, &simulation)?;
-    if let Drive::Signals { held, .. } = &drive {
-        simulation.set_start(*held).map_err(start_failure)?;
-    }
+/// A run that is about to wind: new, or where it was stopped.
+struct Start {
+    directory: PathBuf,
+    plan: Plan,
+    simulation: Simulation,
+    drive: Drive,
+    history: History,
+    frames: Frames,
+    /// of the run so far, s
+    wall_s: f64,
+    /// keeps other runs out of the folder
+    hold: Option<File>,
+}
 
-    let directory = prepare(args, &settings)?;
-    let end = drive.end();
+/// Runs a scene, or goes on with a run.
+pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
+    let start = match &args.resume {
+        Some(directory) => resume(directory, args)?,
+        None => begin(args)?,
+    };
+    let Start {
+        directory,
+        plan,
+        mut simulation,
+        mut drive,
+        history,
+        frames,
+        wall_s,
+        hold,
+    } = start;
+    let snapshot = Snapshot::new(&simulation).map_err(|reason| Failure::Start {
+        scene: plan.settings.name.clone(),
+        reason,
+    })?;
     let clock = Instant::now();
     let mut record = Record {
-        history: History::create(&directory.join("history.csv"))?,
-        frames: Frames::new(&directory, args.frames, end)?,
-        snapshot: Snapshot::new(&simulation).map_err(start_failure)?,
-        progress: Progress::new(end, args.quiet),
+        history,
+        frames,
+        snapshot,
+        progress: Progress::new(drive.end(), simulation.time(), args.quiet, args.verbose),
+        checkpoints: Checkpoints {
+            directory: directory.clone(),
+            plan,
+            every: Duration::from_secs_f64(args.checkpoint_every.min(1e6)),
+            due: clock,
+            clock,
+            wall_s,
+            failed: false,
+        },
     };
     let stop = stop_flag();
     simulation.stop_on(Arc::clone(&stop));
-    let ended = record.wind(&mut simulation, &mut drive, &stop);
+    let ended = record.wind(&mut simulation, &mut drive, &stop, args.resume.is_none());
     record.progress.finish();
 
     // Results first: whatever ended the run, what it computed stays usable.
@@ -103,18 +152,27 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
             reason: "a file could not be written".to_owned(),
         },
     };
+    let geometry = record.checkpoints.plan.geometry;
     let written = write_results(
         &directory,
         &simulation,
-        (!args.no_geometry).then_some(&record.snapshot),
+        geometry.then_some(&record.snapshot),
         &ending,
-        clock.elapsed().as_secs_f64(),
+        wall_s + clock.elapsed().as_secs_f64(),
     );
-    let written = flushed.and(written);
+    let written = flushed.and(written).map_err(Failure::from);
+    let page = (geometry && !args.no_report).then(|| directory.join("report.html"));
+    let written = written.and_then(|()| match &page {
+        Some(page) => Ok(write_report(&[&directory], page)?),
+        None => Ok(()),
+    });
+    drop(hold);
     let place = directory.display().to_string();
     match ended {
+        // The checkpoint stays: with room on the disk the run goes on.
         Err(Stop::Files(failure)) => return Err(failure),
         Err(Stop::Solver(reason)) => {
+            Checkpoint::remove(&directory)?;
             return Err(Failure::Solver {
                 reason,
                 directory: place,
@@ -129,49 +187,123 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
         }
         Ok(_) => written?,
     }
-    report(args, &simulation, &place)
+    Checkpoint::remove(&directory)?;
+    conclude(args, &simulation, page.as_deref(), &directory)
 }
 
-/// Makes the folder and leaves the scene in it as it is about to be run.
-fn prepare(args: &RunArgs, settings: &SceneSettings) -> Result<PathBuf, Failure> {
+/// A new run.
+fn begin(args: &RunArgs) -> Result<Start, Failure> {
+    let name = args.scene.as_deref().unwrap_or_default();
+    let (settings, scene, warnings) = SceneSettings::load_and_build(name, &args.set)?;
+    if !args.quiet {
+        warnings
+            .iter()
+            .for_each(|warning| eprintln!("warning: {warning}"));
+    }
+    let start_failure = |reason| Failure::Start {
+        scene: name.to_owned(),
+        reason,
+    };
+    let mut simulation = Simulation::new(&scene).map_err(start_failure)?;
+    let motion = Motion {
+        inputs: args.inputs.clone().zip(args.step),
+        stop_time: args.stop_time,
+    };
+    let drive = Drive::new(&motion, &scene, &simulation)?;
+    if let Drive::Signals { held, .. } = &drive {
+        simulation.set_start(*held).map_err(start_failure)?;
+    }
     let directory = match (&args.out, settings.output.directory.as_str()) {
         (Some(out), _) => out.clone(),
         (None, "") => PathBuf::from(DEFAULT_OUT),
         (None, directory) => PathBuf::from(directory),
     };
-    std::fs::create_dir_all(&directory).map_err(|e| Failure::write(&directory, e))?;
-    let path = directory.join("scene.toml");
-    std::fs::write(&path, settings.to_toml()).map_err(|e| Failure::write(&path, e))?;
-    Ok(directory)
+    let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
+    folder::prepare(&directory, args.force)?;
+    let history = History::create(&directory.join("history.csv"))?;
+    folder::begin(&directory, &settings)?;
+    Ok(Start {
+        frames: Frames::new(&directory, args.frames, drive.end())?,
+        directory,
+        plan,
+        simulation,
+        drive,
+        history,
+        wall_s: 0.0,
+        hold: None,
+    })
 }
 
-/// Defects that the closing words name one by one; the others stand in `defects.csv`.
-const NAMED: usize = 5;
+/// The run of a folder, where its last checkpoint was written.
+fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
+    let refuse = |reason: String| Failure::Resume {
+        directory: directory.display().to_string(),
+        reason,
+    };
+    let hold = folder::hold(directory)?;
+    let checkpoint = Checkpoint::read(directory)?;
+    let plan = checkpoint.plan;
+    plan.check_inputs()?;
+    let (scene, _): (Scene, _) = plan.settings.build_with_warnings()?;
+    let simulation = Simulation::from_bytes(&scene, &checkpoint.state)
+        .map_err(|error| refuse(format!("{error}; begin again with --force")))?;
+    let mut drive = Drive::new(&plan.motion, &scene, &simulation)?;
+    if !drive.go_on(checkpoint.place) {
+        return Err(refuse(
+            "the checkpoint contradicts itself; begin again with --force".to_owned(),
+        ));
+    }
+    let history = History::resume(&directory.join("history.csv"), &checkpoint.history)?;
+    let history = history.ok_or_else(|| {
+        refuse("history.csv is not the one that the run wrote; begin again with --force".to_owned())
+    })?;
+    let mut frames = Frames::new(directory, plan.frames, drive.end())?;
+    frames.go_on(checkpoint.frames);
+    if !args.quiet {
+        let time = simulation.time();
+        eprintln!("going on at t = {time:.6} s of {:.6} s", drive.end());
+    }
+    Ok(Start {
+        directory: directory.to_owned(),
+        plan,
+        simulation,
+        drive,
+        history,
+        frames,
+        wall_s: checkpoint.wall_s,
+        hold,
+    })
+}
 
-/// The verdict, and exit code 1 where defects were asked to fail.
-fn report(args: &RunArgs, simulation: &Simulation, directory: &str) -> Result<(), Failure> {
+/// Three lines: the verdict, why, and where to look; exit code 1 where defects were asked to fail.
+fn conclude(
+    args: &RunArgs,
+    simulation: &Simulation,
+    page: Option<&Path>,
+    directory: &Path,
+) -> Result<(), Failure> {
     let outputs = simulation.outputs();
     let (verdict, defects) = (simulation.verdict(), simulation.defects());
     if !args.quiet {
+        if args.verbose {
+            for d in &simulation.scene().skipped {
+                print(&format!(
+                    "{} = {} ({}): {}\n",
+                    d.name, d.decision, d.setting, d.why
+                ))?;
+            }
+        }
+        let place = match page {
+            Some(page) => format!("report: {}", page.display()),
+            None => format!("results: {}", directory.display()),
+        };
         print(&format!(
-            "{:.2} turns wound, {:.2} settled in {:.6} s: {verdict}; results in {directory}\n",
+            "verdict: {verdict}; {:.2} turns wound, {:.2} settled in {:.6} s\nwhy: {}\n{place}\n",
             outputs.turns_wound,
             outputs.turns_settled,
             simulation.time(),
+            simulation.reasons().join("; "),
         ))?;
-        for defect in defects.iter().take(NAMED) {
-            print(&format!("{}\n", in_words(defect)))?;
-        }
-        if defects.len() > NAMED {
-            let more = defects.len() - NAMED;
-            print(&format!("and {more} more: see {directory}/defects.csv\n"))?;
-        }
-        for d in &simulation.scene().skipped {
-            print(&format!(
-                "{} = {} ({}): {}\n",
-                d.name, d.decision, d.setting, d.why
-            ))?;
-        }
     }
     if args.fail_on_defect && (!defects.is_empty() || verdict.is_defect()) {
         return Err(Failure::Defect {
@@ -179,20 +311,6 @@ fn report(args: &RunArgs, simulation: &Simulation, directory: &str) -> Result<()
         });
     }
     Ok(())
-}
-
-/// A defect as the closing words have it.
-fn in_words(defect: &Defect) -> String {
-    let place = format!(
-        "in turn {} (layer {}) at {:.0} deg, t = {:.6} s",
-        defect.turn, defect.layer, defect.angle_deg, defect.time_s
-    );
-    match (defect.kind, defect.size_m, defect.size_d) {
-        (DefectKind::Break, ..) => format!("the wire broke {place}; nothing was wound after that"),
-        (DefectKind::Slack, ..) => format!("the wire went slack {place}"),
-        (kind, Some(m), Some(d)) => format!("{kind} of {:.3} mm ({d:.2} d) {place}", 1e3 * m),
-        (kind, ..) => format!("{kind} {place}"),
-    }
 }
 
 /// How many defects of each kind there are, in words.
@@ -208,103 +326,6 @@ fn counted(verdict: Verdict, defects: &[Defect]) -> String {
         kinds.join(", ")
     };
     format!("{found}; verdict: {verdict}")
-}
-
-/// What moves the machine.
-#[derive(Debug)]
-enum Drive {
-    /// the scene's own spindle and traverse, a row per core angle
-    MotionProfile {
-        /// rad between rows
-        interval: f64,
-        /// rows so far
-        count: u64,
-        /// s
-        end: f64,
-    },
-    /// sampled inputs on a communication grid
-    Signals {
-        signals: Signals,
-        /// start values; inputs without samples stay there
-        held: Inputs,
-        grid: Grid,
-        /// s
-        end: f64,
-    },
-}
-
-impl Drive {
-    fn new(args: &RunArgs, scene: &Scene, simulation: &Simulation) -> Result<Self, Failure> {
-        let Some((path, step)) = args.inputs.as_deref().zip(args.step) else {
-            let end = simulation.motion_profile().end();
-            let end = args.stop_time.map_or(end, |stop| stop.min(end));
-            return Ok(Self::MotionProfile {
-                interval: scene.output.history_interval,
-                count: 0,
-                end,
-            });
-        };
-        let signals = Signals::read(path)?;
-        let end = args.stop_time.unwrap_or(signals.end());
-        if end <= 0.0 {
-            return Err(no_duration(path));
-        }
-        let held = signals.before(0.0, simulation.inputs());
-        Ok(Self::Signals {
-            held,
-            grid: Grid::new(step, end),
-            signals,
-            end,
-        })
-    }
-
-    /// Simulated time at the end, s.
-    fn end(&self) -> f64 {
-        match self {
-            Self::MotionProfile { end, .. } | Self::Signals { end, .. } => *end,
-        }
-    }
-
-    /// Advances to the next point and gives its time, s; `None` at the end.
-    fn advance(&mut self, simulation: &mut Simulation) -> Option<Result<f64, SimError>> {
-        match self {
-            Self::MotionProfile {
-                interval,
-                count,
-                end,
-            } => {
-                let time = simulation.time();
-                // Rounding must leave no sliver of a step before the end.
-                let sliver = 1e-12 * *end;
-                if time >= *end - sliver {
-                    return None;
-                }
-                *count += 1;
-                let row = simulation
-                    .motion_profile()
-                    .time_at(*count as f64 * *interval);
-                let next = if row >= *end - sliver { *end } else { row };
-                Some(simulation.advance_profile(next - time).map(|()| next))
-            }
-            Self::Signals {
-                signals,
-                held,
-                grid,
-                ..
-            } => {
-                let (start, length, end) = grid.next(signals)?;
-                let inputs = signals.after(start, *held);
-                Some(simulation.advance(inputs, length).map(|()| end))
-            }
-        }
-    }
-}
-
-fn no_duration(path: &Path) -> Failure {
-    Failure::Signals {
-        file: path.display().to_string(),
-        reason: "the last time is not after 0; allowed: a later time, or --stop-time".to_owned(),
-    }
 }
 
 /// Why winding stopped early.
@@ -331,19 +352,29 @@ struct Record {
     frames: Frames,
     snapshot: Snapshot,
     progress: Progress,
+    checkpoints: Checkpoints,
 }
 
 impl Record {
-    /// Advances to the end, the first error, or until the flag is up.
+    /// Advances to the end, the first error, or until the flag is up. The history of a run that is new has a row for its start.
     fn wind(
         &mut self,
         simulation: &mut Simulation,
         drive: &mut Drive,
         stop: &AtomicBool,
+        new: bool,
     ) -> Result<Ending, Stop> {
-        self.history.row(simulation.time(), simulation)?;
+        if new {
+            self.history.row(simulation.time(), simulation)?;
+        }
         loop {
-            if stop.load(Ordering::SeqCst) {
+            let stopped = stop.load(Ordering::SeqCst);
+            if stopped || Instant::now() >= self.checkpoints.due {
+                let mark = self.history.mark()?;
+                self.checkpoints
+                    .write(simulation, drive, mark, &self.frames);
+            }
+            if stopped {
                 return Ok(Ending::Interrupted);
             }
             let Some(advanced) = drive.advance(simulation) else {
@@ -351,6 +382,7 @@ impl Record {
             };
             self.progress.tell(&simulation.drain_events());
             let time = match advanced {
+                // In the middle of a communication step: the run goes on from the checkpoint before it.
                 Err(_) if stop.load(Ordering::SeqCst) => {
                     self.history.row(simulation.time(), simulation)?;
                     return Ok(Ending::Interrupted);
@@ -361,5 +393,47 @@ impl Record {
             self.frames.update(simulation, &self.snapshot)?;
             self.progress.update(simulation);
         }
+    }
+}
+
+/// Writes where the run could go on, now and then.
+struct Checkpoints {
+    directory: PathBuf,
+    plan: Plan,
+    every: Duration,
+    /// when the next one is written
+    due: Instant,
+    clock: Instant,
+    /// of the run before it was stopped, s
+    wall_s: f64,
+    /// one could not be written, which has been told
+    failed: bool,
+}
+
+impl Checkpoints {
+    fn write(&mut self, simulation: &Simulation, drive: &Drive, history: Mark, frames: &Frames) {
+        let began = Instant::now();
+        let wall_s = self.wall_s + self.clock.elapsed().as_secs_f64();
+        let written = simulation
+            .to_bytes()
+            .map_err(|error| error.to_string())
+            .and_then(|state| {
+                let checkpoint = Checkpoint {
+                    plan: self.plan.clone(),
+                    place: drive.place(),
+                    history,
+                    frames: frames.written(),
+                    wall_s,
+                    state,
+                };
+                checkpoint.write(&self.directory).map_err(|e| e.to_string())
+            });
+        if let (Err(error), false) = (written, self.failed) {
+            // The results matter more; a full disk will end the run by itself.
+            self.failed = true;
+            eprintln!("warning: {error}; the run could not go on after a stop");
+        }
+        let now = Instant::now();
+        self.due = now + self.every.max(CHECKPOINT_SHARE * (now - began));
     }
 }

@@ -216,6 +216,16 @@ impl Grid {
         }
     }
 
+    /// Time, s, and steps so far, for [`Self::go_on`].
+    pub(super) fn place(&self) -> (f64, u64) {
+        (self.time, self.count)
+    }
+
+    /// Goes on from a place.
+    pub(super) fn go_on(&mut self, place: (f64, u64)) {
+        (self.time, self.count) = place;
+    }
+
     /// The next step as start, length and end, s; `None` at the end. Points come from an integer
     /// count, so they do not drift.
     pub(super) fn next(&mut self, signals: &Signals) -> Option<(f64, f64, f64)> {

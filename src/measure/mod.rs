@@ -11,6 +11,7 @@
 
 mod coil;
 mod defect;
+mod marks;
 mod passes;
 mod profile;
 mod row;
@@ -19,6 +20,7 @@ mod state;
 mod station;
 mod support;
 mod turn;
+mod words;
 
 pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode};
@@ -27,6 +29,7 @@ pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};
 pub use turn::{TurnMeasures, Verdict};
+pub use words::reasons;
 
 /// Polar stations per turn, one per degree.
 ///

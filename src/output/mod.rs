@@ -6,6 +6,7 @@ mod camera;
 mod history;
 mod picture;
 mod raster;
+mod report;
 mod results;
 mod shade;
 mod summary;
@@ -15,11 +16,12 @@ mod vtp;
 
 pub use history::{History, Mark};
 pub use picture::{Colouring, CoreMesh, Picture, render, render_png};
+pub use report::{ReportError, write_report};
 pub use results::{Ending, Snapshot, write_results};
 pub use summary::write_summary;
 pub use tables::{write_defects, write_stations, write_turns};
 pub use tube::{TubeMesh, tube_mesh};
-pub use vtp::{write_core_vtp, write_vtp};
+pub use vtp::{WireFields, write_core_vtp, write_vtp};
 
 use std::path::{Path, PathBuf};
 

@@ -1,10 +1,12 @@
 //! The files that describe a run where it stands: at its end, or on the way.
 
 use super::{
-    CoreMesh, OutputError, Picture, render_png, write_core_vtp, write_defects, write_stations,
-    write_summary, write_turns, write_vtp,
+    CoreMesh, OutputError, Picture, WireFields, render_png, write_core_vtp, write_defects,
+    write_stations, write_summary, write_turns, write_vtp,
 };
 use crate::geometry::Surface;
+use crate::math::V3;
+use crate::measure::Station;
 use crate::simulation::{Centreline, SimError, Simulation, Summary, core_surface};
 use serde::Serialize;
 use std::path::Path;
@@ -51,30 +53,57 @@ impl Snapshot {
         })
     }
 
-    /// Writes the wire as it is now: `STEM.vtp` (with its height over the core) and `STEM.png`.
+    /// Writes the wire as it is now: `STEM.vtp` (with what is known of it) and `STEM.png`.
     pub fn write(&self, stem: &Path, simulation: &Simulation) -> Result<(), OutputError> {
         let wire = simulation.centreline();
         let radius = simulation.scene().wire.radius();
-        let flanges = simulation.scene().core.may_have_flanges();
-        let geometry = self.write_geometry(&stem.with_extension("vtp"), &wire, radius, flanges);
+        let fields = self.fields(&wire, simulation);
+        let geometry = write_vtp(
+            &stem.with_extension("vtp"),
+            &wire,
+            radius,
+            Some(&fields),
+            simulation.time(),
+        );
         let picture = Picture::new(Some(self.mesh()), &wire, radius);
         let picture = render_png(&stem.with_extension("png"), &picture);
         geometry.and(picture)
     }
 
-    fn write_geometry(
-        &self,
-        path: &Path,
-        wire: &Centreline,
-        radius: f64,
-        flanges: bool,
-    ) -> Result<(), OutputError> {
-        let height = |p| match flanges {
+    /// Height of every node, and the measures of the station nearest to it along the wire.
+    fn fields(&self, wire: &Centreline, simulation: &Simulation) -> WireFields {
+        let radius = simulation.scene().wire.radius();
+        let flanges = simulation.scene().core.may_have_flanges();
+        let height = |&p: &V3| match flanges {
             true => self.core.height_over_flank(p) - radius,
             false => self.core.nearest(p).distance - radius,
         };
-        let heights: Vec<f64> = wire.points.iter().map(|&p| height(p)).collect();
-        write_vtp(path, wire, radius, Some(&heights))
+        let mut fields = WireFields {
+            height: wire.points.iter().map(height).collect(),
+            ..WireFields::default()
+        };
+        let coil = simulation.coil();
+        let stations: Vec<&Station> = coil.stations().collect();
+        let marks = coil.defect_marks();
+        let end = stations.last().map_or(f64::NEG_INFINITY, |s| s.arc);
+        for &arc in &wire.arc {
+            let after = stations.partition_point(|station| station.arc < arc);
+            let index = match after.checked_sub(1) {
+                Some(before) if after == stations.len() => before,
+                Some(before) if arc - stations[before].arc < stations[after].arc - arc => before,
+                _ => after,
+            };
+            let station = stations.get(index).filter(|_| arc <= end);
+            let gap = station
+                .and_then(|s| s.neighbour)
+                .map_or(f64::NAN, |n| n.gap);
+            fields.gap.push(gap);
+            fields.bulge.push(station.map_or(f64::NAN, |s| s.bulge));
+            let layer = station.map_or(0, |s| u8::try_from(s.layer).unwrap_or(u8::MAX));
+            fields.layer.push(layer);
+            fields.defect.push(station.map_or(0, |_| marks[index]));
+        }
+        fields
     }
 
     fn mesh(&self) -> CoreMesh<'_> {

@@ -15,6 +15,7 @@ mod layon;
 mod motion_profile;
 mod nozzle_way;
 mod outputs;
+mod product;
 mod quasi_static;
 mod rates;
 mod remeshing;
@@ -32,6 +33,7 @@ pub use core_model::core_surface;
 pub use freezing::{FreezePolicy, Watch};
 pub use io::{Centreline, SimError};
 pub use motion_profile::MotionProfile;
+pub use product::Product;
 pub use saved::RestoreError;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 

@@ -1,7 +1,8 @@
 //! The numbers that describe a whole run.
 
 use super::Simulation;
-use crate::measure::{BulgeLimit, Defect, TurnMeasures};
+use super::product::Product;
+use crate::measure::{BulgeLimit, Defect, TurnMeasures, reasons};
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
 
@@ -36,6 +37,10 @@ pub struct Summary {
     pub fed_length_m: f64,
     /// verdict over all settled turns, and over what the wire met
     pub verdict: String,
+    /// why, in words, the gravest first
+    pub reasons: Vec<String>,
+    /// the coil as a product
+    pub product: Product,
     /// what bulges were judged by
     pub bulge_judged: BulgeLimit,
     /// every defect found, in the order of their times
@@ -127,6 +132,19 @@ impl Simulation {
         }
     }
 
+    /// Why the run has its verdict, in words, the gravest first.
+    pub fn reasons(&self) -> Vec<String> {
+        let (defects, turns) = (self.defects(), self.turns());
+        let diameter = self.scene.wire.diameter;
+        reasons(
+            self.verdict(),
+            &defects,
+            &turns,
+            self.bulge_limit(),
+            diameter,
+        )
+    }
+
     /// The run in numbers.
     pub fn summary(&self) -> Summary {
         let d = self.scene.wire.diameter;
@@ -155,6 +173,8 @@ impl Simulation {
             turns_settled: self.run.outputs.turns_settled,
             fed_length_m: self.run.outputs.fed_length,
             verdict: self.verdict().as_str().to_owned(),
+            reasons: self.reasons(),
+            product: self.product(),
             bulge_judged: self.bulge_limit(),
             defects: self.defects(),
             energy: self.energy(),

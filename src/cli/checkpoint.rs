@@ -1,0 +1,171 @@
+//! Where a run could go on: `checkpoint.bin` in its folder, written now and then and removed at the end.
+//!
+//! It holds the scene, the motion, the state of the run and where its files stood. A kill at any instant leaves the old
+//! file or the new one, whole.
+
+use super::drive::{Motion, Place};
+use super::failure::Failure;
+use coilwind::output::Mark;
+use coilwind::settings::SceneSettings;
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Name of the file in the folder of a run.
+pub(super) const FILE: &str = "checkpoint.bin";
+/// Changes whenever the layout does; the state has a version of its own.
+const MAGIC: &[u8; 8] = b"coilwck1";
+
+/// What does not change during a run.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Plan {
+    pub(super) settings: SceneSettings,
+    pub(super) motion: Motion,
+    /// checksum of the file of inputs; 0 without one
+    pub(super) inputs_checksum: u32,
+    pub(super) frames: u32,
+    pub(super) geometry: bool,
+}
+
+/// A run between two communication steps.
+#[derive(Debug, Serialize, Deserialize)]
+pub(super) struct Checkpoint {
+    pub(super) plan: Plan,
+    pub(super) place: Place,
+    /// end of the history
+    pub(super) history: Mark,
+    /// frames written
+    pub(super) frames: u32,
+    /// wall time so far, s
+    pub(super) wall_s: f64,
+    /// [`Simulation::to_bytes`](coilwind::simulation::Simulation::to_bytes)
+    pub(super) state: Vec<u8>,
+}
+
+impl Plan {
+    /// Paths are made absolute, so that the run can go on from another folder.
+    ///
+    /// # Errors
+    /// Where the inputs cannot be read.
+    pub(super) fn new(
+        settings: &SceneSettings,
+        motion: &Motion,
+        frames: u32,
+        geometry: bool,
+    ) -> Result<Self, Failure> {
+        let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let mut settings = settings.clone();
+        if !settings.core.file.is_empty() {
+            settings.core.file = absolute(Path::new(&settings.core.file))
+                .display()
+                .to_string();
+        }
+        let mut motion = motion.clone();
+        let mut inputs_checksum = 0;
+        if let Some((path, _)) = &mut motion.inputs {
+            *path = absolute(path);
+            inputs_checksum = checksum(path)?;
+        }
+        Ok(Self {
+            settings,
+            motion,
+            inputs_checksum,
+            frames,
+            geometry,
+        })
+    }
+
+    /// An error where the inputs are not those that the run began with.
+    pub(super) fn check_inputs(&self) -> Result<(), Failure> {
+        let Some((path, _)) = &self.motion.inputs else {
+            return Ok(());
+        };
+        if checksum(path)? == self.inputs_checksum {
+            return Ok(());
+        }
+        Err(Failure::Signals {
+            file: path.display().to_string(),
+            reason: "not the inputs that the run began with; put them back to go on, or begin again with --force"
+                .to_owned(),
+        })
+    }
+}
+
+fn checksum(path: &Path) -> Result<u32, Failure> {
+    let bytes = fs::read(path).map_err(|error| Failure::Signals {
+        file: path.display().to_string(),
+        reason: format!("cannot be read: {error}"),
+    })?;
+    Ok(crc32fast::hash(&bytes))
+}
+
+impl Checkpoint {
+    /// Writes the file beside the one that is there, then renames it.
+    pub(super) fn write(&self, directory: &Path) -> Result<(), Failure> {
+        let path = directory.join(FILE);
+        let partial = directory.join("checkpoint.bin.partial");
+        let fail = |error| Failure::write(&path, error);
+        let body = postcard::to_stdvec(self).map_err(|error| fail(std::io::Error::other(error)))?;
+        let write = || {
+            let mut file = File::create(&partial)?;
+            file.write_all(MAGIC)?;
+            file.write_all(&crc32fast::hash(&body).to_le_bytes())?;
+            file.write_all(&body)?;
+            fs::rename(&partial, &path)
+        };
+        let written = write();
+        if written.is_err() {
+            // The first error is the one worth telling.
+            let _ = fs::remove_file(&partial);
+        }
+        written.map_err(fail)
+    }
+
+    /// Reads the file of a folder.
+    ///
+    /// # Errors
+    /// Says what to do where there is none, or where it is not whole.
+    pub(super) fn read(directory: &Path) -> Result<Self, Failure> {
+        let path = directory.join(FILE);
+        let place = directory.display();
+        let resume = |reason| Failure::Resume {
+            directory: place.to_string(),
+            reason,
+        };
+        let bytes = fs::read(&path).map_err(|_| {
+            resume(match directory.join("summary.json").exists() {
+                true => "the run has ended; wind it again with --force, or look at it with coilwind report".to_owned(),
+                false => format!(
+                    "there is no run that could go on ({FILE} is missing); begin one with: coilwind run SCENE --out {place}"
+                ),
+            })
+        })?;
+        let again = |what: &str| {
+            resume(format!(
+                "{FILE} {what}; begin again with: coilwind run {place}/scene.toml --out {place} --force"
+            ))
+        };
+        let body = bytes
+            .strip_prefix(MAGIC)
+            .ok_or_else(|| again("is of another version of coilwind, or not whole"))?;
+        let (sum, body) = body
+            .split_first_chunk::<4>()
+            .ok_or_else(|| again("is not whole"))?;
+        if crc32fast::hash(body) != u32::from_le_bytes(*sum) {
+            return Err(again("is not whole"));
+        }
+        postcard::from_bytes(body).map_err(|error| again(&format!("cannot be read ({error})")))
+    }
+
+    /// Removes the file: the run has ended.
+    pub(super) fn remove(directory: &Path) -> Result<(), Failure> {
+        let path: PathBuf = directory.join(FILE);
+        match fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                Err(Failure::write(&path, error))
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! What moves the machine in a run: the scene's own motion, or sampled inputs on a communication grid.
+
+use super::failure::Failure;
+use super::signals::{Grid, Signals};
+use coilwind::scene::Scene;
+use coilwind::signals::Inputs;
+use coilwind::simulation::{SimError, Simulation};
+use serde::{Deserialize, Serialize};
+use std::path::{Path, PathBuf};
+
+/// Where the motion of a run comes from, as it was asked for.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Motion {
+    /// file of the sampled inputs, and the communication step, s
+    pub(super) inputs: Option<(PathBuf, f64)>,
+    /// simulated time at which to stop, s
+    pub(super) stop_time: Option<f64>,
+}
+
+/// How far a drive is.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) enum Place {
+    /// rows of the history so far
+    MotionProfile { count: u64 },
+    /// the grid, and the inputs before the first sample
+    Signals { grid: (f64, u64), held: Inputs },
+}
+
+/// What moves the machine.
+#[derive(Debug)]
+pub(super) enum Drive {
+    /// the scene's own spindle and traverse, a row per core angle
+    MotionProfile {
+        /// rad between rows
+        interval: f64,
+        /// rows so far
+        count: u64,
+        /// s
+        end: f64,
+    },
+    /// sampled inputs on a communication grid
+    Signals {
+        signals: Signals,
+        /// start values; inputs without samples stay there
+        held: Inputs,
+        grid: Grid,
+        /// s
+        end: f64,
+    },
+}
+
+impl Drive {
+    pub(super) fn new(
+        motion: &Motion,
+        scene: &Scene,
+        simulation: &Simulation,
+    ) -> Result<Self, Failure> {
+        let Some((path, step)) = &motion.inputs else {
+            let end = simulation.motion_profile().end();
+            let end = motion.stop_time.map_or(end, |stop| stop.min(end));
+            return Ok(Self::MotionProfile {
+                interval: scene.output.history_interval,
+                count: 0,
+                end,
+            });
+        };
+        let signals = Signals::read(path)?;
+        let end = motion.stop_time.unwrap_or(signals.end());
+        if end <= 0.0 {
+            return Err(no_duration(path));
+        }
+        let held = signals.before(0.0, simulation.inputs());
+        Ok(Self::Signals {
+            held,
+            grid: Grid::new(*step, end),
+            signals,
+            end,
+        })
+    }
+
+    /// Simulated time at the end, s.
+    pub(super) fn end(&self) -> f64 {
+        match self {
+            Self::MotionProfile { end, .. } | Self::Signals { end, .. } => *end,
+        }
+    }
+
+    /// Where it is, for [`Self::go_on`].
+    pub(super) fn place(&self) -> Place {
+        match self {
+            Self::MotionProfile { count, .. } => Place::MotionProfile { count: *count },
+            Self::Signals { grid, held, .. } => Place::Signals {
+                grid: grid.place(),
+                held: *held,
+            },
+        }
+    }
+
+    /// Goes on from a place; false where that is one of the other kind of drive.
+    pub(super) fn go_on(&mut self, place: Place) -> bool {
+        match (self, place) {
+            (Self::MotionProfile { count, .. }, Place::MotionProfile { count: to }) => *count = to,
+            (
+                Self::Signals { grid, held, .. },
+                Place::Signals {
+                    grid: to,
+                    held: old,
+                },
+            ) => {
+                grid.go_on(to);
+                *held = old;
+            }
+            _ => return false,
+        }
+        true
+    }
+
+    /// Advances to the next point and gives its time, s; `None` at the end.
+    pub(super) fn advance(&mut self, simulation: &mut Simulation) -> Option<Result<f64, SimError>> {
+        match self {
+            Self::MotionProfile {
+                interval,
+                count,
+                end,
+            } => {
+                let time = simulation.time();
+                // Rounding must leave no sliver of a step before the end.
+                let sliver = 1e-12 * *end;
+                if time >= *end - sliver {
+                    return None;
+                }
+                *count += 1;
+                let row = simulation
+                    .motion_profile()
+                    .time_at(*count as f64 * *interval);
+                let next = if row >= *end - sliver { *end } else { row };
+                Some(simulation.advance_profile(next - time).map(|()| next))
+            }
+            Self::Signals {
+                signals,
+                held,
+                grid,
+                ..
+            } => {
+                let (start, length, end) = grid.next(signals)?;
+                let inputs = signals.after(start, *held);
+                Some(simulation.advance(inputs, length).map(|()| end))
+            }
+        }
+    }
+}
+
+fn no_duration(path: &Path) -> Failure {
+    Failure::Signals {
+        file: path.display().to_string(),
+        reason: "the last time is not after 0; allowed: a later time, or --stop-time".to_owned(),
+    }
+}

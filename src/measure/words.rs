@@ -1,0 +1,146 @@
+//! Defects and verdicts in words.
+
+use super::defect::{BulgeLimit, Defect, DefectKind};
+use super::turn::{TurnMeasures, Verdict};
+
+impl Defect {
+    /// What it is, how large and where, as a sentence without its full stop.
+    pub fn in_words(&self) -> String {
+        let place = format!(
+            "in turn {} (layer {}) at {:.0} deg, t = {:.6} s",
+            self.turn, self.layer, self.angle_deg, self.time_s
+        );
+        match (self.kind, self.size_m, self.size_d) {
+            (DefectKind::Break, ..) => {
+                format!("the wire broke {place}; nothing was wound after that")
+            }
+            (DefectKind::Slack, ..) => format!("the wire went slack {place}"),
+            (kind, Some(m), Some(d)) => format!("{kind} of {:.3} mm ({d:.2} d) {place}", 1e3 * m),
+            (kind, ..) => format!("{kind} {place}"),
+        }
+    }
+}
+
+/// Why a run has its verdict: a sentence for each reason, the gravest first.
+///
+/// `diameter` is that of the wire, m.
+pub fn reasons(
+    verdict: Verdict,
+    defects: &[Defect],
+    turns: &[TurnMeasures],
+    judged: BulgeLimit,
+    diameter: f64,
+) -> Vec<String> {
+    let mut reasons: Vec<String> = DefectKind::ALL
+        .into_iter()
+        .filter_map(|kind| of_kind(kind, defects))
+        .collect();
+    if reasons.is_empty() {
+        reasons.push(without_defect(verdict, turns, diameter));
+    }
+    if let BulgeLimit::Fallback { limit_m } = judged {
+        reasons.push(format!(
+            "The height of this wire at rest on this core is not known: a bulge is judged by {:.3} mm",
+            1e3 * limit_m
+        ));
+    }
+    reasons
+}
+
+/// The defects of one kind: how many, and the largest.
+fn of_kind(kind: DefectKind, defects: &[Defect]) -> Option<String> {
+    let of_kind = || defects.iter().filter(|defect| defect.kind == kind);
+    // The first of several that are equally large.
+    let worst = of_kind().rev().max_by(|a, b| {
+        let size = |defect: &Defect| defect.size_m.unwrap_or(0.0);
+        size(a).total_cmp(&size(b))
+    })?;
+    let words = match of_kind().count() {
+        1 => worst.in_words(),
+        count => format!("{count} times {kind}; the gravest: {}", worst.in_words()),
+    };
+    let mut letters = words.chars();
+    Some(letters.next()?.to_uppercase().chain(letters).collect())
+}
+
+/// The reason for a verdict that no defect gave.
+fn without_defect(verdict: Verdict, turns: &[TurnMeasures], diameter: f64) -> String {
+    match verdict {
+        Verdict::Unsettled => {
+            "No wire has come to rest where it could be judged; wind more turns".to_owned()
+        }
+        Verdict::Single => "No defect, and no turn with a neighbour to be judged by".to_owned(),
+        Verdict::Aligned => {
+            "No defect; every judged turn lies beside its neighbour within 0.10 d at 95 % of its angles"
+                .to_owned()
+        }
+        _ => {
+            let loosest = turns
+                .iter()
+                .filter_map(|turn| Some((turn, turn.gap_rms?)))
+                .max_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((turn, rms)) = loosest else {
+                return format!("The verdict is {verdict}, and no defect was found");
+            };
+            format!(
+                "No defect, but wire lies less evenly than an aligned coil: the gap of turn {} is {:.3} mm rms ({:.2} d)",
+                turn.turn,
+                1e3 * rms,
+                rms / diameter
+            )
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gap(turn: u32, size_m: f64) -> Defect {
+        Defect {
+            kind: DefectKind::Gap,
+            turn,
+            layer: 1,
+            angle_deg: 210.0,
+            time_s: 0.02,
+            until_s: None,
+            size_m: Some(size_m),
+            size_d: Some(size_m / 0.7e-3),
+            place_m: [0.0; 3],
+        }
+    }
+
+    #[test]
+    fn the_largest_of_several_defects_is_named() {
+        let judged = BulgeLimit::Absolute { limit_m: 1e-3 };
+        let defects = [gap(2, 0.14e-3), gap(3, 0.21e-3)];
+        let said = reasons(Verdict::Gap, &defects, &[], judged, 0.7e-3);
+        assert_eq!(
+            said,
+            [
+                "2 times gap; the gravest: gap of 0.210 mm (0.30 d) in turn 3 (layer 1) at 210 deg, t = 0.020000 s"
+            ]
+        );
+        let said = reasons(Verdict::Gap, &defects[..1], &[], judged, 0.7e-3);
+        assert!(
+            said[0].starts_with("Gap of 0.140 mm (0.20 d) in turn 2"),
+            "{said:?}"
+        );
+    }
+
+    #[test]
+    fn a_limit_that_was_fallen_back_on_is_told() {
+        let judged = BulgeLimit::Fallback { limit_m: 0.7e-3 };
+        let turn = TurnMeasures {
+            turn: 2,
+            gap_rms: Some(0.07e-3),
+            ..TurnMeasures::default()
+        };
+        let said = reasons(Verdict::Marginal, &[], &[turn], judged, 0.7e-3);
+        assert!(
+            said[0].contains("turn 2 is 0.070 mm rms (0.10 d)"),
+            "{said:?}"
+        );
+        assert!(said[1].contains("judged by 0.700 mm"), "{said:?}");
+    }
+}

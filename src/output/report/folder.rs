@@ -1,0 +1,307 @@
+//! A run as its folder has it, in the arrays of the page.
+
+use super::array::Array;
+use super::error::ReportError;
+use super::read_vtp::{self, Arrays};
+use crate::output::vtp::SIDES;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Points of a curve over time; longer histories are thinned such that peaks stay.
+const CURVE: usize = 6000;
+/// Triangles of a core above which the page leaves it out: the page is to stay below 10 MB.
+const MOST_TRIANGLES: usize = 200_000;
+/// Distance from the wire at the end, in diameters, up to which wire of a frame is taken for that at the end.
+const SAME: f64 = 0.02;
+
+/// All that the page knows of a run.
+#[derive(Serialize)]
+pub(super) struct Run {
+    /// name of the folder
+    pub(super) name: String,
+    summary: serde_json::Value,
+    history: Option<BTreeMap<&'static str, Array>>,
+    stations: Option<BTreeMap<&'static str, Array>>,
+    wire: Option<BTreeMap<&'static str, Array>>,
+    core: Option<BTreeMap<&'static str, Array>>,
+    frames: Vec<Frame>,
+}
+
+/// The wire at an earlier time.
+#[derive(Serialize)]
+struct Frame {
+    /// s
+    time: f64,
+    /// nodes of the wire at the end that lay there already
+    keep: usize,
+    /// the nodes after them
+    wire: BTreeMap<&'static str, Array>,
+}
+
+impl Run {
+    pub(super) fn read(directory: &Path) -> Result<Self, ReportError> {
+        let path = directory.join("summary.json");
+        let text = fs::read_to_string(&path).map_err(|_| ReportError::NoRun {
+            directory: directory.to_owned(),
+            missing: "summary.json",
+        })?;
+        let summary: serde_json::Value =
+            serde_json::from_str(&text).map_err(|e| broken(&path, e))?;
+        let diameter = summary["product"]["wire_diameter_m"]
+            .as_f64()
+            .ok_or_else(|| broken(&path, "product.wire_diameter_m is missing"))?;
+        let end = Wire::read(&directory.join("coil.vtp"))?;
+        let mut frames = Vec::new();
+        if let Some(end) = &end {
+            for path in frame_files(&directory.join("frames")) {
+                if let Some(wire) = Wire::read(&path)? {
+                    frames.push(wire.frame(end, SAME * diameter));
+                }
+            }
+        }
+        let place = fs::canonicalize(directory).unwrap_or_else(|_| directory.to_owned());
+        Ok(Self {
+            name: place
+                .file_name()
+                .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+            summary,
+            history: history(&directory.join("history.csv"))?,
+            stations: stations(&directory.join("stations.csv"))?,
+            wire: end.as_ref().map(|wire| wire.arrays(0)),
+            core: core(&directory.join("core.vtp"))?,
+            frames,
+        })
+    }
+}
+
+fn broken(path: &Path, reason: impl ToString) -> ReportError {
+    ReportError::Broken {
+        path: path.to_owned(),
+        reason: reason.to_string(),
+    }
+}
+
+/// The files of the frames in their order.
+fn frame_files(directory: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(directory) else {
+        return Vec::new();
+    };
+    let mut files: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .filter(|path| path.extension().is_some_and(|ending| ending == "vtp"))
+        .collect();
+    files.sort();
+    files
+}
+
+/// The wire of a VTK file: centreline and fields, a value per node.
+struct Wire {
+    points: Vec<[f64; 3]>,
+    fields: Arrays,
+    time: f64,
+}
+
+/// Fields of the wire that the page colours by.
+const REALS: [&str; 5] = ["arc", "tension", "plastic_strain", "gap", "bulge"];
+const BYTES: [&str; 3] = ["layer", "defect", "frozen"];
+
+impl Wire {
+    /// `None` if there is no such file, or no wire in it.
+    fn read(path: &Path) -> Result<Option<Self>, ReportError> {
+        if !path.exists() {
+            return Ok(None);
+        }
+        let mut arrays = read_vtp::read(path).map_err(|e| broken(path, e))?;
+        let tube = arrays.remove("Points").unwrap_or_default();
+        if tube.is_empty() {
+            return Ok(None);
+        }
+        // The centreline is the middle of each ring.
+        let points: Vec<[f64; 3]> = tube
+            .chunks(3 * SIDES)
+            .map(|ring| {
+                let mut sum = [0.0; 3];
+                for point in ring.chunks(3) {
+                    (0..3).for_each(|axis| sum[axis] += point[axis] / SIDES as f64);
+                }
+                sum
+            })
+            .collect();
+        let mut fields = Arrays::new();
+        for name in REALS.into_iter().chain(BYTES) {
+            let values = arrays.remove(name).unwrap_or_default();
+            if values.len() != SIDES * points.len() {
+                return Err(broken(path, format!("{name} is not on every node")));
+            }
+            fields.insert(name.to_owned(), values.into_iter().step_by(SIDES).collect());
+        }
+        let time = arrays.get("TimeValue").and_then(|t| t.first());
+        Ok(Some(Self {
+            time: time.copied().unwrap_or(0.0),
+            points,
+            fields,
+        }))
+    }
+
+    /// Points and fields from a node on.
+    fn arrays(&self, from: usize) -> BTreeMap<&'static str, Array> {
+        let points = self.points[from..].iter().flatten().copied();
+        let mut arrays = BTreeMap::from([("points", Array::reals(points))]);
+        let of = |name: &str| self.fields[name][from..].iter().copied();
+        arrays.extend(REALS.map(|name| (name, Array::reals(of(name)))));
+        arrays.extend(BYTES.map(|name| (name, Array::bytes(of(name)))));
+        arrays
+    }
+
+    /// This wire as far as it is another than the one at the end: most of it lies where it will lie.
+    fn frame(&self, end: &Self, same: f64) -> Frame {
+        let (arc, end_arc) = (&self.fields["arc"], &end.fields["arc"]);
+        let mut after = 0;
+        let mut own = 0;
+        for (node, point) in self.points.iter().enumerate() {
+            while after < end_arc.len() && end_arc[after] < arc[node] {
+                after += 1;
+            }
+            if after == end_arc.len() || distance(*point, end.at(after, arc[node])) > same {
+                break;
+            }
+            own = node + 1;
+        }
+        let last = own.checked_sub(1).map_or(f64::NEG_INFINITY, |k| arc[k]);
+        Frame {
+            time: self.time,
+            keep: end_arc.partition_point(|&a| a <= last),
+            wire: self.arrays(own),
+        }
+    }
+
+    /// The point at an arc between the node `after` and the one before it.
+    fn at(&self, after: usize, arc: f64) -> [f64; 3] {
+        let before = after.saturating_sub(1);
+        let arcs = &self.fields["arc"];
+        let span = arcs[after] - arcs[before];
+        let share = if span > 0.0 {
+            (arc - arcs[before]) / span
+        } else {
+            1.0
+        };
+        let (a, b) = (self.points[before], self.points[after]);
+        [0, 1, 2].map(|axis| a[axis] + share * (b[axis] - a[axis]))
+    }
+}
+
+fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3)
+        .map(|axis| (a[axis] - b[axis]).powi(2))
+        .sum::<f64>()
+        .sqrt()
+}
+
+/// Surface of the core: points and corners of triangles. `None` without the file, or where it is too large for a page.
+fn core(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
+    if !path.exists() {
+        return Ok(None);
+    }
+    let mut arrays = read_vtp::read(path).map_err(|e| broken(path, e))?;
+    let mut take = |name| arrays.remove(name).unwrap_or_default();
+    let (points, corners) = (take("Points"), take("connectivity"));
+    if corners.len() > 3 * MOST_TRIANGLES {
+        return Ok(None);
+    }
+    let corners = corners.into_iter().map(|corner| corner as u32).collect();
+    Ok(Some(BTreeMap::from([
+        ("points", Array::reals(points)),
+        ("corners", Array::U32(corners)),
+    ])))
+}
+
+/// Columns of a table by name; an empty cell is not a number.
+fn table<const N: usize>(
+    path: &Path,
+    names: [&'static str; N],
+) -> Result<Option<[Vec<f64>; N]>, ReportError> {
+    let Ok(mut reader) = csv::Reader::from_path(path) else {
+        return Ok(None);
+    };
+    let header = reader.headers().map_err(|e| broken(path, e))?;
+    let place = |name| {
+        header
+            .iter()
+            .position(|head| head == name)
+            .ok_or_else(|| broken(path, format!("column {name} is missing")))
+    };
+    let mut places = [0; N];
+    for (place_of, name) in places.iter_mut().zip(names) {
+        *place_of = place(name)?;
+    }
+    let mut columns = [const { Vec::new() }; N];
+    let mut row = csv::StringRecord::new();
+    while reader.read_record(&mut row).map_err(|e| broken(path, e))? {
+        for (column, place) in columns.iter_mut().zip(places) {
+            let cell = &row[place];
+            let value = match cell {
+                "" => f64::NAN,
+                _ => cell
+                    .parse()
+                    .map_err(|_| broken(path, format!("{cell:?} is not a number")))?,
+            };
+            column.push(value);
+        }
+    }
+    Ok(Some(columns))
+}
+
+/// Curves over time, thinned in pieces: mean, least and largest tension, and the torque that is largest either way.
+fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
+    let names = [
+        "time",
+        "spindle_angle",
+        "spindle_speed",
+        "wire_tension",
+        "wire_tension_min",
+        "wire_tension_max",
+        "spindle_torque",
+    ];
+    let Some(columns) = table(path, names)? else {
+        return Ok(None);
+    };
+    let rows = columns[0].len();
+    let piece = rows.div_ceil(CURVE).max(1);
+    let thin = |column: usize, choose: fn(&[f64]) -> f64| {
+        Array::reals(columns[column].chunks(piece).map(choose))
+    };
+    let last = |piece: &[f64]| piece[piece.len() - 1];
+    let mean = |piece: &[f64]| piece.iter().sum::<f64>() / piece.len() as f64;
+    let least = |piece: &[f64]| piece.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = |piece: &[f64]| piece.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let farthest = |piece: &[f64]| {
+        let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+        piece.iter().copied().fold(0.0, larger)
+    };
+    Ok(Some(BTreeMap::from([
+        ("time", thin(0, last)),
+        ("angle", thin(1, last)),
+        ("speed", thin(2, last)),
+        ("tension", thin(3, mean)),
+        ("tension_min", thin(4, least)),
+        ("tension_max", thin(5, most)),
+        ("torque", thin(6, farthest)),
+    ])))
+}
+
+/// Measures at every degree of every turn.
+fn stations(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
+    let names = ["arc", "gap", "bulge", "layer", "measured"];
+    let Some([arc, gap, bulge, layer, measured]) = table(path, names)? else {
+        return Ok(None);
+    };
+    Ok(Some(BTreeMap::from([
+        ("arc", Array::reals(arc)),
+        ("gap", Array::reals(gap)),
+        ("bulge", Array::reals(bulge)),
+        ("layer", Array::bytes(layer)),
+        ("measured", Array::bytes(measured)),
+    ])))
+}

@@ -1,0 +1,114 @@
+"use strict";
+// Arrays, elements and numbers: what every part of the page uses. SI units, lengths in the core frame.
+
+const KINDS = { f32: Float32Array, u32: Uint32Array, u8: Uint8Array };
+const TURN = 2 * Math.PI;
+const STATIONS = 360;
+
+/** The array of a text such as `f32:BASE64`. */
+function decode(text) {
+  const at = text.indexOf(":");
+  const bytes = Uint8Array.from(atob(text.slice(at + 1)), (letter) => letter.charCodeAt(0));
+  return new KINDS[text.slice(0, at)](bytes.buffer);
+}
+
+/** The arrays of an object, or null. */
+function decodeAll(object) {
+  return object && Object.fromEntries(Object.entries(object).map(([name, text]) => [name, decode(text)]));
+}
+
+/** An element with attributes, listeners (`onclick`) and children. */
+function el(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (value === true) made.setAttribute(name, "");
+    else if (value !== false && value != null) made.setAttribute(name, value);
+  }
+  made.append(...children.filter((child) => child != null));
+  return made;
+}
+
+/** A colour of the style sheet as it is now, light or dark. */
+const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+/** Calls back where the page turns light or dark. */
+function onTheme(changed) {
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", changed);
+}
+
+/** A number with so many digits that count; a dash where there is none. */
+function digits(value, count = 3) {
+  if (value == null || !Number.isFinite(value)) return "–";
+  if (value === 0) return "0";
+  const magnitude = Math.floor(Math.log10(Math.abs(value)));
+  if (magnitude < -4 || magnitude > 5) return value.toExponential(count - 1).replace("e", " · 10^");
+  return value.toFixed(Math.min(8, Math.max(0, count - 1 - magnitude)));
+}
+/** A number with so many digits after the point; no minus before a zero. */
+const fixed = (value, count) => (value == null || !Number.isFinite(value) ? "–" : value.toFixed(count).replace(/^-(0\.?0*)$/, "$1"));
+const mm = (metres, count = 3) => `${fixed(1e3 * metres, count)} mm`;
+
+/** A time, s, in a unit that suits it. */
+function duration(seconds) {
+  if (seconds >= 120) return `${Math.floor(seconds / 60)} min ${Math.round(seconds % 60)} s`;
+  return seconds >= 1 ? `${digits(seconds)} s` : `${digits(1e3 * seconds)} ms`;
+}
+
+/** Index of the first of sorted values that is not below x. */
+function lowerBound(values, x) {
+  let [low, high] = [0, values.length];
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (values[middle] < x) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Least and largest of the finite values, without the outermost hundredth at either end. */
+function span(values) {
+  const sorted = Float32Array.from(values).filter(Number.isFinite).sort();
+  if (sorted.length === 0) return [0, 1];
+  const at = (share) => sorted[Math.round(share * (sorted.length - 1))];
+  const [least, most] = [at(0.01), at(0.99)];
+  return most > least ? [least, most] : [least - 0.5 * (Math.abs(least) || 1), most + 0.5 * (Math.abs(most) || 1)];
+}
+
+/** Buttons of which one is pressed. */
+function choice(names, chosen, choose) {
+  const buttons = Object.entries(names).map(([key, text]) => el("button", {
+    type: "button", "data-key": key, "aria-pressed": String(key === chosen),
+    onclick: () => {
+      buttons.forEach((b) => b.setAttribute("aria-pressed", String(b.dataset.key === key)));
+      choose(key);
+    },
+  }, text));
+  return el("span", { class: "group", role: "group" }, ...buttons);
+}
+
+/** A canvas in the pixels of the screen that draws itself again when its width or the theme changes. */
+function canvas(height, draw, attributes = {}) {
+  const made = el("canvas", { class: "own", ...attributes });
+  const paint = () => {
+    const [width, tall, ratio] = [made.clientWidth, height(made.clientWidth), devicePixelRatio || 1];
+    if (width === 0) return;
+    made.style.height = `${tall}px`;
+    made.width = Math.round(width * ratio);
+    made.height = Math.round(tall * ratio);
+    const pen = made.getContext("2d");
+    pen.scale(ratio, ratio);
+    pen.font = "12px system-ui, 'Segoe UI', sans-serif";
+    draw(pen, width, tall);
+  };
+  let before = 0;
+  new ResizeObserver(() => {
+    if (made.clientWidth !== before) {
+      before = made.clientWidth;
+      paint();
+    }
+  }).observe(made);
+  onTheme(paint);
+  made.paint = paint;
+  return made;
+}

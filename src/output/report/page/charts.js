@@ -1,0 +1,74 @@
+// Curves over the turns of the spindle, by uPlot.
+
+/** Tension and torque of a run; a click goes to that place of the wire. */
+function charts(run) {
+  const history = run.history;
+  if (!history) return [];
+  const turns = Array.from(history.angle, (angle) => Math.abs(angle) / TURN);
+  // A spindle that turns back would draw over what was there: then over time.
+  const forward = turns.every((turn, k) => k === 0 || turn >= turns[k - 1]);
+  const x = forward ? turns : Array.from(history.time, (time) => 1e3 * time);
+  const axis = forward ? "Turns of the spindle" : "Time, ms";
+  const marks = forward ? run.defects.map((d) => [d.turn - 1 + d.angle_deg / STATIONS, defectOf(d.kind).colour]) : [];
+  const plain = (array, scale = 1) => Array.from(array, (value) => scale * value);
+  const go = forward ? (turn) => run.goTo(turn) : () => {};
+  const note = marks.length ? "Dashed: defects, where they lie on the wire." : null;
+  const torque = plain(history.torque, 1e3);
+  return [
+    chart("Tension at the nozzle", axis, x, "N", [
+      { label: "mean", values: plain(history.tension), width: 1.4 },
+      { label: "least", values: plain(history.tension_min), band: true },
+      { label: "largest", values: plain(history.tension_max), band: true },
+    ], marks, go, note),
+    chart("Torque of the wire on the core", axis, x, "mN m", [{ label: "torque", values: torque, width: 1.4 }], marks, go,
+      "Negative where the wire resists the spindle."),
+  ];
+}
+
+function chart(title, axis, x, unit, curves, marks, go, note) {
+  const box = el("div", { class: "plot" });
+  const section = el("section", { class: "card chart" }, el("div", { class: "bar" }, el("h2", {}, title)), box,
+    note ? el("p", { class: "note" }, note) : null);
+  const grid = { stroke: () => css("--line"), width: 1 };
+  const axes = [
+    { label: axis, labelSize: 20, labelFont: "12px system-ui", font: "12px system-ui", stroke: () => css("--soft"), grid, ticks: grid, size: 34 },
+    { label: unit, labelSize: 18, labelFont: "12px system-ui", font: "12px system-ui", stroke: () => css("--soft"), grid, ticks: grid, size: 46 },
+  ];
+  const tell = (u, value) => (value == null ? "–" : `${digits(value)} ${unit}`);
+  const series = curves.map((curve) => ({
+    label: curve.label, value: tell, width: curve.width ?? 0.6, points: { show: false },
+    stroke: () => css(curve.band ? "--edge" : "--curve"),
+  }));
+  const options = {
+    width: 500, height: 250, axes, cursor: { drag: { x: true, y: false } },
+    scales: { x: { time: false } },
+    series: [{ label: axis, value: (u, value) => (value == null ? "–" : value.toFixed(3)) }, ...series],
+    bands: curves.length === 3 ? [{ series: [3, 2], fill: () => css("--band") }] : [],
+    hooks: { draw: [(u) => drawMarks(u, marks)] },
+  };
+  const plot = new Vendor.uPlot(options, [x, ...curves.map((curve) => curve.values)], box);
+  plot.over.addEventListener("click", () => {
+    if (plot.cursor.left >= 0) go(plot.posToVal(plot.cursor.left, "x"));
+  });
+  new ResizeObserver(() => box.clientWidth && plot.setSize({ width: box.clientWidth, height: 250 })).observe(box);
+  onTheme(() => plot.redraw());
+  return section;
+}
+
+function drawMarks(u, marks) {
+  const pen = u.ctx;
+  const { left, top, width, height } = u.bbox;
+  pen.save();
+  pen.setLineDash([5, 4]);
+  pen.lineWidth = 1.2 * devicePixelRatio;
+  for (const [at, colour] of marks) {
+    const x = u.valToPos(at, "x", true);
+    if (x < left || x > left + width) continue;
+    pen.strokeStyle = colour === "#111111" ? css("--ink") : colour;
+    pen.beginPath();
+    pen.moveTo(x, top);
+    pen.lineTo(x, top + height);
+    pen.stroke();
+  }
+  pen.restore();
+}

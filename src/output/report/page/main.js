@@ -1,0 +1,167 @@
+// The page: reads the data, and lays out one run, or two side by side.
+
+const GOOD = ["aligned", "single"];
+const BAD = ["bulge", "gap", "overlap", "slack", "break"];
+
+/** What the parts of the page need of a run. */
+class Run {
+  constructor(data) {
+    this.name = data.name;
+    this.summary = data.summary;
+    this.defects = data.summary.defects ?? [];
+    this.diameter = data.summary.product.wire_diameter_m;
+    this.history = decodeAll(data.history);
+    this.stations = decodeAll(data.stations);
+    this.wire = decodeAll(data.wire);
+    this.core = decodeAll(data.core);
+    this.frames = data.frames.map((frame) => ({ ...frame, wire: decodeAll(frame.wire) }));
+    if (this.wire) this.measure();
+  }
+
+  /** Turns from the clamp at every node, the way round, where the coil ends, and how large it is. */
+  measure() {
+    const { points, bulge } = this.wire;
+    const nodes = bulge.length;
+    const angles = new Float64Array(nodes);
+    const polar = (k) => Math.atan2(points[3 * k + 2], points[3 * k]);
+    for (let k = 1; k < nodes; k += 1) {
+      const step = polar(k) - polar(k - 1);
+      angles[k] = angles[k - 1] + step - TURN * Math.round(step / TURN);
+    }
+    this.direction = angles[nodes - 1] < 0 ? -1 : 1;
+    this.turnOf = angles.map((angle) => Math.max(0, (this.direction * angle) / TURN));
+    // Laid: all that has come to rest, and live wire as near to the axis as that.
+    const radius = (k) => Math.hypot(points[3 * k], points[3 * k + 2]);
+    let rest = 0;
+    let far = 0;
+    for (let k = 0; k < nodes; k += 1) if (Number.isFinite(bulge[k])) [rest, far] = [k + 1, Math.max(far, radius(k))];
+    if (rest === 0) far = this.coreRadius() + 2 * this.diameter;
+    let laid = rest;
+    while (laid < nodes && radius(laid) < far + 2 * this.diameter) laid += 1;
+    this.laid = Math.max(laid, Math.min(2, nodes));
+    const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
+    for (let k = 0; k < this.laid; k += 1) {
+      for (let axis = 0; axis < 3; axis += 1) {
+        low[axis] = Math.min(low[axis], points[3 * k + axis]);
+        high[axis] = Math.max(high[axis], points[3 * k + axis]);
+      }
+    }
+    const middle = low.map((value, axis) => (value + high[axis]) / 2);
+    const across = Math.hypot(...low.map((value, axis) => high[axis] - value)) / 2;
+    this.extent = { middle, radius: Math.max(across, this.coreRadius(), 4 * this.diameter) };
+  }
+
+  /** Largest distance of the core from the axis where wire lies, m. */
+  coreRadius() {
+    let most = 0;
+    const points = this.core?.points ?? [];
+    for (let k = 0; k < points.length; k += 3) most = Math.max(most, Math.hypot(points[k], points[k + 2]));
+    return Math.min(most, 1);
+  }
+
+  /** Turns of the spindle at a time, s. */
+  turnsAt(time) {
+    if (!this.history) return null;
+    const k = Math.min(lowerBound(this.history.time, time * (1 - 1e-6)), this.history.time.length - 1);
+    return Math.abs(this.history.angle[k]) / TURN;
+  }
+
+  /** Moves the view to a place of the wire, in turns from the clamp. */
+  goTo(turn) {
+    if (!this.view?.renderer) return;
+    const k = Math.min(lowerBound(this.turnOf, turn), this.laid - 1);
+    const { points, tension, gap, bulge, layer } = this.wire;
+    const at = this.turnOf[k];
+    const words = [`turn ${Math.floor(at) + 1}, ${Math.round((at % 1) * STATIONS)}°`, `tension ${digits(tension[k])} N`];
+    if (Number.isFinite(gap[k])) words.push(`gap ${mm(gap[k])}`);
+    if (Number.isFinite(bulge[k])) words.push(`height ${mm(bulge[k])}`, `layer ${layer[k]}`);
+    this.view.goTo(points.subarray(3 * k, 3 * k + 3), words.join("  ·  "), at);
+  }
+
+  goToDefect(defect) {
+    const size = defect.size_m == null ? "" : `  ·  ${mm(defect.size_m)}`;
+    this.view?.renderer && this.view.goTo(defect.place_m, `${defect.kind}  ·  turn ${defect.turn}, ${Math.round(defect.angle_deg)}°${size}`, defect.turn - 1 + defect.angle_deg / STATIONS);
+    const rows = document.querySelectorAll(".defects tbody tr");
+    rows.forEach((row) => row.classList.toggle("chosen", row.defect === defect));
+  }
+}
+
+function head(run) {
+  const s = run.summary;
+  const kind = GOOD.includes(s.verdict) ? "good" : s.verdict === "marginal" ? "fair" : BAD.includes(s.verdict) ? "bad" : "";
+  const status = { done: "wound to its end", interrupted: "interrupted", failed: `the solver gave up: ${s.reason}` }[s.status] ?? s.status;
+  const rpm = (s.speed_rad_per_s * 30) / Math.PI;
+  const meta = [status, `${fixed(s.turns_wound, 2)} turns wound, ${fixed(s.turns_settled, 2)} at rest`,
+    `${duration(s.simulated_s)} simulated`, `${digits(s.speed_rad_per_s)} rad/s (${Math.round(rpm)} rpm) at the end`, `folder ${run.name}`];
+  return el("header", {},
+    el("h1", {}, s.scene || run.name, el("span", { class: `pill ${kind}` }, s.verdict)),
+    el("ul", { class: "reasons" }, ...(s.reasons ?? []).map((reason) => el("li", {}, `${reason}.`))),
+    el("p", { class: "meta" }, meta.join("  ·  ")));
+}
+
+function product(run) {
+  const p = run.summary.product;
+  const ohm = p.resistance_ohm < 1 ? [digits(1e3 * p.resistance_ohm), "mΩ"] : [digits(p.resistance_ohm), "Ω"];
+  const figures = [
+    ["Turns at rest", fixed(p.turns, 2), ""], ["Layers", p.layers, ""], ["Wire length", digits(p.wire_length_m, 4), "m"],
+    ["Resistance at 20 °C", ...ohm], ["Fill factor", p.fill > 0 ? fixed(100 * p.fill, 1) : "–", "%"], ["Wire diameter", digits(1e3 * p.wire_diameter_m), "mm"],
+  ];
+  return el("dl", { class: "product" }, ...figures.map(([name, value, unit]) =>
+    el("div", {}, el("dt", {}, name), el("dd", {}, `${value} `, el("small", {}, unit)))));
+}
+
+function defects(run) {
+  const table = el("table", { class: "defects" },
+    el("thead", {}, el("tr", {}, ...["Defect", "Turn", "Layer", "Angle", "Time", "Size"].map((name) => el("th", {}, name)))),
+    el("tbody", {}, ...run.defects.slice(0, 500).map((defect) => {
+      const size = defect.size_m == null ? "–" : `${mm(defect.size_m)} (${fixed(defect.size_d, 2)} d)`;
+      const cells = [defect.kind, defect.turn, defect.layer, `${Math.round(defect.angle_deg)}°`, duration(defect.time_s), size];
+      const go = () => run.goToDefect(defect);
+      const row = el("tr", { tabindex: 0, onclick: go, onkeydown: (event) => event.key === "Enter" && go() }, ...cells.map((cell) => el("td", {}, `${cell}`)));
+      row.defect = defect;
+      return row;
+    })));
+  const count = run.defects.length;
+  const title = el("div", { class: "bar" }, el("h2", {}, count ? `Defects (${count})` : "Defects"));
+  const more = count > 500 ? el("p", { class: "note" }, "The first 500; all stand in defects.csv.") : null;
+  const body = count ? el("div", { class: "scroll" }, table) : el("p", { class: "soft" }, "None found.");
+  return el("section", { class: "card" }, title, body, count ? el("p", { class: "note" }, "A click moves the view there.") : null, more);
+}
+
+function trust(run) {
+  const { energy: e, penetration: p, summary: _, ...s } = run.summary;
+  const judged = s.bulge_judged ?? {};
+  const rows = [
+    ["Energy that is not accounted for", `${digits(100 * e.residual_over_dissipated)} % of what was dissipated`],
+    ["Deepest contact at rest", `${digits(100 * p.at_rest_over_d)} % of the diameter`],
+    ["Bulge judged by", judged.by === "over_rest" ? `${mm(judged.limit_m)} over the height at rest` : `${mm(judged.limit_m)}`],
+    ["Steps of the solver", `${s.steps}`],
+    ["Computed in", `${duration(s.wall_s)} (real-time factor ${digits(s.real_time_factor)})`],
+  ];
+  return el("section", { class: "card" }, el("div", { class: "bar" }, el("h2", {}, "How far to trust it")),
+    el("table", {}, el("tbody", {}, ...rows.map(([name, value]) => el("tr", {}, el("td", {}, name), el("td", {}, value))))));
+}
+
+/** A place that is empty, so that two runs side by side stay in line. */
+const nothing = (title, why) => el("section", { class: "card" }, el("div", { class: "bar" }, el("h2", {}, title)), el("p", { class: "soft" }, why));
+
+function layOut(run) {
+  if (run.wire) run.view = new View(run);
+  const curves = charts(run);
+  const noWire = "The run left no geometry (--no-geometry), or no wire was wound.";
+  return el("article", { class: "run" },
+    head(run), product(run),
+    run.view ? run.view.card() : nothing("Coil", noWire),
+    el("div", { class: "two" }, defects(run), trust(run)),
+    curves.length ? el("div", { class: "two" }, ...curves) : nothing("Tension and torque", "history.csv is missing."),
+    defectMap(run) ?? nothing("Defect map", "No wire has come to rest."),
+    crossSection(run) ?? nothing("Cross-section", noWire));
+}
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const page = document.getElementById("page");
+page.classList.toggle("pair", data.runs.length > 1);
+const runs = data.runs.map((one) => new Run(one));
+runs.forEach((run) => (run.all = runs));
+page.append(...runs.map(layOut));
+document.getElementById("made").textContent = `Made by coilwind ${data.version} from the files of the run. Contains three.js and uPlot.`;

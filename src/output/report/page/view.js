@@ -1,0 +1,326 @@
+// The coil in three dimensions: tubes round the nodes of the wire, made here, and the core. Lengths in mm.
+
+const SIDES = 10;
+const SCALE = 1e3;
+/** Colours of the screen as light, by the curve of sRGB. */
+const LIGHT = Float32Array.from({ length: 256 }, (_, k) => {
+  const c = k / 255;
+  return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+});
+
+/** A tube along a wire: geometry whose colours can be set per node. */
+class Tube {
+  constructor(points, radius) {
+    this.nodes = points.length / 3;
+    const n = this.nodes;
+    const place = new Float32Array(3 * SIDES * n);
+    const normal = new Float32Array(3 * SIDES * n);
+    const index = new Uint32Array(Math.max(0, 6 * SIDES * (n - 1)));
+    const circle = Array.from({ length: SIDES }, (_, k) => [Math.cos((TURN * k) / SIDES), Math.sin((TURN * k) / SIDES)]);
+    const v = (k) => new Vendor.Vector3(points[3 * k], points[3 * k + 1], points[3 * k + 2]).multiplyScalar(SCALE);
+    const [along, u, w] = [new Vendor.Vector3(), new Vendor.Vector3(0.3, 1, 0.2), new Vendor.Vector3()];
+    let [before, here] = [v(0), v(0)];
+    for (let k = 0; k < n; k += 1) {
+      const after = k + 1 < n ? v(k + 1) : here;
+      along.subVectors(after, before).normalize();
+      // Carried along with the least turn, so that the surface does not twist.
+      u.addScaledVector(along, -u.dot(along)).normalize();
+      w.crossVectors(along, u);
+      for (let side = 0; side < SIDES; side += 1) {
+        const [c, s] = circle[side];
+        const at = 3 * (k * SIDES + side);
+        const [x, y, z] = [c * u.x + s * w.x, c * u.y + s * w.y, c * u.z + s * w.z];
+        normal.set([x, y, z], at);
+        place.set([here.x + radius * x, here.y + radius * y, here.z + radius * z], at);
+      }
+      [before, here] = [here, after];
+    }
+    let at = 0;
+    for (let k = 0; k + 1 < n; k += 1) {
+      for (let side = 0; side < SIDES; side += 1) {
+        const [a, b] = [k * SIDES + side, k * SIDES + ((side + 1) % SIDES)];
+        index.set([a, b, a + SIDES, b, b + SIDES, a + SIDES], at);
+        at += 6;
+      }
+    }
+    this.geometry = new Vendor.BufferGeometry();
+    this.geometry.setAttribute("position", new Vendor.BufferAttribute(place, 3));
+    this.geometry.setAttribute("normal", new Vendor.BufferAttribute(normal, 3));
+    this.geometry.setAttribute("color", new Vendor.BufferAttribute(new Float32Array(3 * SIDES * n), 3));
+    this.geometry.setIndex(new Vendor.BufferAttribute(index, 1));
+  }
+
+  /** Colours the nodes. */
+  paint(values, colours) {
+    const colour = this.geometry.getAttribute("color");
+    for (let k = 0; k < this.nodes; k += 1) {
+      const light = colours.of(values[k]).map((c) => LIGHT[Math.round(c)]);
+      for (let side = 0; side < SIDES; side += 1) colour.array.set(light, 3 * (k * SIDES + side));
+    }
+    colour.needsUpdate = true;
+  }
+}
+
+/** The core as triangles that meet at edges. */
+function coreMesh(core) {
+  const place = new Float32Array(3 * core.corners.length);
+  core.corners.forEach((corner, k) => {
+    for (let axis = 0; axis < 3; axis += 1) place[3 * k + axis] = SCALE * core.points[3 * corner + axis];
+  });
+  const geometry = new Vendor.BufferGeometry();
+  geometry.setAttribute("position", new Vendor.BufferAttribute(place, 3));
+  geometry.computeVertexNormals();
+  const material = new Vendor.MeshStandardMaterial({ flatShading: true, roughness: 0.9, metalness: 0, side: Vendor.DoubleSide });
+  return new Vendor.Mesh(geometry, material);
+}
+
+/** The wire at a frame: what lay already, then what the frame has. */
+function wireAt(run, frame) {
+  if (frame == null) return run.wire;
+  const { keep, wire } = run.frames[frame];
+  const join = (name, per) => {
+    const [first, rest] = [run.wire[name].subarray(0, per * keep), wire[name]];
+    const joined = new first.constructor(first.length + rest.length);
+    joined.set(first);
+    joined.set(rest, first.length);
+    return joined;
+  };
+  return Object.fromEntries(Object.keys(run.wire).map((name) => [name, join(name, name === "points" ? 3 : 1)]));
+}
+
+class View {
+  constructor(run) {
+    this.run = run;
+    this.key = run.all.some((one) => one.defects.some((d) => d.size_m != null)) ? "defect" : "tension";
+    this.frame = null;
+    this.legend = el("div", { class: "legend" });
+    this.place = el("div", { class: "place" });
+    this.box = el("div", { class: "view" }, this.legend, this.place);
+    this.scene = new Vendor.Scene();
+    this.camera = new Vendor.PerspectiveCamera(32, 1, 0.5, 5000);
+    try {
+      this.renderer = new Vendor.WebGLRenderer({ antialias: true });
+    } catch {
+      this.box.replaceChildren(el("p", { style: "padding: 16px" }, "This browser shows no WebGL; the other parts of the page do not need it."));
+      return;
+    }
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
+    this.box.prepend(this.renderer.domElement);
+    this.controls = new Vendor.OrbitControls(this.camera, this.renderer.domElement);
+    this.controls.addEventListener("change", () => this.draw());
+    const sky = new Vendor.HemisphereLight(0xffffff, 0x8a8f96, 1.6);
+    const lamp = new Vendor.DirectionalLight(0xffffff, 1.9);
+    lamp.position.set(-0.4, 0.8, 1);
+    this.camera.add(lamp);
+    this.scene.add(sky, this.camera);
+    this.material = new Vendor.MeshStandardMaterial({ vertexColors: true, roughness: 0.5, metalness: 0.1 });
+    this.mark = new Vendor.Mesh(new Vendor.SphereGeometry(1, 24, 16),
+      new Vendor.MeshBasicMaterial({ transparent: true, opacity: 0.28, depthWrite: false }));
+    this.mark.scale.setScalar(1.25 * run.diameter * SCALE);
+    this.mark.visible = false;
+    this.scene.add(this.mark);
+    if (run.core) {
+      this.core = coreMesh(run.core);
+      this.scene.add(this.core);
+    }
+    this.build();
+    this.theme();
+    onTheme(() => this.theme());
+    this.look(1, 0.42, 0.8);
+    new ResizeObserver(() => this.resize()).observe(this.box);
+  }
+
+  /** Makes the tube of the wire as it is at the frame. */
+  build() {
+    const wire = wireAt(this.run, this.frame);
+    this.wire?.geometry.dispose();
+    this.tube = new Tube(wire.points, 0.5 * SCALE * this.run.diameter);
+    if (this.wire) this.wire.geometry = this.tube.geometry;
+    else {
+      this.wire = new Vendor.Mesh(this.tube.geometry, this.material);
+      this.scene.add(this.wire);
+    }
+    this.shown = wire;
+    this.peel(this.upTo);
+    this.colour(this.key);
+  }
+
+  /** Shows the first turns only, so that lower layers can be seen; no number shows all. */
+  peel(turns) {
+    this.upTo = turns;
+    const nodes = turns == null ? this.tube.nodes : lowerBound(this.run.turnOf, turns);
+    this.tube.geometry.setDrawRange(0, 6 * SIDES * Math.max(0, Math.min(nodes, this.tube.nodes) - 1));
+    if (this.peeler) {
+      this.peeler.value = turns == null ? this.peeler.max : Math.ceil(turns);
+      this.peeled.textContent = turns == null ? "all" : `${Number(turns.toFixed(2))}`;
+    }
+    this.draw();
+  }
+
+  /** Colours the wire; the range is that of the coils of all runs at their ends, so that frames and runs can be compared. */
+  colour(key) {
+    this.key = key;
+    const coil = this.run.all.flatMap((run) => (run.wire ? Array.from(run.wire[key].subarray(0, Math.max(1, run.laid))) : []));
+    const colours = colouring(key, coil);
+    this.tube.paint(this.shown[key], colours);
+    this.legend.replaceChildren(...legend(key, colours, coil));
+    this.draw();
+  }
+
+  showCore(how) {
+    if (!this.core) return;
+    this.core.visible = how !== "hidden";
+    this.core.material.transparent = how === "glass";
+    this.core.material.opacity = how === "glass" ? 0.25 : 1;
+    this.core.material.depthWrite = how !== "glass";
+    this.core.material.needsUpdate = true;
+    this.draw();
+  }
+
+  show(frame) {
+    this.frame = frame;
+    this.build();
+  }
+
+  theme() {
+    this.scene.background = new Vendor.Color(css("--view"));
+    this.mark.material.color.set(css("--accent"));
+    this.core?.material.color.set(css("--core"));
+    this.draw();
+  }
+
+  resize() {
+    const [width, height] = [this.box.clientWidth, this.box.clientHeight];
+    if (!width || !height) return;
+    this.renderer.setSize(width, height, false);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    if (!this.sized) this.look(1, 0.42, 0.8);
+    this.sized = true;
+    this.draw();
+  }
+
+  /** Shows the whole coil from a direction. */
+  look(x, y, z) {
+    const { middle, radius } = this.run.extent;
+    const target = new Vendor.Vector3(...middle).multiplyScalar(SCALE);
+    const narrow = Math.min(1, this.camera.aspect);
+    const distance = (1.12 * SCALE * radius) / Math.sin((0.5 * this.camera.fov * Math.PI) / 180) / narrow;
+    this.move(target, new Vendor.Vector3(x, y, z).normalize().multiplyScalar(distance).add(target), !this.sized);
+    this.mark.visible = false;
+    this.place.textContent = "";
+    this.peel(null);
+  }
+
+  /** Goes to a place of the wire, m, at so many turns, seen from outside and from the middle of the coil. Wire that was
+   * wound over it later is hidden. */
+  goTo(point, words, turns) {
+    const node = lowerBound(this.run.turnOf, turns);
+    const layers = this.run.wire.layer;
+    const covered = node < layers.length && layers[node] > 0 && layers.subarray(node).some((layer) => layer > layers[node]);
+    this.peel(covered ? Math.min(turns + 1, this.run.turnOf[layers.findIndex((layer, k) => k > node && layer > layers[node])]) : null);
+    const target = new Vendor.Vector3(...point).multiplyScalar(SCALE);
+    const out = new Vendor.Vector3(target.x, 0, target.z).normalize();
+    out.y = point[1] > this.run.extent.middle[1] ? -0.4 : 0.4;
+    const distance = Math.max(22 * SCALE * this.run.diameter, 0.5 * SCALE * this.run.extent.radius);
+    this.move(target, out.normalize().multiplyScalar(distance).add(target));
+    this.mark.position.copy(target);
+    this.mark.visible = true;
+    this.place.textContent = words;
+  }
+
+  move(target, eye, atOnce = false) {
+    const still = atOnce || matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const [from, seen, began] = [this.camera.position.clone(), this.controls.target.clone(), performance.now()];
+    const step = (now) => {
+      const t = still ? 1 : Math.min(1, Math.max(0, (now - began) / 450));
+      const share = t * t * (3 - 2 * t);
+      this.camera.position.lerpVectors(from, eye, share);
+      this.controls.target.lerpVectors(seen, target, share);
+      this.controls.update();
+      this.draw();
+      if (t < 1) requestAnimationFrame(step);
+    };
+    step(began);
+  }
+
+  /** Draws once before the screen is next painted. */
+  draw() {
+    if (this.waits || !this.renderer) return;
+    this.waits = true;
+    requestAnimationFrame(() => {
+      this.waits = false;
+      this.renderer.render(this.scene, this.camera);
+    });
+  }
+
+  /** The card: view, its switches, and the slider over time where frames were kept. */
+  card() {
+    const pick = (names, chosen, change) => el("select", { onchange: (event) => change(event.target.value) },
+      ...Object.entries(names).map(([key, text]) => el("option", { value: key, selected: key === chosen }, text)));
+    const names = Object.fromEntries(Object.entries(QUANTITIES).map(([key, { label }]) => [key, label]));
+    const sides = { corner: [1, 0.42, 0.8], x: [1, 0.02, 0], z: [0, 0.02, 1], axis: [0.02, 1, 0] };
+    const bar = el("div", { class: "bar" }, el("h2", {}, "Coil"),
+      el("label", {}, "Colour", withClass("colour", pick(names, this.key, (key) => this.colour(key)))),
+      this.core ? el("label", {}, "Core", withClass("core", pick({ solid: "solid", glass: "see-through", hidden: "hidden" }, "solid", (how) => this.showCore(how)))) : null,
+      el("span", { class: "group" }, ...Object.entries({ corner: "Whole coil", x: "From x", z: "From z", axis: "Along the axis" })
+        .map(([key, text]) => el("button", { type: "button", onclick: () => this.look(...sides[key]) }, text))));
+    const card = el("section", { class: "card coil" }, this.renderer ? bar : null, this.box);
+    if (this.renderer && this.run.frames.length) card.append(this.slider());
+    if (this.renderer && this.run.turnOf[this.run.laid - 1] > 5) card.append(this.layersSlider());
+    card.append(el("p", { class: "note" }, "Drag to turn, wheel to zoom, right button to shift."));
+    return card;
+  }
+
+  layersSlider() {
+    const most = Math.ceil(this.run.turnOf[this.run.laid - 1]);
+    this.peeled = el("output", {}, "all");
+    this.peeler = el("input", {
+      type: "range", class: "peel", min: 1, max: most, value: most, "aria-label": "Turns shown",
+      oninput: (event) => this.peel(Number(event.target.value) === most ? null : Number(event.target.value)),
+    });
+    return el("div", { class: "time" }, el("span", { class: "soft" }, "Turns shown"), this.peeler, this.peeled);
+  }
+
+  slider() {
+    const frames = this.run.frames;
+    const last = frames.length - 1;
+    const output = el("output", {});
+    const name = (frame) => {
+      const time = frames[frame].time;
+      const turns = this.run.turnsAt(time);
+      output.textContent = `${duration(time)}${turns == null ? "" : `, ${turns.toFixed(2)} turns`}`;
+    };
+    const input = el("input", {
+      type: "range", min: 0, max: last, value: last, "aria-label": "Time",
+      oninput: (event) => set(Number(event.target.value)),
+    });
+    const set = (frame) => {
+      input.value = frame;
+      name(frame);
+      this.show(frame);
+    };
+    let timer = null;
+    const play = el("button", {
+      type: "button", class: "play",
+      onclick: () => {
+        if (timer) return halt();
+        if (Number(input.value) === last) set(0);
+        play.textContent = "Pause";
+        timer = setInterval(() => (Number(input.value) < last ? set(Number(input.value) + 1) : halt()), Math.max(60, 6000 / frames.length));
+      },
+    }, "Play");
+    const halt = () => {
+      clearInterval(timer);
+      timer = null;
+      play.textContent = "Play";
+    };
+    name(last);
+    return el("div", { class: "time" }, play, el("span", { class: "soft" }, "Time"), input, output);
+  }
+}
+
+function withClass(name, element) {
+  element.classList.add(name);
+  return element;
+}

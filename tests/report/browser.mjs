@@ -1,0 +1,177 @@
+// Opens the report of a run in headless Chromium and tries what a reader does.
+//
+//     node browser.mjs --modules DIR --page FILE [--shots DIR] [--frames] [--runs N]
+//
+// Prints a line for each check; exit code 1 if one fails. scripts/report/test.sh calls it.
+import { createRequire } from "node:module";
+import { mkdirSync, statSync } from "node:fs";
+import { join, resolve } from "node:path";
+import { pathToFileURL } from "node:url";
+import { parseArgs } from "node:util";
+
+const { values: given } = parseArgs({
+  options: {
+    modules: { type: "string" }, page: { type: "string" }, shots: { type: "string" }, chromium: { type: "string" },
+    frames: { type: "boolean" }, runs: { type: "string", default: "1" },
+  },
+});
+const { chromium } = createRequire(join(resolve(given.modules), "x.js"))("playwright-core");
+const MOST_BYTES = 10e6;
+/** Until the page is laid out and drawn, ms; two seconds on a desk, more on a machine without graphics that others share. */
+const MOST_MS = 10_000;
+
+let failed = 0;
+function check(what, ok, saw = "") {
+  console.log(`${ok ? "ok  " : "FAIL"} ${what}${saw === "" ? "" : `: ${saw}`}`);
+  failed += ok ? 0 : 1;
+}
+
+const browser = await chromium.launch({
+  executablePath: given.chromium ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
+    "--disable-sync", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+
+/** Share of the pixels of the view that differ between two pictures, and how many colours the first has. */
+const compare = (page, before, after) => page.evaluate(async ([before, after]) => {
+  const pixels = async (data) => {
+    const bitmap = await createImageBitmap(await (await fetch(`data:image/png;base64,${data}`)).blob());
+    const pen = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    pen.drawImage(bitmap, 0, 0);
+    return pen.getImageData(0, 0, bitmap.width, bitmap.height).data;
+  };
+  const [a, b] = [await pixels(before), await pixels(after)];
+  const colours = new Set();
+  let different = 0;
+  for (let k = 0; k < a.length; k += 4) {
+    colours.add((a[k] >> 3) * 1024 + (a[k + 1] >> 3) * 32 + (a[k + 2] >> 3));
+    different += Math.abs(a[k] - b[k]) + Math.abs(a[k + 1] - b[k + 1]) + Math.abs(a[k + 2] - b[k + 2]) > 24 ? 1 : 0;
+  }
+  return { different: (4 * different) / a.length, colours: colours.size };
+}, [before.toString("base64"), after.toString("base64")]);
+
+async function look(scheme) {
+  const context = await browser.newContext({ colorScheme: scheme, viewport: { width: 1280, height: 900 }, reducedMotion: "reduce", offline: true });
+  const page = await context.newPage();
+  const complaints = [];
+  page.on("console", (message) => ["error", "warning"].includes(message.type()) && !/GPU stall|swiftshader/i.test(message.text()) && complaints.push(message.text()));
+  page.on("pageerror", (error) => complaints.push(String(error)));
+  page.on("request", (request) => /^https?:/.test(request.url()) && complaints.push(`asks for ${request.url()}`));
+  const began = Date.now();
+  await page.goto(pathToFileURL(resolve(given.page)).href);
+  const canvas = page.locator(".view canvas").first();
+  await canvas.waitFor();
+  const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 60)))));
+  await settle();
+  const took = Date.now() - began;
+  check(`${scheme}: drawn within ${MOST_MS} ms`, took < MOST_MS, `${took} ms`);
+  check(`${scheme}: runs on the page`, (await page.locator(".run").count()) === Number(given.runs));
+
+  const shot = async () => {
+    await settle();
+    return canvas.screenshot();
+  };
+  const first = await shot();
+  const core = page.locator("select.core").first();
+  await core.selectOption("hidden");
+  const bare = await shot();
+  const seen = await compare(page, first, bare);
+  check(`${scheme}: the view is not blank`, seen.colours > 40, `${seen.colours} colours`);
+  check(`${scheme}: the core can be hidden`, seen.different > 0.01, seen.different.toFixed(3));
+  await core.selectOption("solid");
+
+  const colour = page.locator("select.colour").first();
+  const shots = new Map();
+  for (const key of ["tension", "plastic_strain", "gap", "bulge", "layer", "defect"]) {
+    await colour.selectOption(key);
+    shots.set(key, await shot());
+    check(`${scheme}: legend of ${key}`, (await page.locator(".view .legend").first().innerText()).length > 4);
+  }
+  for (const [a, b] of [["tension", "plastic_strain"], ["tension", "layer"], ["gap", "bulge"]]) {
+    const { different } = await compare(page, shots.get(a), shots.get(b));
+    check(`${scheme}: ${a} and ${b} have other colours`, different > 0.004, different.toFixed(4));
+  }
+  if (given.frames) {
+    const before = shots.get("defect");
+    const slider = page.locator(".time input").first();
+    const told = await page.locator(".time output").first().innerText();
+    await slider.evaluate((input) => {
+      input.value = 0;
+      input.dispatchEvent(new Event("input"));
+    });
+    const { different } = await compare(page, before, await shot());
+    check(`${scheme}: the slider over time shows other wire`, different > 0.004, different.toFixed(4));
+    check(`${scheme}: and says another time`, told !== (await page.locator(".time output").first().innerText()), told);
+    await slider.evaluate((input) => {
+      input.value = input.max;
+      input.dispatchEvent(new Event("input"));
+    });
+    check(`${scheme}: its end is the coil`, (await compare(page, before, await shot())).different < 1e-3);
+  }
+  const peel = page.locator("input.peel").first();
+  if (await peel.count()) {
+    const before = await shot();
+    await peel.evaluate((input) => {
+      input.value = 2;
+      input.dispatchEvent(new Event("input"));
+    });
+    check(`${scheme}: turns can be taken off`, (await compare(page, before, await shot())).different > 0.02);
+    await page.getByRole("button", { name: "Whole coil" }).first().click();
+  }
+  const row = page.locator(".defects tbody tr").first();
+  if (await row.count()) {
+    const before = await shot();
+    await row.click();
+    const { different } = await compare(page, before, await shot());
+    check(`${scheme}: a click on a defect moves the view there`, different > 0.05, different.toFixed(3));
+    check(`${scheme}: and names it`, /turn \d/.test(await page.locator(".view .place").first().innerText()));
+    if (given.shots) {
+      mkdirSync(given.shots, { recursive: true });
+      await page.screenshot({ path: join(given.shots, `defect-${scheme}.png`) });
+    }
+    await page.getByRole("button", { name: "Whole coil" }).first().click();
+  }
+  const map = page.locator(".map canvas.own").first();
+  if (await map.count()) {
+    const before = await shot();
+    const box = await map.boundingBox();
+    await map.scrollIntoViewIfNeeded();
+    await map.click({ position: { x: 0.6 * box.width, y: 12 } });
+    check(`${scheme}: a click on the map moves the view`, (await compare(page, before, await shot())).different > 0.05);
+    await page.getByRole("button", { name: "Whole coil" }).first().click();
+    const gaps = await map.screenshot();
+    await page.locator(".map button[data-key=layer]").first().click();
+    check(`${scheme}: the map has other colours for layers`, (await compare(page, gaps, await map.screenshot())).different > 0.01);
+    await page.locator(".map button[data-key=gap]").first().click();
+  }
+  const section = page.locator(".section canvas.own").first();
+  const cut = await section.screenshot();
+  await page.locator(".section input[type=range]").first().evaluate((input) => {
+    input.value = 200;
+    input.dispatchEvent(new Event("input"));
+  });
+  await settle();
+  check(`${scheme}: the section moves`, (await compare(page, cut, await section.screenshot())).different > 1e-3);
+  check(`${scheme}: no section or curve is blank`, (await compare(page, cut, cut)).colours > 3);
+  const drawn = await page.locator(".chart canvas").count();
+  check(`${scheme}: curves are drawn, or missed`, drawn >= 2 || (await page.getByText("history.csv is missing").count()) > 0, `${drawn}`);
+  check(`${scheme}: the console is quiet`, complaints.length === 0, complaints.join(" | "));
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  check(`${scheme}: nothing sticks out sideways`, wide <= 0, `${wide} px`);
+  if (given.shots) {
+    mkdirSync(given.shots, { recursive: true });
+    await page.evaluate(() => scrollTo(0, 0));
+    await settle();
+    await page.screenshot({ path: join(given.shots, `${scheme}.png`), fullPage: true });
+  }
+  await context.close();
+}
+
+try {
+  check("the page is below 10 MB", statSync(given.page).size < MOST_BYTES, `${(statSync(given.page).size / 1e6).toFixed(2)} MB`);
+  for (const scheme of ["light", "dark"]) await look(scheme);
+} finally {
+  await browser.close();
+}
+console.log(failed ? `${failed} failed` : "all passed");
+process.exit(failed ? 1 : 0);

@@ -1,0 +1,325 @@
+//! Runs that are stopped and go on: to the same bytes as those that were not, and never over another run.
+#![cfg(unix)]
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use std::path::Path;
+use std::process::{Command, Output};
+use std::time::Duration;
+
+fn coilwind() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_coilwind"))
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// Twelve turns without pictures, which take longer than all else.
+fn short(out: &Path) -> Command {
+    let mut command = coilwind();
+    command.args(["run", "fig8", "--quiet", "--no-geometry"]);
+    for setting in [
+        "spindle.turns=12",
+        "spindle.speed=100",
+        "solver.spacing_near_mm=0.8",
+    ] {
+        command.args(["--set", setting]);
+    }
+    command.arg("--out").arg(out);
+    command
+}
+
+fn resume(out: &Path) -> Command {
+    let mut command = coilwind();
+    command
+        .args(["run", "--quiet", "--checkpoint-every", "0.02", "--resume"])
+        .arg(out);
+    command
+}
+
+/// The files of a run but for what the clock writes.
+fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let frames = std::fs::read_dir(folder.join("frames"))
+        .into_iter()
+        .flatten();
+    let entries = std::fs::read_dir(folder).unwrap().chain(frames);
+    let mut found: Vec<(String, Vec<u8>)> = entries
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_file() && !path.ends_with("report.html"))
+        .map(|path| {
+            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let mut bytes = std::fs::read(&path).unwrap();
+            if name == "summary.json" {
+                let text = String::from_utf8(bytes).unwrap();
+                let timeless = text
+                    .lines()
+                    .filter(|line| !line.contains("wall_s") && !line.contains("real_time_factor"));
+                bytes = timeless.collect::<Vec<_>>().join("\n").into_bytes();
+            }
+            (name, bytes)
+        })
+        .collect();
+    found.sort();
+    found
+}
+
+fn assert_same(whole: &Path, stopped: &Path, what: &str) {
+    let (a, b) = (files(whole), files(stopped));
+    let names = |files: &[(String, Vec<u8>)]| -> Vec<String> {
+        files.iter().map(|(name, _)| name.clone()).collect()
+    };
+    assert_eq!(names(&a), names(&b), "{what}");
+    for ((name, a), (_, b)) in a.iter().zip(&b) {
+        assert!(a == b, "{what}: {name} differs");
+    }
+}
+
+/// Kills a run at random instants until it has ended; returns how often.
+fn killed_until_it_ends(first: &mut Command, out: &Path, random: &mut ChaCha8Rng) -> u32 {
+    let mut child = first.args(["--checkpoint-every", "0.02"]).spawn().unwrap();
+    let mut kills = 0;
+    loop {
+        let wait = Duration::from_millis(50 + u64::from(random.next_u32() % 500));
+        std::thread::sleep(wait);
+        if let Some(status) = child.try_wait().unwrap() {
+            assert!(status.success(), "{status}");
+            return kills;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        kills += 1;
+        assert!(kills < 200, "it makes no way");
+        // Killed before its first checkpoint, a run begins again.
+        child = if out.join("checkpoint.bin").exists() {
+            resume(out).spawn().unwrap()
+        } else {
+            short(out)
+                .args(["--force", "--checkpoint-every", "0.02"])
+                .spawn()
+                .unwrap()
+        };
+    }
+}
+
+#[test]
+fn a_run_that_is_killed_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let whole = folder.path().join("whole");
+    assert!(short(&whole).status().unwrap().success());
+    let mut random = ChaCha8Rng::seed_from_u64(20);
+    let mut kills = 0;
+    for round in 0..10 {
+        let out = folder.path().join(round.to_string());
+        kills += killed_until_it_ends(&mut short(&out), &out, &mut random);
+        assert_same(&whole, &out, &format!("round {round}"));
+        if kills >= 10 {
+            break;
+        }
+    }
+    assert!(kills >= 10, "only {kills} kills");
+}
+
+/// On a communication grid, stopped by a signal, which ends a step in its middle.
+#[test]
+fn a_run_by_inputs_that_is_stopped_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let inputs = folder.path().join("in.csv");
+    std::fs::write(
+        &inputs,
+        "time,spindle_speed,tension_setpoint\n0,0,15\n0.004,300,15\n0.004,300,12\n0.03,300,12\n",
+    )
+    .unwrap();
+    let run = |out: &Path| {
+        let mut command = coilwind();
+        command.args([
+            "run", "fig8", "--quiet", "--step", "3e-4", "--frames", "2", "--inputs",
+        ]);
+        command.arg(&inputs).arg("--out").arg(out);
+        command.args(["--set", "solver.spacing_near_mm=0.5"]);
+        command
+    };
+    let whole = folder.path().join("whole");
+    assert!(run(&whole).status().unwrap().success());
+    let out = folder.path().join("out");
+    let mut child = run(&out)
+        .args(["--checkpoint-every", "0.02"])
+        .spawn()
+        .unwrap();
+    let mut stops = 0;
+    loop {
+        std::thread::sleep(Duration::from_millis(250));
+        if let Some(status) = child.try_wait().unwrap() {
+            assert!(status.success() || status.code() == Some(130), "{status}");
+            if status.success() {
+                break;
+            }
+        } else {
+            let signal = if stops % 2 == 0 { "-INT" } else { "-TERM" };
+            let kill = Command::new("kill")
+                .args([signal, &child.id().to_string()])
+                .status();
+            assert!(kill.unwrap().success());
+            let code = child.wait().unwrap().code();
+            if code == Some(0) {
+                break;
+            }
+            assert_eq!(code, Some(130));
+            let summary = std::fs::read_to_string(out.join("summary.json")).unwrap();
+            assert!(summary.contains("\"interrupted\""), "{summary}");
+            assert!(out.join("report.html").exists());
+        }
+        stops += 1;
+        assert!(stops < 200, "it makes no way");
+        child = resume(&out).spawn().unwrap();
+    }
+    assert!(stops > 0, "it was never stopped");
+    assert_same(&whole, &out, "inputs");
+
+    // Other inputs are no inputs of this run.
+    let mut child = run(&out)
+        .args(["--force", "--checkpoint-every", "0.02"])
+        .spawn()
+        .unwrap();
+    while !out.join("checkpoint.bin").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    std::fs::write(&inputs, "time,spindle_speed\n0,0\n0.03,200\n").unwrap();
+    let output = resume(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said(&output).contains("not the inputs that the run began with"),
+        "{}",
+        said(&output)
+    );
+}
+
+#[test]
+fn what_goes_on_is_told_where_a_run_is_stopped() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut command = short(&out);
+    command
+        .args(["--set", "spindle.turns=50"])
+        .stderr(std::process::Stdio::piped());
+    let child = command.spawn().unwrap();
+    while !out.join("checkpoint.bin").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(200));
+    // Nobody else may go on with a run that is going on.
+    let output = resume(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(said(&output).contains("going on"), "{}", said(&output));
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let line = format!("go on with: coilwind run --resume {}", out.display());
+    assert!(said(&output).contains(&line), "{}", said(&output));
+}
+
+#[test]
+fn a_folder_with_another_run_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let quick = |more: &[&str]| {
+        let mut command = coilwind();
+        command.args(["run", "fig8", "--quiet", "--set", "spindle.turns=0.02"]);
+        command.args(["--set", "spindle.ramp_turns=0.02"]);
+        command.arg("--out").arg(&out).args(more);
+        command
+    };
+    assert!(quick(&["--frames", "2"]).status().unwrap().success());
+    let before = files(&out);
+    let output = quick(&[]).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(said(&output).lines().count(), 1, "{}", said(&output));
+    assert!(said(&output).contains("--force"), "{}", said(&output));
+    assert_eq!(files(&out), before, "nothing was touched");
+    let output = resume(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said(&output).contains("the run has ended"),
+        "{}",
+        said(&output)
+    );
+
+    assert!(
+        quick(&["--force", "--no-geometry"])
+            .status()
+            .unwrap()
+            .success()
+    );
+    let left: Vec<String> = files(&out).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(
+        left,
+        [
+            "defects.csv",
+            "history.csv",
+            "scene.toml",
+            "stations.csv",
+            "summary.json",
+            "turns.csv"
+        ],
+        "nothing of the run before is left"
+    );
+    // A scene of one's own in the folder is no run, but it would be lost.
+    let own = folder.path().join("own");
+    std::fs::create_dir(&own).unwrap();
+    std::fs::write(own.join("scene.toml"), "[wire]\ndiameter_mm = 0.5\n").unwrap();
+    let output = coilwind()
+        .args(["run", "fig8", "--out"])
+        .arg(&own)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+}
+
+#[test]
+fn a_folder_without_a_whole_run_says_what_to_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("none");
+    let output = resume(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said(&output).contains("begin one with: coilwind run SCENE"),
+        "{}",
+        said(&output)
+    );
+
+    let mut child = short(&out).spawn().unwrap();
+    let checkpoint = out.join("checkpoint.bin");
+    while !checkpoint.exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let whole = std::fs::read(&checkpoint).unwrap();
+    let mut bent = whole.clone();
+    bent[whole.len() / 2] ^= 1;
+    for bytes in [&whole[..whole.len() / 2], &whole[..5], &bent] {
+        std::fs::write(&checkpoint, bytes).unwrap();
+        let output = resume(&out).output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert_eq!(said(&output).lines().count(), 1, "{}", said(&output));
+        assert!(
+            said(&output).contains("not whole") && said(&output).contains("--force"),
+            "{}",
+            said(&output)
+        );
+    }
+    std::fs::write(&checkpoint, &whole).unwrap();
+    std::fs::write(out.join("history.csv"), "time\n0\n").unwrap();
+    let output = resume(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said(&output).contains("history.csv is not the one"),
+        "{}",
+        said(&output)
+    );
+}
