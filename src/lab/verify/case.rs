@@ -20,6 +20,17 @@ pub struct Context<'a> {
     pub spacing: Option<f64>,
     /// local error that a step of the implicit method may have, m, where the kind winds as a scene does
     pub tolerance: f64,
+    /// whose set-up the case takes
+    pub setup: Setup,
+}
+
+/// Whose set-up a case takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Setup {
+    /// the kind's own: what suits the reference best
+    Own,
+    /// that of a wind in the default scene: contact law, stiffness, spacing, tolerance, twist, and variable-step BDF2
+    Wind,
 }
 
 /// A computed quantity.
@@ -91,6 +102,11 @@ pub enum VerifyError {
 }
 
 impl Context<'_> {
+    /// Whether the case takes the set-up of a wind.
+    pub fn winds(&self) -> bool {
+        self.setup == Setup::Wind
+    }
+
     /// A number among the inputs.
     pub fn number(&self, name: &str) -> Result<f64, VerifyError> {
         let value = self.inputs.get(name).and_then(serde_json::Value::as_f64);

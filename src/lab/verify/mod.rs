@@ -23,6 +23,7 @@ mod kinds;
 mod mandrel_springback;
 mod modes;
 mod penalty_impact;
+mod quasi_static;
 mod report;
 mod shoulder_drop;
 mod shoulder_static;
@@ -33,8 +34,8 @@ mod twist_buckling;
 mod winding_feed;
 mod wire;
 
-pub use case::{Answer, Answers, Context, VerifyError};
+pub use case::{Answer, Answers, Context, Setup, VerifyError};
 pub use command::{Manner, VerifyOptions, run, run_file};
 pub use file::{Case, CaseFile, Check};
-pub use kinds::{KINDS, Kind, Solve, WIND};
+pub use kinds::{KINDS, Kind, Solve, WIND, Wind};
 pub use report::Record;
