@@ -47,6 +47,9 @@ pub enum Answer {
 /// Longest wire that a case may ask for, edges.
 const MOST_EDGES: f64 = 20_000.0;
 
+/// Spacing of the free span over that near the core in a wind.
+const FREE: f64 = 8.0;
+
 /// Computed quantities by name.
 pub type Answers = Vec<(&'static str, Answer)>;
 
@@ -153,6 +156,15 @@ impl Context<'_> {
             )));
         }
         Ok(2 * (pairs.ceil() as usize).max(2))
+    }
+
+    /// The same for wire that is far from all that it could touch: a wind has longer edges there.
+    pub fn free_edges(&self, length: f64, spacing: f64) -> Result<usize, VerifyError> {
+        let free = Context {
+            spacing: self.spacing.map(|s| if self.winds() { FREE * s } else { s }),
+            ..*self
+        };
+        free.edges(length, spacing)
     }
 
     /// A text among the inputs.

@@ -48,8 +48,6 @@ impl Wind {
 
 /// Contact law, stiffness, spacing, tolerance, twist and formula of time of the default scene.
 pub const WIND: &str = "wind";
-/// Rest is found without steps in time.
-const STATICS: &str = "at rest, found without steps in time; spacing of the kind";
 /// Frequencies are those of the stiffness.
 const MODES: &str = "small oscillations, found without steps in time; spacing of the kind";
 
@@ -62,24 +60,24 @@ macro_rules! kinds {
 
 /// Every kind there is.
 pub const KINDS: &[Kind] = kinds! {
-    elastica_cantilever: Some(STATICS), Wind::All;
-    end_couple: Some(STATICS), Wind::All;
+    elastica_cantilever: None, Wind::All;
+    end_couple: None, Wind::All;
     bending_modes: Some(MODES), Wind::All;
     axial_wave: Some("waves without contact, midpoint rule; spacing of the kind"), Wind::All;
-    torsion: Some(MODES), Wind::All;
-    hanging_wire: Some(STATICS), Wind::All;
-    helix: Some(STATICS), Wind::All;
-    mandrel_springback: Some(STATICS), Wind::All;
-    cyclic_bending: Some(STATICS), Wind::All;
-    bulge_linear: Some(STATICS), Wind::All;
-    corner_edge: Some(STATICS), Wind::All;
-    square_loop: Some(STATICS), Wind::All;
-    capstan: Some("stiffness, spacing and tolerance from the bend: a depth of 1e-5 and an error of 1e-6 of its radius"), Wind::All;
+    torsion: Some(MODES), Wind::But(&["fixed_free_f1_Hz", "fixed_free_f2_Hz", "fixed_fixed_f1_Hz"]);
+    hanging_wire: None, Wind::All;
+    helix: None, Wind::All;
+    mandrel_springback: None, Wind::All;
+    cyclic_bending: None, Wind::All;
+    bulge_linear: None, Wind::All;
+    corner_edge: None, Wind::All;
+    square_loop: None, Wind::All;
+    capstan: None, Wind::All;
     twist_buckling: Some(MODES), Wind::All;
     shoulder_static: None, Wind::All;
     groove_seat: None, Wind::All;
     shoulder_drop: None, Wind::All;
-    spinning_ring: Some("64 edges a turn; stiffness 0.09 of an edge's; onset 0.01 of the depth; steps of 1/24 of a breath"), Wind::All;
+    spinning_ring: None, Wind::All;
     penalty_impact: Some("the paper's nodal contact, whose dashpot may pull; RK4"), Wind::Nothing;
     winding_feed: Some("string-like wire with drag and a constant pull, tolerance 5e-6 of the bend radius"), Wind::All;
 };
