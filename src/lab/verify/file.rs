@@ -103,6 +103,9 @@ const PACKED: &[(&str, &str)] = packed![
     "spinning_ring",
     "penalty_impact",
     "winding_feed",
+    "wave_damping",
+    "rolling_path",
+    "helix_gap",
 ];
 
 impl CaseFile {
