@@ -159,6 +159,26 @@ def helix_gap(radius, pitch):
     return {"gap_min_m": gap, "gap_max_m": gap}
 
 
+def frozen_helix(radius, pitch, tension, mu):
+    """Wire laid on a cylinder under tension.
+
+    Along a wire that nothing holds back tension plus EI k^2 / 2 stays the same: T in the straight span, T - EI k^2 / 2 where it
+    touches with the curvature of the helix. Friction may keep a little more, so the tension counts without friction only.
+    """
+    axis = radius + WIRE["d"] / 2
+    rate = math.hypot(axis, pitch / (2 * math.pi))
+    curvature = axis / rate**2
+    laid = tension - 0.5 * WIRE["EI"] * curvature**2
+    expected = {
+        "fed_per_turn_m": 2 * math.pi * rate / (1 + laid / WIRE["EA"]), "laid_radius_m": axis,
+        "moved_by_freezing_m": 0.0, "tension_jump_by_freezing_N": 0.0,
+    }
+    # without friction wire slides along the core to where the clamp's direction wants it; with friction it keeps a little tension
+    # from the way on which it touches and is not yet bent
+    more = {"laid_tension_N": laid} if mu == 0.0 else {"laid_pitch_m": pitch, "tension_without_friction_N": laid}
+    return {**expected, **more}
+
+
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
     d = WIRE["d"]
@@ -188,6 +208,20 @@ def main():
     ), {"gap_min_m": {"abs": 2e-8}, "gap_max_m": {"abs": 2e-8}}, [
         (f"R{radius * 1e3:g}mm_p{pitch / d:g}d", {"R_m": radius, "pitch_m": pitch}, helix_gap(radius, pitch))
         for radius, pitch in ((0.01, d), (0.01, 1.3 * d), (0.005, 2.5 * d), (0.05, 1.05 * d))
+    ])
+
+
+    write(folder, "frozen_helix", (
+        "Wire wound on a cylinder until it freezes",
+        "laid tension T - EI k^2/2, k = a/(a^2 + (p/2 pi)^2), a = R + r; fed per turn 2 pi sqrt(a^2 + (p/2 pi)^2)/(1 + laid/EA); freezing moves nothing",
+        "first integral of the elastica; elementary", "exact", "0.1 mm/m of the length, 2% of the tension",
+        "elastic wire, tensioner without mass, nozzle without friction; slow, so that the wire has no weight",
+    ), {
+        "fed_per_turn_m": {"rel": 1e-4}, "laid_radius_m": {"abs": 1e-6}, "laid_pitch_m": {"rel": 1e-3},
+        "laid_tension_N": {"rel": 0.02}, "moved_by_freezing_m": {"abs": 2e-7}, "tension_jump_by_freezing_N": {"abs": 0.02},
+    }, [
+        (f"R{radius * 1e3:g}mm_T{tension:g}_mu{mu:g}", {"R_m": radius, "pitch_m": 1.5 * d, "T0_N": tension, "mu": mu, "omega_rad_per_s": omega}, frozen_helix(radius, 1.5 * d, tension, mu))
+        for radius, tension, mu, omega in ((0.05, 15.0, 0.0, 10.0), (0.02, 15.0, 0.0, 30.0), (0.02, 8.0, 0.23, 30.0), (0.02, 15.0, 0.17, 30.0))
     ])
 
 

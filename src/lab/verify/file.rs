@@ -106,6 +106,7 @@ const PACKED: &[(&str, &str)] = packed![
     "wave_damping",
     "rolling_path",
     "helix_gap",
+    "frozen_helix",
 ];
 
 impl CaseFile {

@@ -16,6 +16,7 @@ mod elastica_cantilever;
 mod end_couple;
 mod equilibrium;
 mod file;
+mod frozen_helix;
 mod groove_seat;
 mod hanging_wire;
 mod helix;
