@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the reference files of `wave_damping`, `rolling_path`, `helix_gap`, `frozen_helix` and `live_crossing`.
+"""Writes the reference files of `wave_damping`, `rolling_path`, `helix_gap`, `frozen_helix` and `live_pair`.
 
     tests/reference/compute_laws.py [folder]
 
@@ -179,6 +179,14 @@ def frozen_helix(radius, pitch, tension, mu):
     return {**expected, **more}
 
 
+def live_pair(press, mu, stiffness=1e10, onset=1e-6):
+    """Depth of wire on wire under a line load (force k d^2/2o up to the onset, then k (d - o/2)), and Coulomb's friction."""
+    depth = math.sqrt(2 * onset * press / stiffness)
+    if depth > onset:
+        depth = press / stiffness + onset / 2
+    return {"approach_m": depth, "slip_exponent": mu}
+
+
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
     d = WIRE["d"]
@@ -222,6 +230,15 @@ def main():
     }, [
         (f"R{radius * 1e3:g}mm_T{tension:g}_mu{mu:g}", {"R_m": radius, "pitch_m": 1.5 * d, "T0_N": tension, "mu": mu, "omega_rad_per_s": omega}, frozen_helix(radius, 1.5 * d, tension, mu))
         for radius, tension, mu, omega in ((0.05, 15.0, 0.0, 10.0), (0.02, 15.0, 0.0, 30.0), (0.02, 8.0, 0.23, 30.0), (0.02, 15.0, 0.17, 30.0))
+    ])
+    write(folder, "live_pair", (
+        "Live wire pressed on live wire and drawn along it and the core",
+        "two live turns of a helix on a frozen one, on a cylinder; line load q along the axis: depth from k d^2/2o = q; drawn until all of the last turn slides: dT/ds = mu (q + T/a), so (T + q a) grows by exp(mu phi), a = R + r",
+        "statics and Coulomb; contact law of the documentation", "exact", "2% of the exponent, 10% of the depth",
+        "stiffness 1e10 N/m^2 and onset 1 um are those of the default scene; static = kinetic = mu; the turn between is pressed by 3 q on frozen wire and does not slide",
+    ), {"approach_m": {"rel": 0.1}, "slip_exponent": {"rel": 0.02}}, [
+        (f"R{radius * 1e3:g}mm_T{pull:g}_q{press:g}_mu{mu:g}", {"R_m": radius, "T0_N": pull, "press_N_per_m": press, "mu": mu, "drawn_m": drawn}, live_pair(press, mu))
+        for radius, pull, press, mu, drawn in ((0.01, 60.0, 3000.0, 0.17, 1.5e-4), (0.01, 60.0, 6000.0, 0.1, 1.5e-4))
     ])
 
 

@@ -161,7 +161,9 @@ impl Context<'_> {
     /// The same for wire that is far from all that it could touch: a wind has longer edges there.
     pub fn free_edges(&self, length: f64, spacing: f64) -> Result<usize, VerifyError> {
         let free = Context {
-            spacing: self.spacing.map(|s| if self.winds() { FREE * s } else { s }),
+            spacing: self
+                .spacing
+                .map(|s| if self.winds() { FREE * s } else { s }),
             ..*self
         };
         free.edges(length, spacing)

@@ -57,7 +57,9 @@ impl Manner {
         if self.integrator != Integrator::Implicit {
             return vec![(Setup::Own, self.named(Some("explicit method"), false))];
         }
-        let own = kind.own.map(|how| (Setup::Own, self.named(Some(how), false)));
+        let own = kind
+            .own
+            .map(|how| (Setup::Own, self.named(Some(how), false)));
         let wind = (kind.wind != Wind::Nothing).then(|| (Setup::Wind, self.named(None, true)));
         own.into_iter().chain(wind).collect()
     }

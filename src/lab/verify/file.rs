@@ -107,6 +107,7 @@ const PACKED: &[(&str, &str)] = packed![
     "rolling_path",
     "helix_gap",
     "frozen_helix",
+    "live_pair",
 ];
 
 impl CaseFile {

@@ -52,7 +52,9 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         .filter_map(|s| s.neighbour.map(|n| n.gap))
         .collect();
     if gaps.is_empty() {
-        return Err(VerifyError::NoAnswer("no station has a neighbour".to_owned()));
+        return Err(VerifyError::NoAnswer(
+            "no station has a neighbour".to_owned(),
+        ));
     }
     let extreme = |f: fn(f64, f64) -> f64| gaps.iter().copied().fold(gaps[0], f);
     Ok(vec![

@@ -3,9 +3,9 @@
 use super::case::{Answers, Context, VerifyError};
 use super::{
     axial_wave, bending_modes, bulge_linear, capstan, corner_edge, cyclic_bending,
-    elastica_cantilever, end_couple, frozen_helix, groove_seat, hanging_wire, helix, mandrel_springback,
-    helix_gap, penalty_impact, rolling_path, shoulder_drop, shoulder_static, spinning_ring, square_loop, torsion,
-    twist_buckling, wave_damping, winding_feed,
+    elastica_cantilever, end_couple, frozen_helix, groove_seat, hanging_wire, helix, helix_gap,
+    live_pair, mandrel_springback, penalty_impact, rolling_path, shoulder_drop, shoulder_static,
+    spinning_ring, square_loop, torsion, twist_buckling, wave_damping, winding_feed,
 };
 
 /// Computes the answers of one case.
@@ -82,6 +82,7 @@ pub const KINDS: &[Kind] = kinds! {
     wave_damping: None, Wind::All;
     helix_gap: None, Wind::All;
     frozen_helix: None, Wind::All;
+    live_pair: None, Wind::All;
     penalty_impact: Some("the paper's nodal contact, whose dashpot may pull; RK4"), Wind::Nothing;
     winding_feed: Some("string-like wire with drag and a constant pull, tolerance 5e-6 of the bend radius"), Wind::All;
 };

@@ -22,6 +22,7 @@ mod hanging_wire;
 mod helix;
 mod helix_gap;
 mod kinds;
+mod live_pair;
 mod mandrel_springback;
 mod modes;
 mod penalty_impact;

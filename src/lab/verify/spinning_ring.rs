@@ -249,9 +249,7 @@ impl<'a> Wound<'a> {
         sys.set_feed(spec, Feed::at_rest(&spec, pull));
         sys.state.set_tension = pull;
         let breath = breath(section, radius);
-        let (mut step, dt) = stepper(ctx, breath, || {
-            stable_step(section, edge, stiffness, false)
-        });
+        let (mut step, dt) = stepper(ctx, breath, || stable_step(section, edge, stiffness, false));
         sys.model.loads.drag = 4.0 / breath;
         sys.refresh();
         step.through(&mut sys, 20.0 * breath, dt)?;
