@@ -238,7 +238,7 @@ def main():
         "stiffness 1e10 N/m^2 and onset 1 um are those of the default scene; static = kinetic = mu; the turn between is pressed by 3 q on frozen wire and does not slide",
     ), {"approach_m": {"rel": 0.1}, "slip_exponent": {"rel": 0.02}}, [
         (f"R{radius * 1e3:g}mm_T{pull:g}_q{press:g}_mu{mu:g}", {"R_m": radius, "T0_N": pull, "press_N_per_m": press, "mu": mu, "drawn_m": drawn}, live_pair(press, mu))
-        for radius, pull, press, mu, drawn in ((0.01, 60.0, 3000.0, 0.17, 1.5e-4), (0.01, 60.0, 6000.0, 0.1, 1.5e-4))
+        for radius, pull, press, mu, drawn in ((0.01, 60.0, 3000.0, 0.17, 6e-4), (0.01, 60.0, 6000.0, 0.1, 6e-4))
     ])
 
 

@@ -62,8 +62,8 @@ macro_rules! kinds {
 pub const KINDS: &[Kind] = kinds! {
     elastica_cantilever: None, Wind::All;
     end_couple: None, Wind::All;
-    bending_modes: Some(MODES), Wind::All;
-    axial_wave: Some("waves without contact, midpoint rule; spacing of the kind"), Wind::All;
+    bending_modes: None, Wind::All;
+    axial_wave: None, Wind::All;
     torsion: Some(MODES), Wind::But(&["fixed_free_f1_Hz", "fixed_free_f2_Hz", "fixed_fixed_f1_Hz"]);
     hanging_wire: None, Wind::All;
     helix: None, Wind::All;
@@ -84,5 +84,5 @@ pub const KINDS: &[Kind] = kinds! {
     frozen_helix: None, Wind::All;
     live_pair: None, Wind::All;
     penalty_impact: Some("the paper's nodal contact, whose dashpot may pull; RK4"), Wind::Nothing;
-    winding_feed: Some("string-like wire with drag and a constant pull, tolerance 5e-6 of the bend radius"), Wind::All;
+    winding_feed: None, Wind::All;
 };
