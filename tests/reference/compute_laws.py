@@ -18,7 +18,10 @@ HERE = Path(__file__).resolve().parent
 WIRE = json.loads((HERE / "spinning_ring.json").read_text(encoding="utf-8"))["wire"]
 
 
-def write(folder, kind, words, check, cases):
+def write(folder, kind, words, check, cases, implicit=True):
+    """One file; `implicit`: about the production method, so that it does not count for the paper's."""
+    if implicit:
+        check = {name: {**how, "preset": "default"} for name, how in check.items()}
     title, formula, source, precision, tolerance, notes = words
     doc = {
         "kind": kind, "title": title, "formula": formula, "source": source, "precision": precision,
@@ -216,7 +219,7 @@ def main():
     ), {"gap_min_m": {"abs": 2e-8}, "gap_max_m": {"abs": 2e-8}}, [
         (f"R{radius * 1e3:g}mm_p{pitch / d:g}d", {"R_m": radius, "pitch_m": pitch}, helix_gap(radius, pitch))
         for radius, pitch in ((0.01, d), (0.01, 1.3 * d), (0.005, 2.5 * d), (0.05, 1.05 * d))
-    ])
+    ], implicit=False)
 
 
     write(folder, "frozen_helix", (

@@ -1,10 +1,11 @@
 //! Axial waves, modes and stretch of a straight wire.
 
-use super::equilibrium::{follow, no_answer};
+use super::bench::Stepper;
+use super::equilibrium::follow;
 use super::modes::{Motion, lowest};
 use super::wire::{clamp_along_x, straight};
 use super::{Answer, Answers, Context, VerifyError};
-use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency};
+use crate::integrate::{Explicit, ExplicitMethod, highest_frequency};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::scene::Integrator;
@@ -18,8 +19,6 @@ const PULSE_EDGES: f64 = 400.0;
 const PULSE_WIDTH: f64 = 0.05;
 /// Share of the longest stable step.
 const STEP_SHARE: f64 = 0.9;
-/// Newton's method stops at a tenth of this, m: the pulse moves the wire by tens of nanometres.
-const TOLERANCE: f64 = 1e-13;
 /// Steps after which a pulse is given up.
 const MOST_STEPS: usize = 200_000;
 /// Speed in the pulse, m/s: a strain far below any limit.
@@ -65,9 +64,9 @@ fn wave_speed(ctx: &Context, length: f64) -> Result<f64, VerifyError> {
     let h = length / n as f64;
     let mut sys = straight(ctx.elastic(), &vec![h; n]);
     sys.model.twist = Twist::Off;
+    let wave = (sys.model.section.ea / sys.model.section.mass_per_length()).sqrt();
     let crest = if ctx.winds() {
         // the wire moves by the integral of the pulse, sqrt(2 pi) half widths
-        let wave = (sys.model.section.ea / sys.model.section.mass_per_length()).sqrt();
         FAST_PULSE * sys.model.section.diameter * wave / (TAU.sqrt() * PULSE_WIDTH * length)
     } else {
         PULSE_SPEED
@@ -82,27 +81,15 @@ fn wave_speed(ctx: &Context, length: f64) -> Result<f64, VerifyError> {
         Integrator::Verlet => Some(ExplicitMethod::Verlet),
         Integrator::Implicit => None,
     };
-    // the midpoint rule has no limit, but it is to follow the pulse
-    let limit = explicit.unwrap_or(ExplicitMethod::Verlet).limit();
-    let wave = (sys.model.section.ea / sys.model.section.mass_per_length()).sqrt();
-    let dt = if ctx.winds() {
-        PULSE_WIDTH * length / wave / LOOKS
-    } else {
-        STEP_SHARE * limit / top
-    };
-    let mut stepper = match explicit {
-        None if ctx.winds() => {
-            let method = Implicit::new(Scheme::Bdf2, ctx.tolerance, 1e-9, 0.1);
-            Stepper::Implicit(Box::new(method))
+    let (mut stepper, dt) = match explicit {
+        Some(method) => {
+            let dt = STEP_SHARE * method.limit() / top;
+            let method = Explicit::new(method);
+            (Stepper::Explicit(method), dt)
         }
-        Some(method) => Stepper::Explicit {
-            method: Explicit::new(method),
-            longest: dt,
-        },
         None => {
-            let mut method = Implicit::new(Scheme::Midpoint, TOLERANCE, dt, dt);
-            method.fixed = Some(dt);
-            Stepper::Implicit(Box::new(method))
+            let dt = PULSE_WIDTH * length / wave / LOOKS;
+            (Stepper::implicit(ctx.tolerance, dt), dt)
         }
     };
     sys.evaluate(Some(dt));
@@ -110,11 +97,7 @@ fn wave_speed(ctx: &Context, length: f64) -> Result<f64, VerifyError> {
     let stations = [n / 2, 3 * n / 4];
     let mut crests = [Crest::above(0.25 * crest); 2];
     for _ in 0..MOST_STEPS {
-        let mut left = dt;
-        while left > 0.0 {
-            let taken = stepper.step(&mut sys, left).map_err(no_answer)?;
-            left = if taken >= left { 0.0 } else { left - taken };
-        }
+        stepper.through(&mut sys, dt, dt)?;
         for (crest, node) in crests.iter_mut().zip(stations) {
             crest.see(sys.state.rod.v[node].x, sys.state.time, dt);
         }

@@ -48,8 +48,9 @@ impl Wind {
 
 /// Contact law, stiffness, spacing, tolerance, twist and formula of time of the default scene.
 pub const WIND: &str = "wind";
-/// Frequencies are those of the stiffness.
-const MODES: &str = "small oscillations, found without steps in time; spacing of the kind";
+/// Frequencies of rolls follow from stiffness and rotary inertia.
+const ROLLS: &str =
+    "rolls with inertia, small oscillations found without steps in time; spacing of the kind";
 
 /// A row for each kind: module, words for its own set-up, what a wind's answers.
 macro_rules! kinds {
@@ -64,7 +65,7 @@ pub const KINDS: &[Kind] = kinds! {
     end_couple: None, Wind::All;
     bending_modes: None, Wind::All;
     axial_wave: None, Wind::All;
-    torsion: Some(MODES), Wind::But(&["fixed_free_f1_Hz", "fixed_free_f2_Hz", "fixed_fixed_f1_Hz"]);
+    torsion: Some(ROLLS), Wind::But(&["fixed_free_f1_Hz", "fixed_free_f2_Hz", "fixed_fixed_f1_Hz"]);
     hanging_wire: None, Wind::All;
     helix: None, Wind::All;
     mandrel_springback: None, Wind::All;
@@ -73,7 +74,7 @@ pub const KINDS: &[Kind] = kinds! {
     corner_edge: None, Wind::All;
     square_loop: None, Wind::All;
     capstan: None, Wind::All;
-    twist_buckling: Some(MODES), Wind::All;
+    twist_buckling: None, Wind::All;
     shoulder_static: None, Wind::All;
     groove_seat: None, Wind::All;
     shoulder_drop: None, Wind::All;

@@ -79,7 +79,9 @@ fn stepped(ctx: &Context, sys: &System, axis: usize, mode: &Mode) -> Result<f64,
     let mut step = Stepper::implicit(ctx.tolerance, dt);
     let seen = |sys: &System| -> f64 {
         let parts = sys.state.rod.x.iter().zip(&rest).zip(&mode.shape);
-        parts.map(|((x, rest), shape)| (x[axis] - rest) * shape).sum()
+        parts
+            .map(|((x, rest), shape)| (x[axis] - rest) * shape)
+            .sum()
     };
     let (mut last, mut zeros) = (0.0, Vec::new());
     for k in 1..=((SWINGS + 1.0) * LOOKS) as usize {

@@ -18,8 +18,8 @@ const DRAG: f64 = 7.0;
 /// Shortest and longest step of a wind, s.
 const BRIEFEST: f64 = 1e-9;
 const LONGEST: f64 = 0.1;
-/// Longest wait for rest, in ramps, and looks at it a ramp.
-const PATIENCE: usize = 4;
+/// Longest wait for rest, in ramps.
+const PATIENCE: usize = 20;
 /// Speed that counts as rest, as a share of the tolerance over the unit of time.
 const RESTS: f64 = 0.02;
 
@@ -37,11 +37,12 @@ impl QuasiStatic {
     pub(super) fn new(ctx: &Context, sys: &mut System, flat: bool) -> Self {
         let section = &sys.model.section;
         let length: f64 = sys.state.rod.rest.iter().sum();
+        let unit = |ei: f64| length * length * (section.mass_per_length() / ei).sqrt();
         let yields = section.m_y.is_finite();
+        // elastic parts must not swing beyond what they are pressed to, and yielding ones need their time
         let softest = if yields { section.ei_p } else { section.ei };
-        let unit = length * length * (section.mass_per_length() / softest).sqrt();
-        let unit = unit.max(SHORTEST);
-        sys.model.loads.drag = DRAG / unit;
+        sys.model.loads.drag = DRAG / unit(section.ei).max(SHORTEST);
+        let unit = unit(softest).max(SHORTEST);
         sys.state.past.forget();
         sys.refresh();
         let mut step = Implicit::new(Scheme::Bdf2, ctx.tolerance, BRIEFEST, LONGEST);
