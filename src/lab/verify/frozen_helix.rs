@@ -33,6 +33,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let mut fed = Vec::with_capacity(samples);
     let mut moved: f64 = 0.0;
     let mut jump: f64 = 0.0;
+    let mut followed = 0;
     let mut before = Live::of(&sim);
     for i in 1..=samples {
         let angle = SAMPLE * i as f64;
@@ -48,9 +49,15 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             if let Some((place, tension)) = before.find(node.arc) {
                 moved = moved.max((node.point - place).norm());
                 jump = jump.max((node.tension - tension).abs());
+                followed += 1;
             }
         }
         before = after;
+    }
+    if followed < sim.system().state.frozen.len() / 2 {
+        return Err(VerifyError::NoAnswer(
+            "frozen wire is not where live wire was".to_owned(),
+        ));
     }
     let laid: Vec<FrozenNode> = sim
         .system()
