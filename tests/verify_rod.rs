@@ -49,6 +49,18 @@ kinds!(
     square_loop,
 );
 
+/// What the paper's method does not know, or does by other steps.
+macro_rules! default_only {
+    ($($kind:ident),* $(,)?) => {
+        $(#[test]
+        fn $kind() {
+            all_right(stringify!($kind), Preset::Default);
+        })*
+    };
+}
+
+default_only!(rolling_path, wave_damping);
+
 fn packed(kind: &str) -> CaseFile {
     let files = CaseFile::packed().expect("packed files are well formed");
     let found = files.into_iter().find(|f| f.kind == kind);
