@@ -1,7 +1,7 @@
 //! Pieces that several contact checks share: straight frozen wires, a piece of wire over them,
 //! the step, and averages.
 
-use super::equilibrium::no_answer;
+use super::case::no_answer;
 use super::{Context, VerifyError};
 use crate::contact::{ContactLaw, LineModel, NodalModel};
 use crate::geometry::{FrozenNode, SIDES};

@@ -1,5 +1,6 @@
 //! A case that runs, what it answers, and why it cannot.
 
+use crate::integrate::StepError;
 use crate::lab::statics::RelaxError;
 use crate::rod::Section;
 use crate::scene::Integrator;
@@ -102,6 +103,11 @@ pub enum VerifyError {
         /// what is wrong
         problem: String,
     },
+}
+
+/// A step or solve that gave up.
+pub(super) fn no_answer(e: StepError) -> VerifyError {
+    VerifyError::NoAnswer(e.to_string())
 }
 
 impl Context<'_> {

@@ -2,7 +2,8 @@
 //!
 //! One edge held at both ends; its clamp turns to give the joint there each curvature in turn.
 
-use super::equilibrium::{follow_with_twist, method, no_answer};
+use super::case::no_answer;
+use super::equilibrium::{follow_with_twist, method};
 use super::wire::{heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::math::V3;

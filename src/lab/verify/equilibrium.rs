@@ -1,9 +1,9 @@
 //! Static equilibrium: by static solves of the production method, by the steps that wind, or by the forces of the
 //! explicit steps.
 
+use super::case::no_answer;
 use super::quasi_static::QuasiStatic;
 use super::{Context, VerifyError};
-use crate::integrate;
 use crate::integrate::{Implicit, Scheme};
 use crate::lab::statics::{Limits, ramp, relax};
 use crate::rod::Twist;
@@ -116,9 +116,4 @@ pub(super) fn method(sys: &System) -> Implicit {
     let length: f64 = sys.state.rod.rest.iter().sum();
     // bounds of the step mean nothing here
     Implicit::new(Scheme::Bdf2, TOLERANCE * length, 1e-9, 1.0)
-}
-
-/// A step or solve that gave up.
-pub(super) fn no_answer(e: integrate::StepError) -> VerifyError {
-    VerifyError::NoAnswer(e.to_string())
 }

@@ -4,7 +4,7 @@
 //! turn make the method step as the case says: each is short enough for its error. The reference is the eigenvalue of the
 //! formula over such a pair of steps; nothing of it is told to the wire.
 
-use super::equilibrium::no_answer;
+use super::case::no_answer;
 use super::wire::{clamp_along_x, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::integrate::{Implicit, Scheme};
