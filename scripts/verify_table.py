@@ -53,7 +53,8 @@ def row(kind, found):
     error = f"{100 * nearest['rel_error']:.2g} %" if nearest["rel_error"] is not None else "-"
     slowest = max(record["cpu_s"] for record in found)
     name = f"`{nearest['quantity']}` ({nearest['id']})"
-    return [f"`{kind}`", f"{right} of {len(found)}", name, error, f"{100 * largest:.1f} %", f"{slowest:.1f}"]
+    setups = "; ".join(dict.fromkeys(record["setup"] for record in found))
+    return [f"`{kind}`", setups, f"{right} of {len(found)}", name, error, f"{100 * largest:.1f} %", f"{slowest:.1f}"]
 
 
 def main():
@@ -61,7 +62,7 @@ def main():
     parser.add_argument("--command", default="target/release/coilwind")
     parser.add_argument("--tables", type=Path, default=tables.TABLES)
     args = parser.parse_args()
-    head = ["kind", "right", "quantity nearest to its tolerance (case)", "relative error", "share of tolerance", "slowest case, CPU s"]
+    head = ["kind", "set-up", "right", "quantity nearest to its tolerance (case)", "relative error", "share of tolerance", "slowest case, CPU s"]
     parts, wrong = [f"`coilwind verify --json --preset default` and `--preset paper`; {tables.machine()}."], 0
     for preset, name in PRESETS.items():
         found = records(args.command, preset)

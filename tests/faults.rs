@@ -82,15 +82,20 @@ fn a_full_disk_is_named() {
     }
 }
 
+/// A command as one types it, for a shell to run under limits.
+fn as_typed(command: &Command) -> String {
+    let words = std::iter::once(command.get_program()).chain(command.get_args());
+    let words: Vec<String> = words.map(|w| w.to_string_lossy().into_owned()).collect();
+    words.join(" ")
+}
+
 /// Files may not grow beyond 8 kB; the signal for it is ignored, so that the write fails.
 #[test]
 fn a_limit_on_the_size_of_files_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let inner = run(&out, 0.3);
-    let words = std::iter::once(inner.get_program()).chain(inner.get_args());
-    let words: Vec<String> = words.map(|w| w.to_string_lossy().into_owned()).collect();
-    let line = format!("trap '' XFSZ; ulimit -f 8; {}", words.join(" "));
+    let inner = as_typed(&run(&out, 0.3));
+    let line = format!("trap '' XFSZ; ulimit -f 8; {}", inner);
     let output = Command::new("bash").args(["-c", &line]).output().unwrap();
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
     assert!(
@@ -145,10 +150,9 @@ fn too_little_memory_is_named() {
     let out = folder.path().join("out");
     let mut inner = run(&out, 2.0);
     inner.arg("--force");
-    let words = std::iter::once(inner.get_program()).chain(inner.get_args());
-    let words: Vec<String> = words.map(|w| w.to_string_lossy().into_owned()).collect();
+    let inner = as_typed(&inner);
     for kilobytes in [30_000, 40_000, 60_000] {
-        let line = format!("ulimit -v {kilobytes}; exec {}", words.join(" "));
+        let line = format!("ulimit -v {kilobytes}; exec {}", inner);
         let output = Command::new("bash").args(["-c", &line]).output().unwrap();
         let text = said(&output);
         let named = text.contains("memory") || text.contains("Resource temporarily unavailable");

@@ -34,7 +34,10 @@ macro_rules! kinds {
 kinds!(
     default = Preset::Default;
     capstan,
+    frozen_helix,
     groove_seat,
+    helix_gap,
+    live_pair,
     shoulder_drop,
     shoulder_static,
     spinning_ring,

@@ -49,6 +49,18 @@ kinds!(
     square_loop,
 );
 
+/// What the paper's method does not know, or does by other steps.
+macro_rules! default_only {
+    ($($kind:ident),* $(,)?) => {
+        $(#[test]
+        fn $kind() {
+            all_right(stringify!($kind), Preset::Default);
+        })*
+    };
+}
+
+default_only!(rolling_path, wave_damping);
+
 fn packed(kind: &str) -> CaseFile {
     let files = CaseFile::packed().expect("packed files are well formed");
     let found = files.into_iter().find(|f| f.kind == kind);
@@ -69,7 +81,10 @@ fn error_at(kind: &str, quantity: &str, spacing: f64) -> f64 {
         let record = records
             .iter()
             .find(|r| r.quantity.as_deref() == Some(quantity));
-        error = record.and_then(|r| r.rel_error).unwrap_or(f64::NAN);
+        // not every set-up has the quantity
+        if let Some(record) = record {
+            error = record.rel_error.unwrap_or(f64::NAN);
+        }
     })
     .expect("the case can be run");
     error
@@ -79,7 +94,6 @@ fn error_at(kind: &str, quantity: &str, spacing: f64) -> f64 {
 fn the_rod_is_second_order_in_its_spacing() {
     for (kind, quantity, spacing) in [
         ("elastica_cantilever", "extensible_tip_y_m", 2e-3),
-        ("bending_modes", "f2_Hz", 1e-3),
         ("helix", "axial_moment_Nm", 4e-3),
         ("torsion", "fixed_free_f2_Hz", 5e-3),
     ] {

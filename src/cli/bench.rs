@@ -80,9 +80,9 @@ pub(super) struct BenchArgs {
     /// W: compare with the converged runs of this file instead of the packed ones
     #[arg(long, value_name = "FILE", conflicts_with = "store")]
     against: Option<PathBuf>,
-    /// W: wind an ensemble of eight nozzle distances, +-0.35 mm about the scene's, with 0.25 mm edges and
-    /// a tolerance of 2e-7 m unless --n and --tol say otherwise, and keep its means in this file (made,
-    /// or this speed in it replaced) as what later runs are compared with
+    /// W: wind an ensemble and keep its means in this file, for later runs to be compared with. Eight nozzle distances,
+    /// +-0.35 mm about the scene's; 0.25 mm edges and a tolerance of 2e-7 m unless --n and --tol say otherwise. The file is
+    /// made, or this speed in it replaced
     #[arg(long, value_name = "FILE", conflicts_with_all = ["repeat", "integrator", "dt"])]
     store: Option<PathBuf>,
 }

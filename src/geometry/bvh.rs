@@ -16,6 +16,24 @@ use nalgebra::Point3;
 type Node = BvhNode<f64, 3>;
 type Box3 = Aabb<f64, 3>;
 
+/// Boxes of a node's two halves and the numbers of their nodes; none of a leaf.
+fn children(node: &BvhNode<f64, 3>) -> impl Iterator<Item = (&Box3, usize)> {
+    let halves = match node {
+        BvhNode::Leaf { .. } => None,
+        BvhNode::Node {
+            child_l_index,
+            child_l_aabb,
+            child_r_index,
+            child_r_aabb,
+            ..
+        } => Some([
+            (child_l_aabb, *child_l_index),
+            (child_r_aabb, *child_r_index),
+        ]),
+    };
+    halves.into_iter().flatten()
+}
+
 /// Boxes are taken this much (relative) larger than they are, so that rounding never hides a
 /// triangle that the exact test would keep.
 const SLACK: f64 = 1e-9;
@@ -135,18 +153,10 @@ impl Near<'_> {
                     out.push(triangle);
                 }
             }
-            Node::Node {
-                child_l_index,
-                child_l_aabb,
-                child_r_index,
-                child_r_aabb,
-                ..
-            } => {
-                for (bounds, child) in
-                    [(child_l_aabb, child_l_index), (child_r_aabb, child_r_index)]
-                {
+            inner => {
+                for (bounds, child) in children(inner) {
                     if box_distance_sq(bounds, self.p) <= self.limit {
-                        self.walk(*child, out);
+                        self.walk(child, out);
                     }
                 }
             }
@@ -206,18 +216,12 @@ fn level_walk(
                 *best = Some((found, triangle));
             }
         }
-        Node::Node {
-            child_l_index,
-            child_l_aabb,
-            child_r_index,
-            child_r_aabb,
-            ..
-        } => {
-            for (bounds, child) in [(child_l_aabb, child_l_index), (child_r_aabb, child_r_index)] {
+        inner => {
+            for (bounds, child) in children(inner) {
                 let crosses = bounds.min.y <= p.y && p.y <= bounds.max.y;
                 let least = best.map_or(f64::INFINITY, |(found, _)| found.distance_sq);
                 if crosses && box_distance_sq(bounds, p) <= least {
-                    level_walk(nodes, mesh, p, *child, best);
+                    level_walk(nodes, mesh, p, child, best);
                 }
             }
         }

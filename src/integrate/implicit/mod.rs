@@ -57,7 +57,7 @@ pub struct Implicit {
     pub fixed: Option<f64>,
     /// which scheme
     pub scheme: Scheme,
-    /// static solves keep every node where it is along the core's z: without twist, a plane wire under
+    /// every node keeps its place along the core's z (verification only): without twist, a plane wire under
     /// a dead couple has nothing to hold it there
     pub flat: bool,
     /// what it took so far

@@ -43,6 +43,7 @@ impl Implicit {
                 continue;
             }
             let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
+            model.flat = self.flat;
             let solved = newton::solve(
                 &mut model,
                 work,

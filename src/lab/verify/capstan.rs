@@ -18,21 +18,23 @@ use crate::system::{Support, System};
 use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
-/// Edge length as a share of the bending length `sqrt(EI/F0)` and of the bend radius.
+/// Edge length of the explicit method as a share of the bending length `sqrt(EI/F0)` and of the bend radius.
 const SPACING: [f64; 2] = [0.25, 0.1];
 
 /// Leg length in bending lengths of the slack side: end effects fall to e^-5.
 const LEG: f64 = 5.0;
 
-/// Depth under the slack side's load as a share of the radius; many sagittas of the facets.
+/// Depth under the slack side's load as a share of the radius in explicit steps; many sagittas of the facets.
 const DEPTH: f64 = 1e-5;
+
+/// Stiffness, N/m^2, and longest step, s, of a wind.
+const STIFFNESS: f64 = 1e10;
+const LONGEST: f64 = 0.1;
 
 /// Facets of the cylinder.
 const FACETS: usize = 4096;
 
-/// Local error of a step of the production method as a share of the bend radius, and the parts of a
-/// time that it is told to stop at.
-const TOLERANCE: f64 = 1e-6;
+/// Parts of a time that the production method is told to stop at.
 const PARTS: usize = 200;
 
 /// Drawing speed as a share of the speed of transverse waves on the slack side.
@@ -88,7 +90,8 @@ impl Capstan {
         let bend = radius + section.radius();
         let bending = (section.ei / hold).sqrt();
         let leg = LEG * bending;
-        let edge = (SPACING[0] * bending).min(SPACING[1] * bend);
+        let fit = (SPACING[0] * bending).min(SPACING[1] * bend);
+        let edge = ctx.spacing.unwrap_or(fit);
         let total = 2.0 * leg + wrap * bend;
         let edges = (total / edge).ceil() as usize;
         let h = total / edges as f64;
@@ -114,18 +117,23 @@ impl Capstan {
         let mut sys = System::new(section.clone(), Rod::through(&points, Some(rest)));
         // plane, so untwisted
         sys.model.twist = Twist::Off;
-        let stiffness = hold / (bend * bend * DEPTH);
+        let implicit = ctx.integrator == Integrator::Implicit;
+        let stiffness = if implicit {
+            STIFFNESS
+        } else {
+            hold / (bend * bend * DEPTH)
+        };
         let law = law(stiffness, 1.0, mu);
         let r = section.radius();
         let wave = (hold / section.mass_per_length()).sqrt();
-        let step = if ctx.integrator == Integrator::Implicit {
+        let step = if implicit {
             let core = Shape::Cylinder {
                 radius,
                 half_y: 10.0 * section.diameter,
             };
             let line = LineModel::new(core, law, r);
             sys.touch_along(line);
-            Stepper::implicit(TOLERANCE * bend, h / (SPEED * wave))
+            Stepper::implicit(ctx.tolerance, LONGEST)
         } else {
             let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
             sys.touch_at_nodes(NodalModel {

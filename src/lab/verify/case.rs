@@ -1,5 +1,6 @@
 //! A case that runs, what it answers, and why it cannot.
 
+use crate::integrate::StepError;
 use crate::lab::statics::RelaxError;
 use crate::rod::Section;
 use crate::scene::Integrator;
@@ -20,6 +21,17 @@ pub struct Context<'a> {
     pub spacing: Option<f64>,
     /// local error that a step of the implicit method may have, m, where the kind winds as a scene does
     pub tolerance: f64,
+    /// whose set-up the case takes
+    pub setup: Setup,
+}
+
+/// Whose set-up a case takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Setup {
+    /// the kind's own: what suits the reference best
+    Own,
+    /// that of a wind in the default scene: contact law, stiffness, spacing, tolerance, twist, and variable-step BDF2
+    Wind,
 }
 
 /// A computed quantity.
@@ -35,6 +47,9 @@ pub enum Answer {
 
 /// Longest wire that a case may ask for, edges.
 const MOST_EDGES: f64 = 20_000.0;
+
+/// Spacing of the free span over that near the core in a wind.
+const FREE: f64 = 8.0;
 
 /// Computed quantities by name.
 pub type Answers = Vec<(&'static str, Answer)>;
@@ -90,7 +105,17 @@ pub enum VerifyError {
     },
 }
 
+/// A step or solve that gave up.
+pub(super) fn no_answer(e: StepError) -> VerifyError {
+    VerifyError::NoAnswer(e.to_string())
+}
+
 impl Context<'_> {
+    /// Whether the case takes the set-up of a wind.
+    pub fn winds(&self) -> bool {
+        self.setup == Setup::Wind
+    }
+
     /// A number among the inputs.
     pub fn number(&self, name: &str) -> Result<f64, VerifyError> {
         let value = self.inputs.get(name).and_then(serde_json::Value::as_f64);
@@ -137,6 +162,17 @@ impl Context<'_> {
             )));
         }
         Ok(2 * (pairs.ceil() as usize).max(2))
+    }
+
+    /// The same for wire that is far from all that it could touch: a wind has longer edges there.
+    pub fn free_edges(&self, length: f64, spacing: f64) -> Result<usize, VerifyError> {
+        let free = Context {
+            spacing: self
+                .spacing
+                .map(|s| if self.winds() { FREE * s } else { s }),
+            ..*self
+        };
+        free.edges(length, spacing)
     }
 
     /// A text among the inputs.

@@ -1,8 +1,8 @@
 //! Runs of cases with exact answers: which ones, how, and a record for each number.
 
-use super::file::{CaseFile, Check};
+use super::file::{Case, CaseFile, Check};
 use super::report::{Outcome, Record, judge, unknown};
-use super::{Context, KINDS, Kind, VerifyError, WIND};
+use super::{Context, KINDS, Kind, Setup, VerifyError, WIND, Wind};
 use crate::scene::{Integrator, Preset};
 use crate::settings::SceneSettings;
 use std::path::PathBuf;
@@ -45,31 +45,37 @@ pub struct Manner {
     pub integrator: Integrator,
     /// node spacing where it is finest, m; `None`: each kind's own
     pub spacing: Option<f64>,
-    /// local error that a step may have, m, for kinds whose set-up is that of a wind
+    /// local error that a step may have, m, where the set-up is that of a wind
     pub tolerance: f64,
+    /// node spacing of a wind at this tolerance over the wire's diameter
+    pub wind_spacing: f64,
 }
 
 impl Manner {
-    /// The set-up of a kind's cases: "wind", or in what it differs from a wind's.
-    fn setup(&self, kind: &Kind) -> String {
-        let mut parts = Vec::new();
+    /// The set-ups that a kind's cases take, each with its name: "wind", or in what it differs from a wind's.
+    fn setups(&self, kind: &Kind) -> Vec<(Setup, String)> {
         if self.integrator != Integrator::Implicit {
-            parts.push("explicit method".to_owned());
-        } else if kind.setup != WIND {
-            parts.push(kind.setup.to_owned());
+            return vec![(Setup::Own, self.named(Some("explicit method"), false))];
         }
+        let own = kind
+            .own
+            .map(|how| (Setup::Own, self.named(Some(how), false)));
+        let wind = (kind.wind != Wind::Nothing).then(|| (Setup::Wind, self.named(None, true)));
+        own.into_iter().chain(wind).collect()
+    }
+
+    fn named(&self, how: Option<&str>, winds: bool) -> String {
+        let mut parts: Vec<String> = how.map(str::to_owned).into_iter().collect();
         if let Some(spacing) = self.spacing {
             parts.push(format!("spacing {spacing} m"));
         }
-        let default = SceneSettings::default().solver.tolerance;
-        if kind.setup == WIND && self.tolerance != default {
+        if winds && self.tolerance != SceneSettings::default().solver.tolerance {
             parts.push(format!("tolerance {:e} m", self.tolerance));
         }
         if parts.is_empty() {
-            WIND.to_owned()
-        } else {
-            parts.join("; ")
+            return WIND.to_owned();
         }
+        parts.join("; ")
     }
 }
 
@@ -124,6 +130,7 @@ impl VerifyOptions {
             integrator,
             spacing,
             tolerance: settings.solver.tolerance,
+            wind_spacing: wind_spacing(settings.solver.tolerance)?,
         })
     }
 
@@ -135,6 +142,17 @@ impl VerifyOptions {
             self.files.iter().map(|p| CaseFile::load(p)).collect()
         }
     }
+}
+
+/// Node spacing near the core that the default scene has at this tolerance, over the wire's diameter.
+fn wind_spacing(tolerance: f64) -> Result<f64, VerifyError> {
+    let mut settings = SceneSettings::default();
+    settings.solver.tolerance = tolerance;
+    let scene = settings.build().map_err(|e| VerifyError::Setting {
+        text: format!("solver.tolerance={tolerance}"),
+        problem: e.to_string(),
+    })?;
+    Ok(scene.solver.spacing_near / scene.wire.diameter)
 }
 
 /// Runs what `args` ask for, handing each line to `print`; whether every number was right.
@@ -187,43 +205,69 @@ pub fn run_file(
     manner: &Manner,
     mut each: impl FnMut(&[Record], f64),
 ) -> Result<(), VerifyError> {
-    let solve = KINDS.iter().find(|kind| kind.name == file.kind);
-    for case in &file.cases {
-        let context = Context {
-            section: &file.section,
-            inputs: &case.inputs,
-            folder: &file.folder,
-            integrator: manner.integrator,
-            spacing: manner.spacing,
-            tolerance: manner.tolerance,
-        };
-        let start = Instant::now();
-        let answers = solve.map(|kind| (kind.run)(&context));
-        let cpu = start.elapsed().as_secs_f64();
-        let outcome = match answers {
-            None => Outcome::Unknown,
-            Some(Ok(answers)) => Outcome::Answers(answers, cpu),
-            Some(Err(VerifyError::Input { name, problem })) => {
-                return Err(VerifyError::File {
-                    file: file.name.clone(),
-                    key: format!("case {}, inputs.{name}", case.id),
-                    problem,
-                });
+    let Some(kind) = KINDS.iter().find(|kind| kind.name == file.kind) else {
+        for case in &file.cases {
+            let counts = |c: &&(String, Check)| c.1.counts(manner.preset);
+            let checks = file.check.iter().filter(counts);
+            let mut records = judge(&file.kind, case, checks, &Outcome::Unknown);
+            if records.is_empty() {
+                records.push(unknown(&file.kind, Some(&case.id)));
             }
-            Some(Err(error)) => Outcome::Failed(error.to_string(), cpu),
-        };
-        let counts = |c: &&(String, Check)| c.1.counts(manner.preset);
-        let mut records = judge(&file.kind, case, file.check.iter().filter(counts), &outcome);
-        if solve.is_none() && records.is_empty() {
-            records.push(unknown(&file.kind, Some(&case.id)));
+            each(&records, 0.0);
         }
-        let setup = solve.map(|kind| manner.setup(kind));
-        for record in &mut records {
-            record.setup.clone_from(&setup);
+        return Ok(());
+    };
+    let setups = manner.setups(kind);
+    for case in &file.cases {
+        for (setup, name) in &setups {
+            let (records, cpu) = run_case(file, case, manner, kind, (*setup, name))?;
+            each(&records, cpu);
         }
-        each(&records, cpu);
     }
     Ok(())
+}
+
+/// The records of a case in one set-up, and the seconds it took.
+fn run_case(
+    file: &CaseFile,
+    case: &Case,
+    manner: &Manner,
+    kind: &Kind,
+    (setup, name): (Setup, &str),
+) -> Result<(Vec<Record>, f64), VerifyError> {
+    let winds = setup == Setup::Wind;
+    let near = manner.wind_spacing * file.section.diameter;
+    let context = Context {
+        section: &file.section,
+        inputs: &case.inputs,
+        folder: &file.folder,
+        integrator: manner.integrator,
+        spacing: manner.spacing.or(winds.then_some(near)),
+        tolerance: manner.tolerance,
+        setup,
+    };
+    let start = Instant::now();
+    let answers = (kind.run)(&context);
+    let cpu = start.elapsed().as_secs_f64();
+    let outcome = match answers {
+        Ok(answers) => Outcome::Answers(answers, cpu),
+        Err(VerifyError::Input { name, problem }) => {
+            return Err(VerifyError::File {
+                file: file.name.clone(),
+                key: format!("case {}, inputs.{name}", case.id),
+                problem,
+            });
+        }
+        Err(error) => Outcome::Failed(error.to_string(), cpu),
+    };
+    let counts = |(quantity, check): &&(String, Check)| {
+        check.counts(manner.preset) && (!winds || kind.wind.answers(quantity))
+    };
+    let mut records = judge(&file.kind, case, file.check.iter().filter(counts), &outcome);
+    for record in &mut records {
+        record.setup = Some(name.to_owned());
+    }
+    Ok((records, cpu))
 }
 
 #[cfg(test)]

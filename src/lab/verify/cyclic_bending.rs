@@ -2,16 +2,34 @@
 //!
 //! One edge held at both ends; its clamp turns to give the joint there each curvature in turn.
 
-use super::equilibrium::{method, no_answer};
+use super::case::no_answer;
+use super::equilibrium::{follow_with_twist, method};
 use super::wire::{heading, straight};
 use super::{Answer, Answers, Context, VerifyError};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::scene::Integrator;
-use crate::system::Support;
+use crate::system::{Support, System};
 
 /// Largest angle of the joint, rad.
 const WIDEST: f64 = 0.05;
+
+/// The moments when the clamp turns slowly from one curvature to the next.
+fn by_steps(ctx: &Context, mut sys: System, path: &[f64]) -> Result<Answers, VerifyError> {
+    let lv = sys.state.rod.voronoi(0);
+    let mut moments = Vec::with_capacity(path.len());
+    let mut from = 0.0;
+    for curvature in path {
+        let to = -curvature * lv;
+        follow_with_twist(ctx, &mut sys, |sys, share| {
+            let angle = from + share * (to - from);
+            sys.state.support[0].frame = Some(heading(angle));
+        })?;
+        moments.push(-sys.state.load.clamp_moment[0].z);
+        from = to;
+    }
+    Ok(vec![("moment_isotropic_Nm", Answer::List(moments))])
+}
 
 /// Moments at the points of the path, each committed before the next.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
@@ -23,6 +41,9 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         Support::pinned(V3::zeros()),
         Support::pinned(V3::x() * edge),
     ];
+    if ctx.winds() {
+        return by_steps(ctx, sys, &path);
+    }
     let mut method = method(&sys);
     let mut moments = Vec::with_capacity(path.len());
     for curvature in path {

@@ -1,7 +1,9 @@
-//! Static equilibrium: by the production method, or by the forces of the explicit steps.
+//! Static equilibrium: by static solves of the production method, by the steps that wind, or by the forces of the
+//! explicit steps.
 
+use super::case::no_answer;
+use super::quasi_static::QuasiStatic;
 use super::{Context, VerifyError};
-use crate::integrate;
 use crate::integrate::{Implicit, Scheme};
 use crate::lab::statics::{Limits, ramp, relax};
 use crate::rod::Twist;
@@ -12,6 +14,17 @@ use crate::system::System;
 /// is smaller still.
 const TOLERANCE: f64 = 1e-10;
 
+/// What a problem asks of the solver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Needs {
+    /// a plane wire: twist does nothing
+    Plane,
+    /// a plane wire that dead couples roll up, which nothing but the plane holds
+    HeldPlane,
+    /// a wire whose rolls matter
+    Rolls,
+}
+
 /// Follows equilibrium while `apply` brings loads and supports from share 0 to share 1; without twist,
 /// which does nothing in a plane.
 pub(super) fn follow(
@@ -19,12 +32,7 @@ pub(super) fn follow(
     sys: &mut System,
     apply: impl FnMut(&mut System, f64),
 ) -> Result<(), VerifyError> {
-    if ctx.integrator == Integrator::Implicit {
-        sys.model.twist = Twist::Off;
-        return method(sys).follow(sys, apply).map_err(no_answer);
-    }
-    ramp(sys, &Limits::default(), apply)?;
-    Ok(())
+    follow_as(ctx, sys, Needs::Plane, apply)
 }
 
 /// The same for a wire in the x-y plane that dead couples roll up: twist is off, which holds a real
@@ -34,13 +42,7 @@ pub(super) fn follow_in_plane(
     sys: &mut System,
     apply: impl FnMut(&mut System, f64),
 ) -> Result<(), VerifyError> {
-    if ctx.integrator != Integrator::Implicit {
-        return follow(ctx, sys, apply);
-    }
-    sys.model.twist = Twist::Off;
-    let mut method = method(sys);
-    method.flat = true;
-    method.follow(sys, apply).map_err(no_answer)
+    follow_as(ctx, sys, Needs::HeldPlane, apply)
 }
 
 /// The same with twist.
@@ -49,30 +51,64 @@ pub(super) fn follow_with_twist(
     sys: &mut System,
     apply: impl FnMut(&mut System, f64),
 ) -> Result<(), VerifyError> {
-    if ctx.integrator == Integrator::Implicit {
-        sys.model.twist = Twist::QuasiStatic;
-        return method(sys).follow(sys, apply).map_err(no_answer);
+    follow_as(ctx, sys, Needs::Rolls, apply)
+}
+
+fn follow_as(
+    ctx: &Context,
+    sys: &mut System,
+    needs: Needs,
+    apply: impl FnMut(&mut System, f64),
+) -> Result<(), VerifyError> {
+    if ctx.integrator != Integrator::Implicit {
+        ramp(sys, &Limits::default(), apply)?;
+        return Ok(());
     }
-    follow(ctx, sys, apply)
+    sys.model.twist = twist(ctx, sys, needs);
+    if ctx.winds() {
+        return QuasiStatic::new(ctx, sys, needs == Needs::HeldPlane).follow(sys, apply);
+    }
+    let mut method = method(sys);
+    method.flat = needs == Needs::HeldPlane;
+    method.follow(sys, apply).map_err(no_answer)
 }
 
 /// Moves to equilibrium under the present loads and supports; without twist, see [`follow`].
 pub(super) fn settle(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
-    if ctx.integrator == Integrator::Implicit {
-        sys.model.twist = Twist::Off;
-        return method(sys).equilibrate(sys).map_err(no_answer);
-    }
-    relax(sys, &Limits::default())?;
-    Ok(())
+    settle_as(ctx, sys, Needs::Plane)
 }
 
 /// The same with twist.
 pub(super) fn settle_with_twist(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
-    if ctx.integrator == Integrator::Implicit {
-        sys.model.twist = Twist::QuasiStatic;
-        return method(sys).equilibrate(sys).map_err(no_answer);
+    settle_as(ctx, sys, Needs::Rolls)
+}
+
+fn settle_as(ctx: &Context, sys: &mut System, needs: Needs) -> Result<(), VerifyError> {
+    if ctx.integrator != Integrator::Implicit {
+        relax(sys, &Limits::default())?;
+        return Ok(());
     }
-    settle(ctx, sys)
+    sys.model.twist = twist(ctx, sys, needs);
+    if ctx.winds() {
+        return QuasiStatic::new(ctx, sys, false).rest(sys);
+    }
+    method(sys).equilibrate(sys).map_err(no_answer)
+}
+
+/// How twist is carried: a wind carries that of wire that can yield, and of elastic wire none.
+fn twist(ctx: &Context, sys: &System, needs: Needs) -> Twist {
+    let section = &sys.model.section;
+    let yields = section.m_y.is_finite() || section.t_y.is_finite();
+    let carried = match needs {
+        Needs::Rolls => true,
+        Needs::Plane => ctx.winds() && yields,
+        Needs::HeldPlane => false,
+    };
+    if carried {
+        Twist::QuasiStatic
+    } else {
+        Twist::Off
+    }
 }
 
 /// The production method as static solves use it.
@@ -80,9 +116,4 @@ pub(super) fn method(sys: &System) -> Implicit {
     let length: f64 = sys.state.rod.rest.iter().sum();
     // bounds of the step mean nothing here
     Implicit::new(Scheme::Bdf2, TOLERANCE * length, 1e-9, 1.0)
-}
-
-/// A step or solve that gave up.
-pub(super) fn no_answer(e: integrate::StepError) -> VerifyError {
-    VerifyError::NoAnswer(e.to_string())
 }

@@ -103,6 +103,11 @@ const PACKED: &[(&str, &str)] = packed![
     "spinning_ring",
     "penalty_impact",
     "winding_feed",
+    "wave_damping",
+    "rolling_path",
+    "helix_gap",
+    "frozen_helix",
+    "live_pair",
 ];
 
 impl CaseFile {

@@ -24,7 +24,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let sag = (0.375 * span * (length - span)).sqrt();
     let pull = section.mass_per_length() * GRAVITY * span * span / (8.0 * sag);
     let layer = (section.ei / pull).sqrt();
-    let n = ctx.edges(length, (length / 200.0).min(layer / 15.0))?;
+    let n = ctx.free_edges(length, (length / 200.0).min(layer / 15.0))?;
     let mut sys = straight(section, &vec![length / n as f64; n]);
     sys.state.support = [clamp_along_x(V3::zeros()), clamp_along_x(V3::x() * length)];
     follow(ctx, &mut sys, |sys, share| {

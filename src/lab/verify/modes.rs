@@ -2,6 +2,7 @@
 //!
 //! The stiffness is the central difference of the forces that time steps use, the mass is theirs.
 
+use super::bench::Stepper;
 use super::equilibrium::method;
 use super::{Context, VerifyError};
 use crate::math::V3;
@@ -13,6 +14,11 @@ use std::f64::consts::TAU;
 
 /// Displacement in the differences, edge lengths or rad.
 const NUDGE: f64 = 1e-5;
+
+/// Amplitude of a stepped mode in wire diameters, looks at it a swing, and swings.
+const AMPLITUDE: f64 = 0.1;
+const LOOKS: f64 = 100.0;
+const SWINGS: f64 = 3.0;
 
 /// Largest dense eigenvalue problem.
 const MOST_PARTS: usize = 1000;
@@ -29,13 +35,76 @@ pub(super) enum Motion {
     Roll,
 }
 
-/// The `count` lowest frequencies of a motion, Hz, ascending.
+/// A mode: its frequency, Hz, and how far each part goes.
+pub(super) struct Mode {
+    /// frequency, Hz
+    pub(super) frequency: f64,
+    /// displacement of each node (or roll of each edge), 1 at most
+    pub(super) shape: Vec<f64>,
+}
+
+/// The `count` lowest frequencies of a motion, Hz, ascending; in the set-up of a wind as its steps show them.
 pub(super) fn lowest(
     ctx: &Context,
     sys: &mut System,
     motion: Motion,
     count: usize,
 ) -> Result<Vec<f64>, VerifyError> {
+    let modes = modes(ctx, sys, motion, count)?;
+    match motion {
+        Motion::Along(axis) if ctx.winds() => {
+            let seen = modes.iter().map(|mode| stepped(ctx, sys, axis, mode));
+            seen.collect()
+        }
+        _ => Ok(modes.iter().map(|mode| mode.frequency).collect()),
+    }
+}
+
+/// Frequency at which the wind's own steps let a mode swing, Hz.
+///
+/// Starts with the mode's velocity at the place of rest, and looks at the wire often, as an importer does who wants to see it swing.
+/// Between the first and the last zero lie whole swings.
+fn stepped(ctx: &Context, sys: &System, axis: usize, mode: &Mode) -> Result<f64, VerifyError> {
+    let mut sys = sys.clone();
+    sys.model.loads.drag = 0.0;
+    let rest: Vec<f64> = sys.state.rod.x.iter().map(|x| x[axis]).collect();
+    let most = AMPLITUDE * sys.model.section.diameter * TAU * mode.frequency;
+    for (v, shape) in sys.state.rod.v.iter_mut().zip(&mode.shape) {
+        *v = V3::zeros();
+        v[axis] = most * shape;
+    }
+    sys.state.past.forget();
+    sys.refresh();
+    let dt = 1.0 / (mode.frequency * LOOKS);
+    let mut step = Stepper::implicit(ctx.tolerance, dt);
+    let seen = |sys: &System| -> f64 {
+        let parts = sys.state.rod.x.iter().zip(&rest).zip(&mode.shape);
+        parts
+            .map(|((x, rest), shape)| (x[axis] - rest) * shape)
+            .sum()
+    };
+    let (mut last, mut zeros) = (0.0, Vec::new());
+    for k in 1..=((SWINGS + 1.0) * LOOKS) as usize {
+        step.through(&mut sys, dt, dt)?;
+        let now = seen(&sys);
+        if last * now < 0.0 {
+            zeros.push((k as f64 - now / (now - last)) * dt);
+        }
+        last = now;
+    }
+    let [Some(first), Some(end)] = [zeros.first(), zeros.last()] else {
+        return Err(VerifyError::NoAnswer("the wire does not swing".to_owned()));
+    };
+    Ok(0.5 * (zeros.len() - 1) as f64 / (end - first))
+}
+
+/// The `count` lowest modes of a motion, frequencies ascending, from stiffness and mass.
+fn modes(
+    ctx: &Context,
+    sys: &mut System,
+    motion: Motion,
+    count: usize,
+) -> Result<Vec<Mode>, VerifyError> {
     let parts: Vec<usize> = match motion {
         Motion::Along(a) => (0..sys.state.rod.nodes())
             .filter(|&i| free(sys, i, a))
@@ -83,19 +152,31 @@ pub(super) fn lowest(
     }
     sys.evaluate(None);
     let symmetric = (&scaled + scaled.transpose()) * 0.5;
-    let mut squares: Vec<f64> = SymmetricEigen::new(symmetric)
-        .eigenvalues
-        .iter()
-        .copied()
-        .collect();
-    squares.sort_by(f64::total_cmp);
-    squares.truncate(count);
-    if squares.len() < count || !squares.iter().all(|s| *s > 0.0) {
+    let eigen = SymmetricEigen::new(symmetric);
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    order.truncate(count);
+    if order.len() < count || !order.iter().all(|k| eigen.eigenvalues[*k] > 0.0) {
         return Err(VerifyError::NoAnswer(
             "the wire is not stable in this state, so it has no frequency".to_owned(),
         ));
     }
-    Ok(squares.iter().map(|s| s.sqrt() / TAU).collect())
+    let all = sys.state.rod.nodes();
+    Ok(order
+        .iter()
+        .map(|&k| {
+            let mut shape = vec![0.0; all];
+            for (row, &i) in parts.iter().enumerate() {
+                shape[i] = eigen.eigenvectors[(row, k)] / inertia[row].sqrt();
+            }
+            let most = shape.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
+            shape.iter_mut().for_each(|s| *s /= most);
+            Mode {
+                frequency: eigen.eigenvalues[k].sqrt() / TAU,
+                shape,
+            }
+        })
+        .collect())
 }
 
 fn free(sys: &System, i: usize, a: usize) -> bool {

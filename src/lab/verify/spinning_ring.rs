@@ -13,7 +13,7 @@ use crate::contact::{LineModel, NodalModel};
 use crate::feed::{Feed, FeedSpec};
 use crate::geometry::Shape;
 use crate::geometry::generate::cylinder;
-use crate::integrate::{Explicit, ExplicitMethod, Implicit, Scheme};
+use crate::integrate::{Explicit, ExplicitMethod};
 use crate::math::frame_along;
 use crate::math::{V3, spin_velocity};
 use crate::rod::Twist;
@@ -25,13 +25,11 @@ use std::sync::Arc;
 
 /// Edges of the ring. Node forces balance as on the circle for any number.
 const EDGES: usize = 48;
-/// The same for the production method, whose line of contact, a spline, is a polygon's incircle.
-const EDGES_IMPLICIT: usize = 64;
 
-/// Steps of the production method over a breath, and its tolerance as a share of the radius: Newton's
-/// method stops at a tenth of it.
-const PER_BREATH: f64 = 24.0;
-const TOLERANCE: f64 = 1e-12;
+/// Stiffness, N/m^2, and longest step, s, of a wind; breaths between two looks at it.
+const STIFFNESS: f64 = 1e10;
+const LONGEST: f64 = 0.1;
+const LOOK: f64 = 1.0;
 
 /// Facets of the cylinder per edge. Nodes sit in the middle of a facet, where its normal is radial.
 const FACETS: usize = 21;
@@ -44,13 +42,10 @@ const SEARCH: f64 = 25.0;
 /// about the clamp that the start sets off leaves and strikes the core.
 const JUST_BELOW: f64 = 0.97;
 
-/// Contact frequency over the highest axial one.
+/// Contact frequency over the highest axial one in explicit steps.
 ///
 /// A turning ring is no state of rest for the step, and a stiffer spring makes an error of 1 %.
 const SOFTNESS: f64 = 0.3;
-
-/// Depth over which the smooth contact sets in, as a share of that under the load at rest.
-const ONSET: f64 = 0.01;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
@@ -101,13 +96,19 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     ])
 }
 
+/// Edges of a ring of this radius.
+fn edges(ctx: &Context, radius: f64) -> usize {
+    match (ctx.integrator, ctx.spacing) {
+        (Integrator::Implicit, Some(spacing)) => {
+            4 * (0.25 * TAU * radius / spacing).ceil() as usize
+        }
+        _ => EDGES,
+    }
+}
+
 /// One turn of rod of centreline radius `radius`, stretched to `pull`, clamped where it closes.
 fn ring(ctx: &Context, section: &Section, radius: f64, pull: f64) -> System {
-    let edges = if ctx.integrator == Integrator::Implicit {
-        EDGES_IMPLICIT
-    } else {
-        EDGES
-    };
+    let edges = edges(ctx, radius);
     let at = |i: usize| {
         let a = TAU * ((i % edges) as f64 + 0.5 / FACETS as f64) / edges as f64;
         V3::new(libm::cos(a), 0.0, libm::sin(a)) * radius
@@ -164,7 +165,7 @@ fn free_tension(
     let mut sys = ring(ctx, section, radius, 0.0);
     spin(&mut sys, omega);
     let breath = breath(section, radius);
-    let (mut step, dt) = stepper(ctx, radius, breath, || {
+    let (mut step, dt) = stepper(ctx, breath, || {
         stable_step(section, sys.state.rod.rest[0], 0.0, false)
     });
     let steps = (200.0 * breath / dt) as usize;
@@ -177,17 +178,14 @@ fn free_tension(
 }
 
 /// How to step, and the step.
-fn stepper(ctx: &Context, radius: f64, breath: f64, stable: impl Fn() -> f64) -> (Stepper, f64) {
+fn stepper(ctx: &Context, breath: f64, stable: impl Fn() -> f64) -> (Stepper, f64) {
     if ctx.integrator != Integrator::Implicit {
         return (
             Stepper::Explicit(Explicit::new(ExplicitMethod::Rk4)),
             stable(),
         );
     }
-    let dt = breath / PER_BREATH;
-    let mut method = Implicit::new(Scheme::Bdf2, TOLERANCE * radius, dt, dt);
-    method.fixed = Some(dt);
-    (Stepper::Implicit(Box::new(method)), dt)
+    (Stepper::implicit(ctx.tolerance, LONGEST), LOOK * breath)
 }
 
 /// A ring at rest on its core.
@@ -195,7 +193,6 @@ struct Wound<'a> {
     ctx: &'a Context<'a>,
     sys: System,
     dt: f64,
-    radius: f64,
     breath: f64,
 }
 
@@ -211,13 +208,17 @@ impl<'a> Wound<'a> {
         let implicit = ctx.integrator == Integrator::Implicit;
         // the spline, which touches, is the ring; its nodes lie outside
         let outer = if implicit {
-            radius / libm::cos(0.5 * TAU / EDGES_IMPLICIT as f64)
+            radius / libm::cos(0.5 * TAU / edges(ctx, radius) as f64)
         } else {
             radius
         };
         let mut sys = ring(ctx, section, outer, pull);
         let edge = sys.state.rod.rest[0];
-        let stiffness = 4.0 * section.ea * (SOFTNESS / edge).powi(2);
+        let stiffness = if implicit {
+            STIFFNESS
+        } else {
+            4.0 * section.ea * (SOFTNESS / edge).powi(2)
+        };
         let law = law(stiffness, 1.0, 0.0);
         // the ring must not shrink onto its core
         if implicit {
@@ -225,10 +226,7 @@ impl<'a> Wound<'a> {
                 radius: radius - r,
                 half_y: 10.0 * r,
             };
-            let mut line = LineModel::new(core, law, r);
-            // the load falls to nothing here: let the depth fall with it
-            line.onset = ONSET * pull / (radius * stiffness);
-            sys.touch_along(line);
+            sys.touch_along(LineModel::new(core, law, r));
         } else {
             // the middles of the facets on the circle
             let flat = libm::cos(0.5 * TAU / (EDGES * FACETS) as f64);
@@ -251,9 +249,7 @@ impl<'a> Wound<'a> {
         sys.set_feed(spec, Feed::at_rest(&spec, pull));
         sys.state.set_tension = pull;
         let breath = breath(section, radius);
-        let (mut step, dt) = stepper(ctx, radius, breath, || {
-            stable_step(section, edge, stiffness, false)
-        });
+        let (mut step, dt) = stepper(ctx, breath, || stable_step(section, edge, stiffness, false));
         sys.model.loads.drag = 4.0 / breath;
         sys.refresh();
         step.through(&mut sys, 20.0 * breath, dt)?;
@@ -262,7 +258,6 @@ impl<'a> Wound<'a> {
             ctx,
             sys,
             dt,
-            radius,
             breath,
         })
     }
@@ -280,7 +275,7 @@ impl<'a> Wound<'a> {
             let mut sys = self.sys.clone();
             sys.state.set_tension = set;
             spin(&mut sys, omega);
-            let (mut step, dt) = stepper(self.ctx, self.radius, self.breath, || self.dt);
+            let (mut step, dt) = stepper(self.ctx, self.breath, || self.dt);
             let mut load = SmoothMean::over(steps);
             let mut tension = SmoothMean::over(steps);
             for _ in 0..steps {

@@ -4,19 +4,33 @@
 //! long as the derivative of the rod's forces with respect to the nodes (by central differences,
 //! made symmetric) is positive definite. The torque is read at the clamp. Rolls of the edges are
 //! left out: to first order they do not couple with sideways motion of a straight wire.
+//!
+//! In the set-up of a wind that is the first guess. A small bow is then set off a little below and above it, and the rate at which
+//! it dies or grows in the wind's own steps tells where it would stay.
 
+use super::bench::Stepper;
 use super::equilibrium::method;
 use super::{Answer, Answers, Context, VerifyError};
 use crate::math::V3;
 use crate::math::{align, frame_along};
-use crate::rod::{Rod, Section};
+use crate::rod::{Rod, Section, Twist};
 use crate::scene::Integrator;
 use crate::system::{Support, System};
 use nalgebra::DMatrix;
+use std::f64::consts::PI;
 
 /// Fewest edges, and edges per bending length `sqrt(EI/T)`; the error falls with the square.
 const EDGES: f64 = 80.0;
 const PER_BENDING_LENGTH: f64 = 12.0;
+
+/// Share of the rotation below and above the critical one at which growth is looked at.
+const BESIDE: f64 = 0.02;
+/// Lowest frequency of a clamped wire in `sqrt(EI/m)/L^2`.
+const CLAMPED: f64 = 22.4;
+/// Bow that is set off, in wire diameters, longest step and time of a watch, both over the inverse of that frequency.
+const BOW: f64 = 0.1;
+const LOOK: f64 = 0.1;
+const WATCH: f64 = 20.0;
 
 /// Bisections once the torque is known to a factor of two.
 const HALVINGS: usize = 16;
@@ -26,7 +40,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let (length, pull) = (ctx.number("L_m")?, ctx.number("T_N")?);
     let section = ctx.elastic();
     let bending_lengths = length * (pull.max(0.0) / section.ei).sqrt();
-    let edges = EDGES.max(PER_BENDING_LENGTH * bending_lengths).min(400.0) as usize;
+    let fit = EDGES.max(PER_BENDING_LENGTH * bending_lengths).min(400.0);
+    let edges = ctx.free_edges(length, length / fit)?;
     let stable = |rotation: f64| Straight::new(&section, length, pull, rotation, edges).stable(ctx);
     let mut low = 0.0;
     let mut high = 1.0;
@@ -48,7 +63,19 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             high = mid;
         }
     }
-    let critical = Straight::new(&section, length, pull, 0.5 * (low + high), edges);
+    let mut rotation = 0.5 * (low + high);
+    if ctx.winds() {
+        let growth =
+            |share: f64| Straight::new(&section, length, pull, share * rotation, edges).growth(ctx);
+        let [below, above] = [growth(1.0 - BESIDE)?, growth(1.0 + BESIDE)?];
+        if !(below < 0.0 && above > 0.0) {
+            return Err(VerifyError::NoAnswer(format!(
+                "the wire does not leave its axis near {rotation} rad: it grows by {below} and {above} 1/s"
+            )));
+        }
+        rotation *= 1.0 - BESIDE * (above + below) / (above - below);
+    }
+    let critical = Straight::new(&section, length, pull, rotation, edges);
     Ok(vec![(
         "critical_torque_Nm",
         Answer::Number(critical.torque()),
@@ -86,6 +113,34 @@ impl Straight {
     /// Torque that the near clamp puts into the wire, N m.
     fn torque(&self) -> f64 {
         self.sys.state.load.clamp_moment[0].z.abs()
+    }
+
+    /// Rate at which a small bow grows under drag as the wind's own steps have it, 1/s; negative if it goes back.
+    fn growth(mut self, ctx: &Context) -> Result<f64, VerifyError> {
+        let section = &self.sys.model.section;
+        let unit =
+            self.length * self.length * (section.mass_per_length() / section.ei).sqrt() / CLAMPED;
+        let bow = BOW * section.diameter;
+        self.sys.model.twist = Twist::QuasiStatic;
+        self.sys.model.loads.drag = 1.0 / unit;
+        let last = self.sys.state.rod.nodes() - 1;
+        for i in 1..last {
+            let share = libm::sin(PI * i as f64 / last as f64);
+            self.sys.state.rod.v[i].x = bow / unit * share * share;
+        }
+        self.sys.state.past.forget();
+        self.sys.refresh();
+        let mut step = Stepper::implicit(ctx.tolerance, LOOK * unit);
+        let seen = |sys: &System| {
+            let parts = sys.state.rod.x.iter();
+            parts.map(|x| x.x * x.x + x.y * x.y).sum::<f64>().sqrt()
+        };
+        let mut at = [0.0; 2];
+        for size in &mut at {
+            step.through(&mut self.sys, WATCH * unit, LOOK * unit)?;
+            *size = seen(&self.sys);
+        }
+        Ok(libm::log(at[1] / at[0]) / (WATCH * unit))
     }
 
     /// Whether small displacements are driven back.

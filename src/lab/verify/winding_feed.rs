@@ -28,18 +28,8 @@ const STRETCH: f64 = 8e-3;
 /// Core surface speed at the nozzle's distance as a share of the wave speed in the free span.
 const SPEED: f64 = 0.03;
 
-/// Edge length on the core as a share of the bend radius of a corner.
-///
-/// The wire of the production method touches with its spline and so lies closer than its nodes, which a
-/// finer one makes up for.
+/// Edge length on the core as a share of the bend radius of a corner, in explicit steps.
 const SPACING: f64 = 0.2;
-const SPACING_IMPLICIT: f64 = 0.15;
-/// Its own default, m.
-const COARSEST_IMPLICIT: f64 = 0.4e-3;
-
-/// Local error of a step of the production method as a share of the bend radius: the feed rate is read
-/// off every 30 um of wire.
-const TOLERANCE: f64 = 5e-6;
 
 /// Edges of the free span against those on the core: a power of two, since edges are halved.
 const COARSER: f64 = 8.0;
@@ -118,24 +108,25 @@ fn scene(ctx: &Context) -> Result<Scene, VerifyError> {
     scene.tensioner.line_length = 0.0;
     let wave = (tension / wire.mass_per_length()).sqrt();
     scene.spindle.speed = SPEED * wave / distance;
-    scene.contact.restitution = 0.3;
-    scene.contact.stiffness = 300.0 * tension / bend / wire.diameter;
     scene.friction.kinetic = scene.friction.static_;
-    let (integrator, spacing) = match ctx.integrator {
-        Integrator::Implicit => (
-            Integrator::Implicit,
-            (SPACING_IMPLICIT * bend).min(COARSEST_IMPLICIT),
-        ),
-        Integrator::Verlet | Integrator::Rk4 => (Integrator::Verlet, SPACING * bend),
-    };
-    scene.solver.integrator = integrator;
-    scene.solver.spacing_near = spacing;
-    scene.solver.spacing_free = spacing * COARSER;
-    scene.solver.tolerance = TOLERANCE * bend;
-    scene.solver.refine_distance = 2.0 * bend;
-    scene.solver.step = 0.0;
-    scene.solver.step_share = 0.7;
-    scene.freeze.keep_length = 10.0 * scene.solver.spacing_near;
+    if let (Integrator::Implicit, Some(spacing)) = (ctx.integrator, ctx.spacing) {
+        // contact is the default scene's
+        scene.solver.integrator = Integrator::Implicit;
+        scene.solver.spacing_near = spacing;
+        scene.solver.spacing_free = spacing * COARSER;
+        scene.solver.tolerance = ctx.tolerance;
+    } else {
+        scene.contact.restitution = 0.3;
+        scene.contact.stiffness = 300.0 * tension / bend / wire.diameter;
+        let spacing = SPACING * bend;
+        scene.solver.integrator = Integrator::Verlet;
+        scene.solver.spacing_near = spacing;
+        scene.solver.spacing_free = spacing * COARSER;
+        scene.solver.refine_distance = 2.0 * bend;
+        scene.solver.step = 0.0;
+        scene.solver.step_share = 0.7;
+        scene.freeze.keep_length = 10.0 * spacing;
+    }
     // leads by the slope of the steady helix, so that no turn crosses the clamp
     scene.traverse.per_turn = pitch;
     scene.traverse.lead = pitch;

@@ -9,8 +9,8 @@ use crate::lab::stress::Measures;
 use crate::simulation::Simulation;
 use std::f64::consts::PI;
 
-/// Share of the steps for the fastest wave that a run needs, calibrated with 500 scenes (seed 1, before twelve kinds of scene
-/// were added): with it the steps tried over the sum of all three are 0.6 in the middle, 4 at 98 % and 7 at most.
+/// Share of the steps for the fastest wave that a run needs. Calibrated with 500 scenes (seed 1, before twelve kinds of scene
+/// were added). With it the steps tried over the sum of all three are 0.6 in the middle, 4 at 98 % and 7 at most.
 const WAVES: f64 = 1.0 / 300.0;
 /// Steps tried that are enough over that sum. As each counts by its nodes, and nodes are the most there were, twice the most of
 /// those scenes: where every input shakes, steps are cut at waves that nothing but the shaking makes.

@@ -1,0 +1,249 @@
+#!/usr/bin/env python3
+"""Writes the reference files of `wave_damping`, `rolling_path`, `helix_gap`, `frozen_helix` and `live_pair`.
+
+    tests/reference/compute_laws.py [folder]
+
+Needs Python with mpmath (1.3 was used). The other files of this folder are the project's given references.
+Nothing here knows the program: each number is a closed form, an eigenvalue or an integration of its own.
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+import mpmath
+
+HERE = Path(__file__).resolve().parent
+WIRE = json.loads((HERE / "spinning_ring.json").read_text(encoding="utf-8"))["wire"]
+
+
+def write(folder, kind, words, check, cases, implicit=True):
+    """One file; `implicit`: about the production method, so that it does not count for the paper's."""
+    if implicit:
+        check = {name: {**how, "preset": "default"} for name, how in check.items()}
+    title, formula, source, precision, tolerance, notes = words
+    doc = {
+        "kind": kind, "title": title, "formula": formula, "source": source, "precision": precision,
+        "suggested_tolerance": tolerance, "notes": notes, "check": check, "wire": WIRE,
+        "cases": [{"id": name, "inputs": inputs, "expected": expected} for name, inputs, expected in cases],
+    }
+    text = json.dumps(doc, indent=1) + "\n"
+    (folder / f"{kind}.json").write_text(text, encoding="utf-8")
+
+
+def wave_damping(phase, ratio):
+    """Decrement and period of y' = i y under BDF2 with steps `phase` and `ratio * phase` in turn.
+
+    A step of h after one of h1, with s = h / h1: (1 + 2s)/(1 + s) y2 - (1 + s) y1 + s^2/(1 + s) y0 = h i y2.
+    The product of the two companion matrices has the wave and a parasite as eigenvalues.
+    """
+    mpmath.mp.dps = 40
+    steps = [mpmath.mpf(phase), mpmath.mpf(phase) * mpmath.mpf(ratio)]
+
+    def companion(h, h1):
+        s = h / h1
+        lead = (1 + 2 * s) / (1 + s) - 1j * h
+        return mpmath.matrix([[(1 + s) / lead, -(s**2 / (1 + s)) / lead], [1, 0]])
+
+    pair = companion(steps[1], steps[0]) * companion(steps[0], steps[1])
+    trace = pair[0, 0] + pair[1, 1]
+    determinant = pair[0, 0] * pair[1, 1] - pair[0, 1] * pair[1, 0]
+    root = mpmath.sqrt(trace**2 / 4 - determinant)
+    wave = max((trace / 2 + root, trace / 2 - root), key=abs)
+    turned = sum(steps)
+    return {
+        "decrement_per_period": float(-mpmath.log(abs(wave)) * 2 * mpmath.pi / turned),
+        "period_over_exact": float(turned / mpmath.arg(wave)),
+    }
+
+
+class Bend:
+    """Radial return of a curvature vector with isotropic hardening; a scalar is a vector with one component."""
+
+    def __init__(self, stiff, soft, limit):
+        self.stiff, self.limit = stiff, limit
+        self.hardening = stiff * soft / (stiff - soft)
+
+    def moment(self, state, strain):
+        """Moment at a strain and the state it leads to."""
+        plastic, rise = state
+        trial = [self.stiff * (k - p) for k, p in zip(strain, plastic)]
+        size = math.sqrt(sum(m * m for m in trial))
+        over = size - self.limit - rise
+        if over <= 0.0:
+            return trial, state
+        flow = over / (self.stiff + self.hardening)
+        plastic = [p + flow * m / size for p, m in zip(plastic, trial)]
+        return [self.stiff * (k - p) for k, p in zip(strain, plastic)], (plastic, rise + self.hardening * flow)
+
+
+def rolled(curvature, roll, twist, edge, increments):
+    """Moments and torque of the first joint at the ends of the legs.
+
+    An edge of length l between two clamps, each joint standing for l/2. When the edge rolls by a, the twist angles of
+    the joints become t + a and t - a, and both bends turn by -a/2 in their half-way frames. The roll is where
+    T1 - T2 = (l/2) (M1 x k1 + M2 x k2) / 2 about the wire: the torques balance.
+    """
+    half = 0.5 * edge
+    bend = Bend(WIRE["EI"], WIRE["EIp"], WIRE["M_y"])
+    turn = Bend(WIRE["GJ"], WIRE["GJp"], WIRE["T_y"])
+    bends = [([0.0, 0.0], 0.0), ([0.0, 0.0], 0.0)]
+    turns = [([0.0], 0.0), ([0.0], 0.0)]
+    a = 0.0
+    got = {"bend_moment_Nm": [], "torque_Nm": []}
+    legs = [((0.0, 0.0, 0.0), (curvature, 0.0, 0.0)), ((curvature, 0.0, 0.0), (curvature, roll, twist)),
+            ((curvature, roll, twist), (0.0, roll, twist))]
+    for start, end in legs:
+        for i in range(1, increments + 1):
+            k, direction, t = (s + (e - s) * i / increments for s, e in zip(start, end))
+
+            def at(a):
+                d = direction - 0.5 * a
+                strain = [k * math.cos(d), k * math.sin(d)]
+                m = [bend.moment(state, strain) for state in bends]
+                q = [turn.moment(state, [t + side * a / half]) for state, side in zip(turns, (1.0, -1.0))]
+                # derivative of the energy by the roll
+                across = sum(0.5 * (mm[0] * strain[1] - mm[1] * strain[0]) for mm, _ in m)
+                return (q[0][0][0] - q[1][0][0]) + half * across, m, q
+
+            a = balanced(lambda a: at(a)[0], a)
+            _, m, q = at(a)
+            bends, turns = [state for _, state in m], [state for _, state in q]
+        got["bend_moment_Nm"] += m[0][0]
+        got["torque_Nm"] += q[0][0]
+    return got
+
+
+def balanced(f, near):
+    """Root of an increasing function by bracketing and bisecting secants (Illinois)."""
+    width = 1e-9
+    low, high = near - width, near + width
+    fl, fh = f(low), f(high)
+    while fl > 0.0 or fh < 0.0:
+        width *= 4.0
+        low, high = near - width, near + width
+        fl, fh = f(low), f(high)
+    for _ in range(100):
+        if high - low < 1e-17 or fh == fl:
+            break
+        mid = high - fh * (high - low) / (fh - fl)
+        fm = f(mid)
+        if abs(fm) < 1e-17:
+            return mid
+        if fm < 0.0:
+            low, fl, fh = mid, fm, (0.5 * fh if fl == 0.0 else fh * 0.5)
+        else:
+            high, fh, fl = mid, fm, fl * 0.5
+    return 0.5 * (low + high)
+
+
+def rolling_path(curvature, roll, twist, edge=0.3e-3):
+    """Two numbers of increments and the limit of their first-order error."""
+    coarse = rolled(curvature, roll, twist, edge, 4000)
+    fine = rolled(curvature, roll, twist, edge, 8000)
+    limit = {name: [2 * f - c for f, c in zip(fine[name], coarse[name])] for name in fine}
+    worst = max(abs(x - y) for name in fine for x, y in zip(limit[name], fine[name]))
+    print(f"rolling_path: largest change by the last halving {worst:.1e} N m")
+    return limit
+
+
+def helix_gap(radius, pitch):
+    """Least distance of a point of a helix from the turn before it, less the diameter."""
+    mpmath.mp.dps = 30
+    axis = mpmath.mpf(radius) + WIRE["d"] / 2
+    rise = mpmath.mpf(pitch) / (2 * mpmath.pi)
+
+    def square(turn):
+        return (2 * axis * mpmath.sin(turn / 2)) ** 2 + (pitch - rise * turn) ** 2
+
+    turn = mpmath.findroot(lambda t: mpmath.diff(square, t), pitch * rise / axis**2)
+    gap = float(mpmath.sqrt(square(turn)) - WIRE["d"])
+    return {"gap_min_m": gap, "gap_max_m": gap}
+
+
+def frozen_helix(radius, pitch, tension, mu):
+    """Wire laid on a cylinder under tension.
+
+    Along a wire that nothing holds back tension plus EI k^2 / 2 stays the same: T in the straight span, T - EI k^2 / 2 where it
+    touches with the curvature of the helix. Friction may keep a little more, so the tension counts without friction only.
+    """
+    axis = radius + WIRE["d"] / 2
+    rate = math.hypot(axis, pitch / (2 * math.pi))
+    curvature = axis / rate**2
+    laid = tension - 0.5 * WIRE["EI"] * curvature**2
+    expected = {
+        "fed_per_turn_m": 2 * math.pi * rate / (1 + laid / WIRE["EA"]), "laid_radius_m": axis,
+        "moved_by_freezing_m": 0.0, "tension_jump_by_freezing_N": 0.0,
+    }
+    # without friction wire slides along the core to where the clamp's direction wants it; with friction it keeps a little tension
+    # from the way on which it touches and is not yet bent
+    more = {"laid_tension_N": laid} if mu == 0.0 else {"laid_pitch_m": pitch, "tension_without_friction_N": laid}
+    return {**expected, **more}
+
+
+def live_pair(press, mu, stiffness=1e10, onset=1e-6):
+    """Depth of wire on wire under a line load (force k d^2/2o up to the onset, then k (d - o/2)), and Coulomb's friction."""
+    depth = math.sqrt(2 * onset * press / stiffness)
+    if depth > onset:
+        depth = press / stiffness + onset / 2
+    return {"approach_m": depth, "slip_exponent": mu}
+
+
+def main():
+    folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
+    d = WIRE["d"]
+    write(folder, "wave_damping", (
+        "What variable-step BDF2 takes off a standing axial wave",
+        "eigenvalue of two steps h, r h of (1+2s)/(1+s) y2 - (1+s) y1 + s^2/(1+s) y0 = h i omega y2, s the ratio of successive steps",
+        "Hairer, Norsett & Wanner 1993, III.5; eigenvalue of the 2 x 2 companion product with 40 digits", "1e-14 relative",
+        "1% of the decrement, 1e-4 of the period",
+        "fixed-free wire, omega = (mode - 1/2) pi c / L; steps omega_h/omega and step_ratio times that in turn",
+    ), {"decrement_per_period": {"rel": 0.01}, "period_over_exact": {"rel": 1e-4}}, [
+        (f"mode{mode}_wh{phase:g}_r{ratio:g}", {"L_m": 0.1, "mode": mode, "omega_h": phase, "step_ratio": ratio}, wave_damping(phase, ratio))
+        for mode, phase, ratio in ((1, 0.1, 1.0), (1, 0.2, 1.0), (2, 0.2, 1.5), (1, 0.2, 0.6))
+    ])
+    write(folder, "rolling_path", (
+        "Bend and twist that yield together while the wire rolls",
+        "legs: curvature 0 -> k; at k roll and twist 0 -> their values together; curvature k -> 0. Return maps of bend (vector) and twist; roll of the edge between two clamps from the balance of torques",
+        "Simo & Hughes 1998 (return map); integrated in 8000 increments a leg, limit by Richardson", "1e-5 relative",
+        "0.5% of a moment, 30 uN m", "one edge of 0.3 mm, so each joint stands for 0.15 mm; no moment cap; lists: two components, and the torque, of the first joint at the end of each leg",
+    ), {"bend_moment_Nm": {"rel": 0.005, "abs": 3e-5}, "torque_Nm": {"rel": 0.001, "abs": 1e-6}}, [
+        (f"k{k:g}_roll{roll:g}_twist{twist:g}", {"curvature_1_per_m": k, "roll_rad": roll, "twist_1_per_m": twist}, rolling_path(k, roll, twist))
+        for k, roll, twist in ((100.0, 1.0, 0.0), (100.0, 2.0, 20.0), (50.0, -1.5, 60.0), (1.5, 3.0, 1.0))
+    ])
+    write(folder, "helix_gap", (
+        "Gap between the turns of a settled helix",
+        "least distance of a point of a helix from the turn before it, less d: min over t of (2 a sin(t/2))^2 + (p - p t / 2 pi)^2, a = R + r",
+        "elementary; root with 30 digits", "1e-14 m", "20 nm", "the chords between nodes are part of the measure",
+    ), {"gap_min_m": {"abs": 2e-8}, "gap_max_m": {"abs": 2e-8}}, [
+        (f"R{radius * 1e3:g}mm_p{pitch / d:g}d", {"R_m": radius, "pitch_m": pitch}, helix_gap(radius, pitch))
+        for radius, pitch in ((0.01, d), (0.01, 1.3 * d), (0.005, 2.5 * d), (0.05, 1.05 * d))
+    ], implicit=False)
+
+
+    write(folder, "frozen_helix", (
+        "Wire wound on a cylinder until it freezes",
+        "laid tension T - EI k^2/2, k = a/(a^2 + (p/2 pi)^2), a = R + r; fed per turn 2 pi sqrt(a^2 + (p/2 pi)^2)/(1 + laid/EA); freezing moves nothing",
+        "first integral of the elastica; elementary", "exact", "0.1 mm/m of the length, 2% of the tension",
+        "elastic wire, tensioner without mass, nozzle without friction; slow, so that the wire has no weight",
+    ), {
+        "fed_per_turn_m": {"rel": 1e-4}, "laid_radius_m": {"abs": 1e-6}, "laid_pitch_m": {"rel": 1e-3},
+        "laid_tension_N": {"rel": 0.02}, "moved_by_freezing_m": {"abs": 2e-7}, "tension_jump_by_freezing_N": {"abs": 0.02},
+    }, [
+        (f"R{radius * 1e3:g}mm_T{tension:g}_mu{mu:g}", {"R_m": radius, "pitch_m": 1.5 * d, "T0_N": tension, "mu": mu, "omega_rad_per_s": omega}, frozen_helix(radius, 1.5 * d, tension, mu))
+        for radius, tension, mu, omega in ((0.05, 15.0, 0.0, 10.0), (0.02, 15.0, 0.0, 30.0), (0.02, 8.0, 0.23, 30.0), (0.02, 15.0, 0.17, 30.0))
+    ])
+    write(folder, "live_pair", (
+        "Live wire pressed on live wire and drawn along it and the core",
+        "two live turns of a helix on a frozen one, on a cylinder; line load q along the axis: depth from k d^2/2o = q; drawn until all of the last turn slides: dT/ds = mu (q + T/a), so (T + q a) grows by exp(mu phi), a = R + r",
+        "statics and Coulomb; contact law of the documentation", "exact", "2% of the exponent, 10% of the depth",
+        "stiffness 1e10 N/m^2 and onset 1 um are those of the default scene; static = kinetic = mu; the turn between is pressed by 3 q on frozen wire and does not slide",
+    ), {"approach_m": {"rel": 0.1}, "slip_exponent": {"rel": 0.02}}, [
+        (f"R{radius * 1e3:g}mm_T{pull:g}_q{press:g}_mu{mu:g}", {"R_m": radius, "T0_N": pull, "press_N_per_m": press, "mu": mu, "drawn_m": drawn}, live_pair(press, mu))
+        for radius, pull, press, mu, drawn in ((0.01, 60.0, 3000.0, 0.17, 6e-4), (0.01, 60.0, 6000.0, 0.1, 6e-4))
+    ])
+
+
+if __name__ == "__main__":
+    main()
