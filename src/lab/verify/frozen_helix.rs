@@ -133,6 +133,7 @@ fn scene(ctx: &Context, radius: f64, pitch: f64) -> Result<Scene, VerifyError> {
         .map_err(|e| VerifyError::NoAnswer(e.to_string()))?;
     scene.wire = ctx.elastic();
     scene.core = Core::Cylinder {
+        flange: None,
         radius,
         length_y: 60.0 * pitch,
     };

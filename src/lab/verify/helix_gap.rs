@@ -35,6 +35,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     for i in 0..=nodes {
         let angle = spacing * i as f64 / rate;
         coil.settle(SettledNode {
+            flange: None,
             position: V3::new(
                 axis * libm::cos(angle),
                 rise * angle,
