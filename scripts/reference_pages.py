@@ -37,12 +37,13 @@ SHOWN_PER_SI = {
 # What a section of the scene file describes.
 SECTIONS = {
     "wire": "The wire's size and material.",
-    "core": "The body that the wire is wound on. Each shape reads only the keys whose meaning names it.",
+    "core": "The body that the wire is wound on. Each shape reads only the keys whose meaning names it. Keys that begin with `flange.` may stand under `[core.flange]`.",
     "nozzle": "The nozzle that guides the wire.",
     "tensioner": "What holds the wire back in front of the nozzle.",
     "start": "Where the wire's end is clamped.",
     "spindle": "The motion of the core under `coilwind run` without `--inputs`.",
     "traverse": "The motion of the nozzle under `coilwind run` without `--inputs`.",
+    "winding": "What the layered modes of `traverse.mode` wind under `coilwind run` without `--inputs`.",
     "contact": "The contact of wire with core and wire.",
     "friction": "The friction of wire on core and wire.",
     "solver": "Accuracy of the computation, and what it takes into account.",
