@@ -33,6 +33,7 @@ def main():
     parser.add_argument(
         "--speeds", type=float, nargs="+", default=SPEEDS, metavar="RAD/S", help="spindle speeds"
     )
+    parser.add_argument("--no-bobbin", dest="bobbin", action="store_false", help="leave out the bobbin with four layers")
     parser.add_argument("--jobs", type=int, default=2, help="runs at a time (2)")
     arguments = parser.parse_args()
     if arguments.turns <= 0 or arguments.jobs < 1 or min(arguments.speeds) <= 0:
@@ -55,7 +56,8 @@ def main():
     started = sum(run.process is not None for run in runs)
     print(f"\n{started} of {len(runs)} runs in {clock(time.monotonic() - began)}\n", flush=True)
 
-    report(arguments.command, arguments.out, [run.directory for run in runs])
+    bobbin = None if interrupted or not arguments.bobbin else wound_bobbin(arguments.command, arguments.out)
+    report(arguments.command, arguments.out, [run.directory for run in runs], bobbin)
     failed = [run for run in runs if run.failed]
     for run in failed:
         print(f"{run.label} failed: {run.reason()}", file=sys.stderr)
@@ -99,7 +101,16 @@ def tell(runs, jobs, elapsed):
     print(f"{clock(elapsed)}  {';  '.join(parts)};  in all {everything} left", flush=True)
 
 
-def report(command, out, directories):
+def wound_bobbin(command, out):
+    """A whole coil by the command: four layers on a bobbin."""
+    folder = out / "bobbin"
+    print("winding a bobbin with four layers, about half a minute", flush=True)
+    done = subprocess.run([command, "run", "bobbin", "--out", folder, "--quiet", "--force"])
+    print(flush=True)
+    return folder if done.returncode == 0 else None
+
+
+def report(command, out, directories, bobbin):
     """Table, figures and page of the runs that left something; one failing keeps none back."""
     usable = [str(path) for path in directories if (path / "summary.json").exists()]
     if not usable:
@@ -113,7 +124,8 @@ def report(command, out, directories):
     for path in usable:
         if subprocess.run([command, "report", path]).returncode != 0:
             print(f"no report of {path}", file=sys.stderr)
-    script("report.py", out)
+    more = ["--more", f"A bobbin with four layers={bobbin}"] if bobbin else []
+    script("report.py", out, *more)
 
 
 def script(name, *arguments):

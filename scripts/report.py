@@ -73,13 +73,21 @@ def main():
     parser.add_argument("--title", default="Winding two turns side by side")
     parser.add_argument("--turn", type=int, default=2, help="turn of the table, from 1")
     parser.add_argument("--diameter-mm", type=float, default=0.7, help="wire diameter")
+    parser.add_argument("--more", action="append", default=[], metavar="TITLE=DIR", help="a run of another kind to link")
     arguments = parser.parse_args()
 
-    runs = runs_below(arguments.directory)
+    more = [given.partition("=")[::2] for given in arguments.more]
+    apart = {Path(folder).resolve() for _, folder in more}
+    runs = [run for run in runs_below(arguments.directory) if run.directory.resolve() not in apart]
     if not runs:
         raise SystemExit(f"no summary.json below {arguments.directory}")
     output = arguments.output or arguments.directory / "index.html"
-    body = [verdict_table(runs, arguments), figures(arguments.directory), pictures(runs, output.parent)]
+    body = [
+        verdict_table(runs, arguments),
+        figures(arguments.directory),
+        pictures(runs, output.parent),
+        *(elsewhere(title, Path(folder), output.parent) for title, folder in more),
+    ]
     page = PAGE.format(
         title=html.escape(arguments.title), lead=lead(runs), body="\n".join(filter(None, body))
     )
@@ -144,6 +152,16 @@ def pictures(runs, directory):
         f'<h2>The coil</h2><div class="pair">{items}</div>'
         '<p class="note">Copper: wire at rest. Blue: wire still in motion.</p>'
     )
+
+
+def elsewhere(title, folder, directory):
+    """A run that is not of this table: its picture and its report."""
+    page, picture = folder / "report.html", folder / "coil.png"
+    if not page.exists():
+        return ""
+    title, href = html.escape(title), html.escape(os.path.relpath(page, directory))
+    shown = embed(picture, f"{title}, seen from the side") if picture.exists() else ""
+    return f'<h2>{title}</h2><figure>{shown}<figcaption><a href="{href}">report</a></figcaption></figure>'
 
 
 def link(run, directory):
