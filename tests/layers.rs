@@ -175,3 +175,15 @@ fn a_coil_that_grows_into_the_nozzle_ends_the_run() {
         summary.energy
     );
 }
+
+/// Where a coil was higher than the region in which wire may freeze, its outer layers stayed in the computation for good.
+#[test]
+fn wire_freezes_on_a_coil_of_any_height() {
+    let text = format!("{BOBBIN}[freeze]\nmargin_mm = 0.3\n");
+    let mut sim = started(&text);
+    wound(&mut sim, 9.5);
+    let outputs = sim.outputs();
+    assert_eq!(outputs.layer, 2);
+    let live = outputs.turns_wound - outputs.turns_settled;
+    assert!(live < 1.5, "{live} turns are live");
+}

@@ -102,7 +102,7 @@ impl Simulation {
             return Vec::new();
         }
         let spin = Spin::new(self.sys.state.spindle.angle);
-        let reach = solver.refine_distance + self.scene.wire.radius();
+        let reach = self.layers_below() + solver.refine_distance + self.scene.wire.radius();
         let rod = &self.sys.state.rod;
         // the edge at the nozzle keeps its length for the feed
         let first = if self.stepper.is_implicit() {
@@ -116,6 +116,11 @@ impl Simulation {
                     && self.sys.distance_to_core(spin.to_core(rod.x[j])) < reach
             })
             .collect()
+    }
+
+    /// Height of the layers below the one that is wound, m: lengths that count from the core count from there.
+    fn layers_below(&self) -> f64 {
+        f64::from(self.coil.layer() - 1) * self.scene.wire.diameter
     }
 
     /// How many nodes from the clamp are at rest, settled long enough and in place (eq. 8, 9).
@@ -145,7 +150,7 @@ impl Simulation {
         }
         // the last one that is at rest becomes the clamp
         let count = still.saturating_sub(1).min(self.behind_lift_off());
-        let reach = 2.0 * self.scene.wire.radius() + self.run.policy.margin;
+        let reach = self.layers_below() + 2.0 * self.scene.wire.radius() + self.run.policy.margin;
         (0..count)
             .find(|&i| {
                 self.sys
@@ -264,7 +269,7 @@ impl Simulation {
         let solver = self.scene.solver;
         let spin = Spin::new(self.sys.state.spindle.angle);
         // twice the distance at which edges are split, or it would go to and fro
-        let reach = 2.0 * solver.refine_distance + self.scene.wire.radius();
+        let reach = self.layers_below() + 2.0 * solver.refine_distance + self.scene.wire.radius();
         let rod = &self.sys.state.rod;
         let mut nodes = Vec::new();
         let mut i = self.lift_off() + 2;
