@@ -558,3 +558,50 @@ fn stress_does_not_depend_on_threads() {
     let table = std::fs::read_to_string(folder.path().join("1/stability.md")).unwrap();
     assert!(table.contains("| wire diameter, mm |"), "{table}");
 }
+
+/// A master that plays back the scene's own motion winds the same coil.
+#[test]
+fn motion_of_a_scene_as_inputs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let set = |command: &mut Command| {
+        for change in ["spindle.turns=1.3", "solver.tolerance_um=20"] {
+            command.args(["--set", change]);
+        }
+    };
+    let csv = path("motion.csv");
+    let mut motion = coilwind(&["motion", "bobbin", "--step", "1e-3", "--out", &csv]);
+    set(&mut motion);
+    finished(&mut motion, 0);
+    let columns = read_csv(Path::new(&csv));
+    let rows = columns["time"].len();
+    assert!(rows > 100 && columns.len() == 3);
+    assert_eq!(columns["spindle_speed"][rows - 1], 100.0);
+
+    let (own, played) = (path("own"), path("played"));
+    let mut first = coilwind(&["run", "bobbin", "--quiet", "--no-report", "--out", &own]);
+    set(&mut first);
+    finished(&mut first, 0);
+    let inputs = ["--inputs", &csv, "--step", "1e-3"];
+    let mut second = coilwind(&["run", "bobbin", "--quiet", "--no-report", "--out", &played]);
+    set(&mut second);
+    finished(second.args(inputs), 0);
+    let numbers = |folder: &str, key: &str| {
+        json(&Path::new(folder).join("summary.json"))[key]
+            .as_f64()
+            .unwrap()
+    };
+    for (key, most) in [
+        ("spindle_angle_rad", 1e-9),
+        ("turns_wound", 1e-3),
+        ("simulated_s", 1e-12),
+    ] {
+        let off = numbers(&own, key) - numbers(&played, key);
+        assert!(off.abs() < most, "{key} differs by {off}");
+    }
+    let wrong = complaint(&["motion", "bobbin", "--step", "0"], 2);
+    assert!(
+        wrong.contains("--step 0") && wrong.contains("allowed: above 0 s"),
+        "{wrong}"
+    );
+}

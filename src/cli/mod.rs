@@ -8,6 +8,7 @@ mod drive;
 mod failure;
 mod folder;
 mod frames;
+mod motion;
 mod progress;
 mod report;
 mod run;
@@ -42,6 +43,8 @@ enum Command {
     Report(report::ReportArgs),
     /// Validate a scene and say what is wrong, and where
     Check(check::CheckArgs),
+    /// Write the scene's own motion as sampled inputs, for `run --inputs` or a master of the FMU
+    Motion(motion::MotionArgs),
     /// List every variable: inputs, outputs, diagnostics, parameters
     Variables(variables::VariablesArgs),
     /// Compare exact answers with what the code that winds computes
@@ -58,6 +61,7 @@ pub(crate) fn main() -> ExitCode {
         Command::Run(args) => run::run(&args),
         Command::Report(args) => report::report(&args),
         Command::Check(args) => check::check(&args),
+        Command::Motion(args) => motion::motion(&args),
         Command::Variables(args) => variables::variables(&args),
         Command::Verify(args) => verify::verify(&args),
         Command::Bench(args) => bench::bench(&args),
