@@ -157,7 +157,7 @@ pub struct Solver {
     pub spacing_near: f64,
     /// node spacing in the free span, m
     pub spacing_free: f64,
-    /// distance from the core at which free-span edges are split to the near spacing, m
+    /// distance from the core or the layer below at which free-span edges are split to the near spacing, m
     pub refine_distance: f64,
     /// time step as a share of the stability limit, 0..1
     pub step_share: f64,

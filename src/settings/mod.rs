@@ -130,7 +130,7 @@ pub struct SolverSettings {
     pub spacing_near: f64,
     /// node spacing in the free span, m; 0: 1 mm explicit, eight times that near the core implicit
     pub spacing_free: f64,
-    /// distance from the core at which free-span edges are split, m; 0: 3 mm implicit, 6 mm explicit
+    /// distance from the core or the layer below at which free-span edges are split, m; 0: 3 mm implicit, 6 mm explicit
     pub refine_distance: f64,
     /// time step as a share of the stability limit
     pub step_share: f64,

@@ -134,7 +134,7 @@ pub struct Freeze {
     pub patience: f64,
     /// settled wire kept live behind lift-off, m; 0: 1.75 sqrt(EI/T)
     pub keep_length: f64,
-    /// region: largest distance of the wire's surface from the core, m
+    /// region: largest distance of the wire's surface from the core or the layer below, m
     pub margin: f64,
 }
 

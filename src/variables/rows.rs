@@ -353,7 +353,7 @@ table! {
     text(1900, "solver.integrator", (solver.integrator), ["auto", "implicit", "rk4", "verlet"], "time integrator; auto: rk4 for preset paper, else implicit");
     fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit, implicit 0.3 mm to a tolerance of 2 um and beyond as its cube root");
     fixed(1902, "solver.spacing_free", solver.spacing_free, "m", "mm", 0.0, 0.1, 1e-3, "node spacing in the free span; 0: 1 mm explicit, eight times that near the core implicit");
-    fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core at which free-span edges are split; 0: 3 mm implicit, 6 mm explicit");
+    fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core or the layer below at which free-span edges are split; 0: 3 mm implicit, 6 mm explicit");
     fixed(1904, "solver.step_share", solver.step_share, "1", "", 1e-3, 1.0, 1.0, "time step as a share of the stability limit");
     fixed(1905, "solver.step", solver.step, "s", "us", 0.0, 1e-2, 1e-6, "fixed time step; 0: from the error (implicit) or the stability limit");
     fixed(1906, "solver.tolerance", solver.tolerance, "m", "um", 1e-9, 1e-3, 1e-6, "estimated error that a step of the implicit method may have, root mean square over the wire");
@@ -369,7 +369,7 @@ table! {
     fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");
     fixed(2002, "freeze.creep", freeze.creep, "m/rad", "um/rad", 0.0, 1.0, 1e-6, "largest motion of wire at rest per core angle");
     fixed(2003, "freeze.keep_length", freeze.keep_length, "m", "mm", 0.0, 100.0, 1e-2, "settled wire kept live behind lift-off; 0: 1.75 sqrt(EI/T)");
-    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core");
+    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core or the layer below");
     fixed(2005, "freeze.time", freeze.time, "s", "ms", 1e-6, 1e6, 1e-2, "time over which motion is judged while the spindle stands");
     fixed(2006, "freeze.patience", freeze.patience, "1", "", 0.0, 1000.0, 1.0, "turns behind lift-off from which on creep may double each quarter of a turn");
 
