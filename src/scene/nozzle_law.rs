@@ -1,6 +1,7 @@
 //! Where the nozzle stands along the core axis at every angle of the spindle, in a native run: straight pieces over the angle.
 
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// A stretch of even travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,7 +18,7 @@ pub struct Piece {
 #[derive(Clone, Debug, PartialEq)]
 pub struct NozzleLaw {
     /// by rising angle, the first from 0; the last goes on
-    pieces: Vec<Piece>,
+    pieces: Arc<[Piece]>,
     /// turns after which it ends
     turns: f64,
 }
@@ -31,7 +32,7 @@ impl NozzleLaw {
             travel,
         };
         Self {
-            pieces: vec![piece],
+            pieces: Arc::new([piece]),
             turns,
         }
     }
@@ -55,7 +56,7 @@ impl NozzleLaw {
             travel: 0.0,
         });
         Self {
-            pieces,
+            pieces: pieces.into(),
             turns: last[0],
         }
     }

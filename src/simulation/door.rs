@@ -58,8 +58,7 @@ impl Simulation {
             self.pass_time(dt);
             return Ok(());
         }
-        let drives = self.drives(&source, dt, span);
-        self.run.owed = 0.0;
+        let owed = std::mem::take(&mut self.run.owed);
         self.run.last_span = span;
         let before = self.run.outputs;
         if self.is_moved_by(&source, dt) {
@@ -67,10 +66,19 @@ impl Simulation {
         }
         self.reset_extremes();
         let statistics_before = self.statistics();
-        let gone = drives.iter().try_for_each(|drive| {
-            self.sys.begin_drive(drive);
-            self.through(drive)
-        });
+        let gone = match &source {
+            Source::Inputs { inputs, rates } => {
+                let drive = self.drive_of(*inputs, rates, [dt, span], owed);
+                self.follow(&drive)
+            }
+            Source::Profile => {
+                let start = self.run.time - owed;
+                let end = self.run.time + (dt - self.run.time_lost);
+                let (profile, tension) = (self.motion_profile.clone(), self.sys.state.set_tension);
+                let mut drives = profile.drives(start, end, tension);
+                drives.try_for_each(|drive| self.follow(&drive))
+            }
+        };
         self.tell_of_trouble(statistics_before);
         self.sys.end_drive();
         if gone.is_err() {
@@ -89,36 +97,29 @@ impl Simulation {
         Ok(())
     }
 
-    /// The motion over the last `span` seconds up to the end of a communication step of `dt`, s.
-    fn drives(&self, source: &Source, dt: f64, span: f64) -> Vec<Drive> {
-        match source {
-            Source::Inputs { inputs, rates } => {
-                let end = inputs.after(rates, dt);
-                let start = if self.run.owed > 0.0 {
-                    end.after(rates, -span)
-                } else {
-                    *inputs
-                };
-                let travel = end.nozzle_position - self.sys.state.support[1].point.y;
-                let drive = Drive {
-                    duration: span,
-                    speed: start.spindle_speed,
-                    acceleration: rates.spindle_speed,
-                    nozzle: NozzleDrive::Even(travel / span),
-                    tension: start.tension_setpoint,
-                    tension_rate: rates.tension_setpoint,
-                };
-                vec![drive]
-            }
-            Source::Profile => {
-                let (start, end) = (
-                    self.run.time - self.run.owed,
-                    self.run.time + (dt - self.run.time_lost),
-                );
-                self.motion_profile
-                    .drives(start, end, self.sys.state.set_tension)
-                    .collect()
-            }
+    /// Goes through the interval of one drive.
+    fn follow(&mut self, drive: &Drive) -> Result<(), SimError> {
+        self.sys.begin_drive(drive);
+        self.through(drive)
+    }
+
+    /// The motion by inputs over the last `span` seconds up to the end of a communication step of `dt`, s, the last of several
+    /// where time is `owed`, s.
+    fn drive_of(&self, inputs: Inputs, rates: &Inputs, [dt, span]: [f64; 2], owed: f64) -> Drive {
+        let end = inputs.after(rates, dt);
+        let start = if owed > 0.0 {
+            end.after(rates, -span)
+        } else {
+            inputs
+        };
+        let travel = end.nozzle_position - self.sys.state.support[1].point.y;
+        Drive {
+            duration: span,
+            speed: start.spindle_speed,
+            acceleration: rates.spindle_speed,
+            nozzle: NozzleDrive::Even(travel / span),
+            tension: start.tension_setpoint,
+            tension_rate: rates.tension_setpoint,
         }
     }
 
