@@ -5,6 +5,7 @@ mod check;
 mod checkpoint;
 mod choice;
 mod drive;
+mod ensemble;
 mod failure;
 mod folder;
 mod frames;
@@ -14,6 +15,7 @@ mod run;
 mod scene;
 mod signals;
 mod stress;
+mod sweep;
 mod terminal;
 mod variables;
 mod verify;
@@ -38,6 +40,9 @@ enum Command {
     /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp,
     /// coil.png and report.html; or go on with a run that was stopped
     Run(run::RunArgs),
+    /// Wind every combination of values on all cores, and leave a table of verdicts; or find the highest value without a
+    /// defect
+    Sweep(sweep::SweepArgs),
     /// Make the page about a run again, or compare two runs, from the files that they left
     Report(report::ReportArgs),
     /// Validate a scene and say what is wrong, and where
@@ -56,6 +61,7 @@ enum Command {
 pub(crate) fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Run(args) => run::run(&args),
+        Command::Sweep(args) => sweep::sweep(&args),
         Command::Report(args) => report::report(&args),
         Command::Check(args) => check::check(&args),
         Command::Variables(args) => variables::variables(&args),

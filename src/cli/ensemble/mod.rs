@@ -1,0 +1,3 @@
+//! Ensembles: runs that differ as little as two machines do.
+
+pub(super) mod members;
