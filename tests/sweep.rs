@@ -114,11 +114,13 @@ fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
 fn a_row_equals_a_run_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let (many, single) = (folder.path().join("many"), folder.path().join("single"));
+    // Long enough for gaps between wire at rest.
+    let long = ["--set", "spindle.turns=2.2"];
     let more = ["--over", "spindle.speed=60:120:3", "--ensemble", "3"];
-    finished(coilwind("sweep", &many, &more), 0);
+    finished(coilwind("sweep", &many, &[&long[..], &more].concat()), 0);
     let set = ["spindle.speed=90", "nozzle.distance_mm=59.65"];
     let more = ["--no-geometry", "--set", set[0], "--set", set[1]];
-    finished(coilwind("run", &single, &more), 0);
+    finished(coilwind("run", &single, &[&long[..], &more].concat()), 0);
     let row = &rows(&many.join("sweep.csv"))[3];
     assert_eq!((&*row["spindle.speed"], &*row["member"]), ("90", "1"));
     let history = rows(&single.join("history.csv"));
@@ -140,6 +142,22 @@ fn a_row_equals_a_run_of_its_own() {
     let text = std::fs::read_to_string(single.join("summary.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(summary["verdict"], *row["verdict"]);
+    let turns = summary["turns"].as_array().unwrap();
+    let gaps = turns.iter().filter_map(|turn| turn["gap_mean"].as_f64());
+    let gap = gaps.fold(0.0, f64::max) / 0.7e-3;
+    assert!(gap > 0.0);
+    assert_eq!(row["gap_mean_d"].parse(), Ok(gap));
+    // Mean and deviation over the three members of this speed.
+    let gaps: Vec<f64> = rows(&many.join("sweep.csv"))[3..6]
+        .iter()
+        .map(|row| row["gap_mean_d"].parse().unwrap())
+        .collect();
+    let mean = gaps.iter().sum::<f64>() / 3.0;
+    let squares: f64 = gaps.iter().map(|gap| (gap - mean).powi(2)).sum();
+    let ensemble = &rows(&many.join("ensemble.csv"))[1];
+    let column = |name: &str| ensemble[name].parse::<f64>().unwrap();
+    assert!((column("gap_mean_d") - mean).abs() < 1e-12);
+    assert!((column("gap_deviation_d") - (squares / 2.0).sqrt()).abs() < 1e-12);
 }
 
 /// A sweep that went on wound everything again.
@@ -207,8 +225,8 @@ fn what_no_sweep_can_do_is_told_before_anything_is_wound() {
             &["did you mean spindle.speed?"],
         ),
         (
-            &["--over", "wire.diameter_mm=0.5:50:3"],
-            &["wire.diameter_mm = 25.25", "out of range"],
+            &["--over", "nozzle.distance_mm=60:20000:3"],
+            &["nozzle.distance_mm = 10030", "out of range"],
         ),
         (
             &["--over", "core.corner_radius_mm=1:7:2"],
@@ -253,7 +271,7 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
     let folder = tempfile::tempdir().unwrap();
     let (all, some) = (folder.path().join("all"), folder.path().join("some"));
     let wound = |out: &Path, more: &[&str]| {
-        let set = ["--set", "tensioner.mass=0"];
+        let set = ["--set", "spindle.speed=900"];
         let ensemble = ["--ensemble", "2"];
         finished(
             coilwind("sweep", out, &[&set[..], &ensemble, more].concat()),
@@ -262,10 +280,10 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
         rows(&out.join("sweep.csv"))
     };
     let name = "tensioner.tension";
-    let every = wound(&all, &["--over", "tensioner.tension=20:160:8"]);
+    let every = wound(&all, &["--over", "tensioner.tension=48:83:8"]);
     let looked = wound(
         &some,
-        &["--over", "tensioner.tension=20:160:7", "--find-max", name],
+        &["--over", "tensioner.tension=48:83:7", "--find-max", name],
     );
     let highest = |rows: &[BTreeMap<String, String>]| {
         let value = |row: &BTreeMap<String, String>| row[name].parse::<f64>().unwrap();
@@ -277,8 +295,9 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
         (good.fold(0.0, f64::max), least_bad)
     };
     assert_eq!(highest(&every), highest(&looked));
-    assert!(highest(&every).0 > 0.0 && highest(&every).1 < 160.0 + 1.0);
-    assert!(looked.len() < every.len() / 2 + 1, "{}", looked.len());
+    let (free, not_free) = highest(&every);
+    assert!(48.0 < free && not_free == free + 5.0, "{free} {not_free}");
+    assert_eq!((every.len(), looked.len()), (16, 6));
 }
 
 #[cfg(unix)]

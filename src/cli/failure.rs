@@ -107,6 +107,22 @@ pub(super) enum Failure {
         /// what goes on
         command: String,
     },
+    /// Ctrl-C during a run of an ensemble.
+    #[error(
+        "interrupted; {done} of {all} members are done{}{}",
+        commands.iter().map(|command| format!("; go on with: {command}")).collect::<String>(),
+        if missing.is_empty() { String::new() } else { format!("; not begun: {}", missing.join(", ")) }
+    )]
+    EnsembleInterrupted {
+        /// members that ended
+        done: usize,
+        /// members
+        all: usize,
+        /// what goes on with those on their way
+        commands: Vec<String>,
+        /// folders of members that have not begun
+        missing: Vec<String>,
+    },
     /// Case files or settings of `verify` are wrong.
     #[error(transparent)]
     Cases(#[from] coilwind::lab::verify::VerifyError),
@@ -182,9 +198,10 @@ impl Failure {
             | Self::Sweep { .. }
             | Self::Draw { .. } => 2,
             Self::Solver { .. } | Self::BenchStopped { .. } => 3,
-            Self::Interrupted { .. } | Self::SweepInterrupted { .. } | Self::StepError { .. } => {
-                130
-            }
+            Self::Interrupted { .. }
+            | Self::SweepInterrupted { .. }
+            | Self::EnsembleInterrupted { .. }
+            | Self::StepError { .. } => 130,
         }
     }
 

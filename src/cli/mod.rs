@@ -60,7 +60,10 @@ enum Command {
 /// Parses the arguments, runs the command and turns its failure into an exit code.
 pub(crate) fn main() -> ExitCode {
     let result = match Cli::parse().command {
-        Command::Run(args) => run::run(&args),
+        Command::Run(args) => match args.ensemble {
+            Some(count) => ensemble::run(&args, count),
+            None => run::run(&args),
+        },
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Report(args) => report::report(&args),
         Command::Check(args) => check::check(&args),

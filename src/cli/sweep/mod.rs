@@ -96,6 +96,12 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     let total = work.ledger.count();
     let failed = work.ledger.rows().filter(|row| row.failed()).count();
     let defects = work.ledger.rows().filter(|row| row.defect).count();
+    let unsettled = work.ledger.rows().filter(|row| row.is_unsettled()).count();
+    if unsettled > 0 {
+        eprintln!(
+            "warning: in {unsettled} of {total} runs no wire came to rest, so nothing could be measured; wind more turns with --set spindle.turns=N"
+        );
+    }
     print(&format!(
         "{told}{total} runs, {} of them new; {defects} with a defect, {failed} that the solver gave up\ntables: {} (a row a run), {} (a row a point)\n",
         total - work.before,

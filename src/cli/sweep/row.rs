@@ -45,8 +45,10 @@ pub(super) struct Row {
     pub(super) defects_break: usize,
     pub(super) defects_slack: usize,
     /// least tension at the nozzle, N
+    #[serde(rename = "tension_min_N")]
     pub(super) tension_min: Option<f64>,
     /// largest tension at the nozzle, N
+    #[serde(rename = "tension_max_N")]
     pub(super) tension_max: Option<f64>,
     pub(super) turns_settled: f64,
     /// processor time, s; the only column that depends on the machine
@@ -79,6 +81,11 @@ impl Row {
     /// The solver gave up.
     pub(super) fn failed(&self) -> bool {
         self.outcome != "done"
+    }
+
+    /// It ended as planned, and nothing could be measured.
+    pub(super) fn is_unsettled(&self) -> bool {
+        !self.failed() && self.verdict == "unsettled"
     }
 
     /// It ended as planned, and without a defect.
