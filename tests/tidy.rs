@@ -97,11 +97,12 @@ const UNSAFE: [(&str, &str); 2] = [
 const LONGEST_FILE: usize = 600;
 
 /// Packages that only the laboratory or the command may bring in.
-const NOT_IN_THE_FMU: [&str; 6] = [
+const NOT_IN_THE_FMU: [&str; 7] = [
     "clap",
     "cpu-time",
     "ctrlc",
     "indicatif",
+    "plotters",
     "rand_chacha",
     "rayon",
 ];

@@ -1,8 +1,8 @@
 //! The folder of a sweep: what it is, and the rows of the runs that ended, so that a stopped sweep goes on.
 
 use super::grid::Grid;
-use super::row::{COLUMNS, Row};
-use super::statistics;
+use super::row::{COLUMNS, Row, Rows};
+use super::{map, statistics};
 use crate::cli::failure::Failure;
 use coilwind::output::write_summary;
 use serde_json::{Value, json};
@@ -23,7 +23,7 @@ const EVERY: Duration = Duration::from_millis(500);
 /// Rows by the number of their run, in memory and on disk.
 pub(super) struct Ledger {
     directory: PathBuf,
-    rows: BTreeMap<usize, Row>,
+    rows: Rows,
     written: Option<Instant>,
     /// keeps other sweeps out of the folder
     _hold: File,
@@ -58,7 +58,7 @@ impl Ledger {
         }
         let hold = hold(directory, &path)?;
         if !goes_on {
-            for name in [ROWS, STATISTICS] {
+            for name in [ROWS, STATISTICS, map::FILE] {
                 let path = directory.join(name);
                 if path.is_file() {
                     fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
@@ -69,7 +69,7 @@ impl Ledger {
         }
         let mut ledger = Self {
             directory: directory.to_owned(),
-            rows: BTreeMap::new(),
+            rows: Rows::new(),
             written: None,
             _hold: hold,
         };
@@ -119,8 +119,8 @@ impl Ledger {
     }
 
     /// Rows of the runs that are done, in the order of the grid.
-    pub(super) fn rows(&self) -> impl Iterator<Item = &Row> {
-        self.rows.values()
+    pub(super) fn rows(&self) -> &Rows {
+        &self.rows
     }
 
     /// Keeps a row; it is on disk soon.
@@ -147,7 +147,7 @@ impl Ledger {
         }
         replace(&path, writer)?;
         let path = self.directory.join(STATISTICS);
-        replace(&path, statistics::table(grid, self, &path)?)?;
+        replace(&path, statistics::table(grid, &self.rows, &path)?)?;
         self.written = Some(Instant::now());
         Ok(())
     }

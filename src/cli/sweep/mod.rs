@@ -3,6 +3,7 @@
 mod find_max;
 mod grid;
 mod ledger;
+mod map;
 mod range;
 mod row;
 mod statistics;
@@ -84,6 +85,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     work.bar.finish_and_clear();
     work.ledger.write(&work.grid)?;
     let told = told?;
+    let mapped = map::write(&args.out, &work.grid, work.ledger.rows())?;
     if work.stop.load(Ordering::SeqCst) {
         return Err(Failure::SweepInterrupted {
             done: work.ledger.count(),
@@ -94,16 +96,30 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         return Ok(());
     }
     let total = work.ledger.count();
-    let failed = work.ledger.rows().filter(|row| row.failed()).count();
-    let defects = work.ledger.rows().filter(|row| row.defect).count();
-    let unsettled = work.ledger.rows().filter(|row| row.is_unsettled()).count();
+    let failed = work
+        .ledger
+        .rows()
+        .values()
+        .filter(|row| row.failed())
+        .count();
+    let defects = work.ledger.rows().values().filter(|row| row.defect).count();
+    let unsettled = work
+        .ledger
+        .rows()
+        .values()
+        .filter(|row| row.is_unsettled())
+        .count();
     if unsettled > 0 {
         eprintln!(
             "warning: in {unsettled} of {total} runs no wire came to rest, so nothing could be measured; wind more turns with --set spindle.turns=N"
         );
     }
+    let map = match mapped {
+        true => format!("map: {}\n", args.out.join(map::FILE).display()),
+        false => String::new(),
+    };
     print(&format!(
-        "{told}{total} runs, {} of them new; {defects} with a defect, {failed} that the solver gave up\ntables: {} (a row a run), {} (a row a point)\n",
+        "{told}{total} runs, {} of them new; {defects} with a defect, {failed} that the solver gave up\ntables: {} (a row a run), {} (a row a point)\n{map}",
         total - work.before,
         args.out.join(ledger::ROWS).display(),
         args.out.join(ledger::STATISTICS).display(),
@@ -198,7 +214,7 @@ impl Work {
 
     /// What a point came to, in a line.
     fn line(&self, point: usize) -> Option<String> {
-        let ensemble = statistics::at(&self.grid, &self.ledger, point)?;
+        let ensemble = statistics::at(&self.grid, self.ledger.rows(), point)?;
         Some(format!("{}: {}\n", self.grid.name(point), ensemble.line()))
     }
 }

@@ -2,6 +2,10 @@
 
 use coilwind::simulation::SimError;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Rows by the number of their run.
+pub(super) type Rows = BTreeMap<usize, Row>;
 
 /// Columns after those of the swept variables, in the order of the fields.
 pub(super) const COLUMNS: [&str; 16] = [

@@ -1,8 +1,7 @@
 //! `ensemble.csv`: what the members of an ensemble say together, a row a point of the grid.
 
 use super::grid::Grid;
-use super::ledger::Ledger;
-use super::row::Row;
+use super::row::{Row, Rows};
 use crate::cli::failure::Failure;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -26,7 +25,7 @@ pub(super) struct Ensemble {
     /// runs that the solver gave up
     pub(super) failed: usize,
     /// mean over the runs of their largest mean gap, in wire diameters
-    gap_mean_d: Option<f64>,
+    pub(super) gap_mean_d: Option<f64>,
     /// standard deviation of the same between runs, of a sample
     gap_deviation_d: Option<f64>,
     /// how often each verdict was given
@@ -61,12 +60,18 @@ impl Ensemble {
         })
     }
 
-    fn share(&self, count: usize) -> f64 {
-        count as f64 / self.members as f64
+    /// Share of the runs with a defect.
+    pub(super) fn defect_share(&self) -> f64 {
+        self.defects as f64 / self.members as f64
+    }
+
+    /// Share of the runs that the solver gave up.
+    pub(super) fn failed_share(&self) -> f64 {
+        self.failed as f64 / self.members as f64
     }
 
     /// `aligned 6, gap 2`.
-    pub(super) fn verdicts(&self) -> String {
+    fn verdicts(&self) -> String {
         let counts = self.verdicts.iter().map(|(word, n)| format!("{word} {n}"));
         counts.collect::<Vec<_>>().join(", ")
     }
@@ -83,18 +88,18 @@ impl Ensemble {
 }
 
 /// The ensemble at a point, of the runs that are done.
-pub(super) fn at(grid: &Grid, ledger: &Ledger, point: usize) -> Option<Ensemble> {
-    let rows: Vec<&Row> = grid
+pub(super) fn at(grid: &Grid, rows: &Rows, point: usize) -> Option<Ensemble> {
+    let there: Vec<&Row> = grid
         .runs_at(point)
-        .filter_map(|run| ledger.row(run))
+        .filter_map(|run| rows.get(&run))
         .collect();
-    Ensemble::of(&rows)
+    Ensemble::of(&there)
 }
 
 /// The table of all points with a run that is done.
 pub(super) fn table(
     grid: &Grid,
-    ledger: &Ledger,
+    rows: &Rows,
     path: &Path,
 ) -> Result<csv::Writer<Vec<u8>>, Failure> {
     let encode = |e: csv::Error| Failure::write(path, e.into());
@@ -103,14 +108,14 @@ pub(super) fn table(
     writer.write_record(names.chain(COLUMNS)).map_err(encode)?;
     let shown = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
     for point in 0..grid.points() {
-        let Some(ensemble) = at(grid, ledger, point) else {
+        let Some(ensemble) = at(grid, rows, point) else {
             continue;
         };
         let mut cells = grid.values(grid.runs_at(point).start);
         cells.extend([
             ensemble.members.to_string(),
-            ensemble.share(ensemble.defects).to_string(),
-            ensemble.share(ensemble.failed).to_string(),
+            ensemble.defect_share().to_string(),
+            ensemble.failed_share().to_string(),
             shown(ensemble.gap_mean_d),
             shown(ensemble.gap_deviation_d),
             ensemble.verdicts(),
