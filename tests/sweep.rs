@@ -104,6 +104,16 @@ fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
     }
     // The nozzle's distance tells the members apart.
     assert_ne!(found[0]["tension_max_N"], found[1]["tension_max_N"]);
+    let map = std::fs::read_to_string(one.join("map.svg")).unwrap();
+    assert_eq!(map, std::fs::read_to_string(three.join("map.svg")).unwrap());
+    assert_eq!(
+        map.matches("\n0 of 2\n").count(),
+        4,
+        "a cell a point: {map}"
+    );
+    for part in ["spindle.speed", "tensioner.tension", "\n120\n", "\n15\n"] {
+        assert!(map.contains(part), "{part}: {map}");
+    }
     let ensembles = rows(&one.join("ensemble.csv"));
     assert_eq!(ensembles.len(), 4);
     assert!(ensembles.iter().all(|e| e["members"] == "2"));

@@ -9,7 +9,6 @@ use coilwind::settings::SceneSettings;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 /// Winds every member on all cores.
@@ -84,7 +83,7 @@ fn words(ended: &[Result<Judged, Failure>]) -> String {
 
 /// What Ctrl-C left, and the commands that go on.
 fn interrupted(all: &[RunArgs], ended: &[Option<Result<Judged, Failure>>]) -> Failure {
-    let folder = |one: &RunArgs| one.out.clone().unwrap_or_else(PathBuf::new);
+    let folder = |one: &RunArgs| one.out.clone().unwrap_or_default();
     let mut done = 0;
     let mut commands = Vec::new();
     let mut missing = Vec::new();

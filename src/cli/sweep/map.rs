@@ -66,9 +66,10 @@ fn draw(grid: &Grid, rows: &Rows) -> Result<String, String> {
         let label = |range: &super::range::Range, at: f64| {
             let index = at.round();
             let whole = (at - index).abs() < 1e-6 && (0.0..f64::from(range.count)).contains(&index);
-            whole
-                .then(|| range.value(index as u32).to_string())
-                .unwrap_or_default()
+            match whole {
+                true => range.value(index as u32).to_string(),
+                false => String::new(),
+            }
         };
         chart
             .configure_mesh()
