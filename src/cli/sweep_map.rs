@@ -1,9 +1,9 @@
 //! `map.svg`: the process map of a sweep over two variables, a cell a point of the grid.
 
-use super::grid::Grid;
-use super::row::Rows;
-use super::statistics::{self, Ensemble};
-use crate::cli::failure::Failure;
+use super::failure::Failure;
+use super::sweep_grid::Grid;
+use super::sweep_row::Rows;
+use super::sweep_statistics::{self as statistics, Ensemble};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::fs;
@@ -63,7 +63,7 @@ fn draw(grid: &Grid, rows: &Rows) -> Result<String, String> {
             .build_cartesian_2d(span(x.count), span(y.count))
             .map_err(told)?;
         // Cells stand at whole numbers; between them there is nothing to say.
-        let label = |range: &super::range::Range, at: f64| {
+        let label = |range: &super::sweep_range::Range, at: f64| {
             let index = at.round();
             let whole = (at - index).abs() < 1e-6 && (0.0..f64::from(range.count)).contains(&index);
             match whole {

@@ -1,6 +1,6 @@
 //! What `--over NAME=A:B:N` says: N values of a variable, evenly from A to B.
 
-use crate::cli::ensemble::members::rounded;
+use super::members::rounded;
 use std::fmt;
 
 /// Most values of a range: more is a slip of the keyboard.
@@ -12,7 +12,7 @@ const FORM: &str = "expected NAME=A:B:N, such as spindle.speed=100:400:4";
 
 /// Values of one variable, in the unit of its name.
 #[derive(Clone, Debug, PartialEq)]
-pub(in crate::cli) struct Range {
+pub(super) struct Range {
     pub(super) name: String,
     pub(super) from: f64,
     pub(super) to: f64,

@@ -1,9 +1,9 @@
 //! The folder of a sweep: what it is, and the rows of the runs that ended, so that a stopped sweep goes on.
 
-use super::grid::Grid;
-use super::row::{COLUMNS, Row, Rows};
-use super::{map, statistics};
-use crate::cli::failure::Failure;
+use super::failure::Failure;
+use super::sweep_grid::Grid;
+use super::sweep_row::{COLUMNS, Row, Rows};
+use super::{sweep_map as map, sweep_statistics as statistics};
 use coilwind::output::write_summary;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;

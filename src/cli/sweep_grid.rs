@@ -1,8 +1,8 @@
 //! The runs of a sweep: every combination of the values, every member of the ensemble.
 
-use super::range::Range;
-use crate::cli::ensemble::members;
-use crate::cli::failure::Failure;
+use super::failure::Failure;
+use super::members;
+use super::sweep_range::Range;
 use coilwind::settings::SceneSettings;
 use coilwind::variables::{Kind, by_name};
 

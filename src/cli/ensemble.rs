@@ -1,10 +1,10 @@
 //! `coilwind run --ensemble K`: K members side by side, a folder each, and how often each verdict was given.
 
+use super::failure::Failure;
+use super::folder;
 use super::members;
-use crate::cli::failure::Failure;
-use crate::cli::folder;
-use crate::cli::run::{Judged, RunArgs, wind_one};
-use crate::cli::terminal::{print, stop_flag};
+use super::run::{Judged, RunArgs, wind_one};
+use super::terminal::{print, stop_flag};
 use coilwind::settings::SceneSettings;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ use std::sync::atomic::Ordering;
 /// # Errors
 /// What is wrong with the scene or a folder, before anything is wound; then that of the first member with an error, after all
 /// have ended.
-pub(in crate::cli) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
+pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     let name = args.scene.as_deref().unwrap_or_default();
     let (settings, _, warnings) = SceneSettings::load_and_build(name, &args.set)?;
     if !args.quiet {

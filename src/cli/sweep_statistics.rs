@@ -1,8 +1,8 @@
 //! `ensemble.csv`: what the members of an ensemble say together, a row a point of the grid.
 
-use super::grid::Grid;
-use super::row::{Row, Rows};
-use crate::cli::failure::Failure;
+use super::failure::Failure;
+use super::sweep_grid::Grid;
+use super::sweep_row::{Row, Rows};
 use std::collections::BTreeMap;
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! `--find-max`: the highest value at which no member of the ensemble has a defect, by bisection.
 
-use super::range::Range;
-use crate::cli::failure::Failure;
+use super::failure::Failure;
+use super::sweep_range::Range;
 
 /// Steps in which values of these variables are told: the spindle's is what a drive can be set to.
 const STEPS: [(&str, f64); 2] = [

@@ -1,23 +1,18 @@
 //! `coilwind sweep`: many runs of one scene on all cores, one table.
 
-mod find_max;
-mod grid;
-mod ledger;
-mod map;
-mod range;
-mod row;
-mod statistics;
-mod wind;
-
 use super::failure::Failure;
 use super::scene::SceneArgs;
+use super::sweep_grid::Grid;
+use super::sweep_ledger::{self as ledger, Ledger};
+use super::sweep_range::Range;
 use super::terminal::{print, stop_flag};
+use super::{
+    sweep_find_max as find_max, sweep_map as map, sweep_statistics as statistics,
+    sweep_wind as wind,
+};
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
-use grid::Grid;
 use indicatif::{ProgressBar, ProgressStyle};
-use ledger::Ledger;
-use range::Range;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -11,7 +11,7 @@ const DIGITS: usize = 9;
 const VARIABLE: &str = "nozzle.distance_mm";
 
 /// The setting that makes member `member` (from 1) of `count` out of these settings; `None` for an ensemble of one.
-pub(in crate::cli) fn setting(
+pub(super) fn setting(
     settings: &SceneSettings,
     member: u32,
     count: u32,
@@ -28,7 +28,7 @@ pub(in crate::cli) fn setting(
 ///
 /// # Errors
 /// A distance outside the range of the variable.
-pub(in crate::cli) fn vary(
+pub(super) fn vary(
     settings: &mut SceneSettings,
     member: u32,
     count: u32,
@@ -40,7 +40,7 @@ pub(in crate::cli) fn vary(
 }
 
 /// A number to so many significant digits.
-pub(in crate::cli) fn rounded(x: f64, digits: usize) -> f64 {
+pub(super) fn rounded(x: f64, digits: usize) -> f64 {
     let text = format!("{x:.*e}", digits - 1);
     text.parse().unwrap_or(x)
 }

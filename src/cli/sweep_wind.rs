@@ -1,8 +1,8 @@
 //! One run of a sweep: wound as `coilwind run` winds it, judged, no files.
 
-use super::row::Row;
-use crate::cli::drive::{Drive, Motion};
-use crate::cli::failure::Failure;
+use super::drive::{Drive, Motion};
+use super::failure::Failure;
+use super::sweep_row::Row;
 use coilwind::measure::DefectKind;
 use coilwind::settings::SceneSettings;
 use coilwind::simulation::{SimError, Simulation};
