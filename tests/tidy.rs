@@ -97,7 +97,15 @@ const UNSAFE: [(&str, &str); 2] = [
 const LONGEST_FILE: usize = 600;
 
 /// Packages that only the laboratory or the command may bring in.
-const NOT_IN_THE_FMU: [&str; 5] = ["clap", "cpu-time", "ctrlc", "indicatif", "rand_chacha"];
+const NOT_IN_THE_FMU: [&str; 7] = [
+    "clap",
+    "cpu-time",
+    "ctrlc",
+    "indicatif",
+    "plotters",
+    "rand_chacha",
+    "rayon",
+];
 
 /// Words of doc comments that a stranger cannot know.
 const PET_WORDS: [&str; 13] = [

@@ -93,6 +93,36 @@ pub(super) enum Failure {
         /// where the results are
         directory: String,
     },
+    /// The ranges or the folder of `sweep` are wrong.
+    #[error("sweep: {reason}")]
+    Sweep {
+        /// what is wrong, and what would do
+        reason: String,
+    },
+    /// Ctrl-C during `sweep`.
+    #[error("interrupted; {done} runs are kept; go on with: {command}")]
+    SweepInterrupted {
+        /// runs that ended
+        done: usize,
+        /// what goes on
+        command: String,
+    },
+    /// Ctrl-C during a run of an ensemble.
+    #[error(
+        "interrupted; {done} of {all} members are done{}{}",
+        commands.iter().map(|command| format!("; go on with: {command}")).collect::<String>(),
+        if missing.is_empty() { String::new() } else { format!("; not begun: {}", missing.join(", ")) }
+    )]
+    EnsembleInterrupted {
+        /// members that ended
+        done: usize,
+        /// members
+        all: usize,
+        /// what goes on with those on their way
+        commands: Vec<String>,
+        /// folders of members that have not begun
+        missing: Vec<String>,
+    },
     /// Case files or settings of `verify` are wrong.
     #[error(transparent)]
     Cases(#[from] coilwind::lab::verify::VerifyError),
@@ -145,6 +175,11 @@ impl Failure {
         }
     }
 
+    /// Ranges or a folder of `sweep` that will not do.
+    pub(super) fn sweep(reason: String) -> Self {
+        Self::Sweep { reason }
+    }
+
     /// 1 defect or wrong number, 2 bad input, 3 solver, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
@@ -160,9 +195,13 @@ impl Failure {
             | Self::Resume { .. }
             | Self::Cases(_)
             | Self::Bench(_)
+            | Self::Sweep { .. }
             | Self::Draw { .. } => 2,
             Self::Solver { .. } | Self::BenchStopped { .. } => 3,
-            Self::Interrupted { .. } | Self::StepError { .. } => 130,
+            Self::Interrupted { .. }
+            | Self::SweepInterrupted { .. }
+            | Self::EnsembleInterrupted { .. }
+            | Self::StepError { .. } => 130,
         }
     }
 

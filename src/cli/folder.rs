@@ -29,6 +29,12 @@ const RESULTS: [&str; 9] = [
 
 /// Makes the folder; one that holds a run is refused unless `force` says otherwise.
 pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
+    refuse_occupied(directory, force)?;
+    fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))
+}
+
+/// An error where the folder holds a run, unless `force` says otherwise.
+pub(super) fn refuse_occupied(directory: &Path, force: bool) -> Result<(), Failure> {
     let is_file = |name: &&str| {
         let data = fs::metadata(directory.join(name));
         data.is_ok_and(|data| data.is_file() && data.len() > 0)
@@ -39,7 +45,7 @@ pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
             can_go_on: is_file(&checkpoint::FILE),
         });
     }
-    fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))
+    Ok(())
 }
 
 /// Removes what an earlier run left, and leaves the scene as it is about to be run. The history must be open by then:

@@ -5,9 +5,11 @@ mod check;
 mod checkpoint;
 mod choice;
 mod drive;
+mod ensemble;
 mod failure;
 mod folder;
 mod frames;
+mod members;
 mod motion;
 mod progress;
 mod report;
@@ -15,6 +17,15 @@ mod run;
 mod scene;
 mod signals;
 mod stress;
+mod sweep;
+mod sweep_find_max;
+mod sweep_grid;
+mod sweep_ledger;
+mod sweep_map;
+mod sweep_range;
+mod sweep_row;
+mod sweep_statistics;
+mod sweep_wind;
 mod terminal;
 mod variables;
 mod verify;
@@ -39,6 +50,9 @@ enum Command {
     /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp,
     /// coil.png and report.html; or go on with a run that was stopped
     Run(run::RunArgs),
+    /// Wind every combination of values on all cores, and leave a table of verdicts; or find the
+    /// highest value without a defect
+    Sweep(sweep::SweepArgs),
     /// Make the page about a run again, or compare two runs, from the files that they left
     Report(report::ReportArgs),
     /// Validate a scene and say what is wrong, and where
@@ -58,7 +72,11 @@ enum Command {
 /// Parses the arguments, runs the command and turns its failure into an exit code.
 pub(crate) fn main() -> ExitCode {
     let result = match Cli::parse().command {
-        Command::Run(args) => run::run(&args),
+        Command::Run(args) => match args.ensemble {
+            Some(count) => ensemble::run(&args, count),
+            None => run::run(&args),
+        },
+        Command::Sweep(args) => sweep::sweep(&args),
         Command::Report(args) => report::report(&args),
         Command::Check(args) => check::check(&args),
         Command::Motion(args) => motion::motion(&args),

@@ -25,25 +25,29 @@ const DEFAULT_OUT: &str = "coilwind-out";
 const CHECKPOINT_SHARE: u32 = 20;
 
 /// Arguments of `run`.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub(super) struct RunArgs {
     /// Scene file (TOML), or the name of a packed scene such as fig8
     #[arg(required_unless_present = "resume")]
-    scene: Option<String>,
+    pub(super) scene: Option<String>,
     /// Set a parameter, with or without its unit: wire.diameter=7e-4, wire.diameter_mm=0.7
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]
-    set: Vec<(String, String)>,
+    pub(super) set: Vec<(String, String)>,
     /// Folder of the results; default: output.directory of the scene, else coilwind-out
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
+    /// Wind so many runs side by side with the nozzle up to half a wire nearer and farther, in DIR/1 to DIR/K, and tell how often
+    /// each verdict was given
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    pub(super) ensemble: Option<u32>,
     /// Overwrite the run that the folder of the results holds
     #[arg(long)]
-    force: bool,
+    pub(super) force: bool,
     /// Go on with the run in this folder, which was stopped before its end
     #[arg(
         long,
         value_name = "DIR",
-        conflicts_with_all = ["scene", "set", "out", "force", "frames", "no_geometry", "inputs", "step", "stop_time"]
+        conflicts_with_all = ["scene", "set", "out", "force", "ensemble", "frames", "no_geometry", "inputs", "step", "stop_time"]
     )]
     resume: Option<PathBuf>,
     /// Wall time between two checkpoints from which a stopped run could go on, s
@@ -70,13 +74,31 @@ pub(super) struct RunArgs {
     stop_time: Option<f64>,
     /// Exit with 1 if a defect was found
     #[arg(long)]
-    fail_on_defect: bool,
+    pub(super) fail_on_defect: bool,
     /// No progress, no events, no verdict; errors only
     #[arg(long)]
-    quiet: bool,
+    pub(super) quiet: bool,
     /// Tell also what the solver does and what the program has decided for this scene
     #[arg(long, conflicts_with = "quiet")]
-    verbose: bool,
+    pub(super) verbose: bool,
+}
+
+impl RunArgs {
+    /// Folder of the results of a new run of these settings.
+    pub(super) fn directory(&self, settings: &SceneSettings) -> PathBuf {
+        match (&self.out, settings.output.directory.as_str()) {
+            (Some(out), _) => out.clone(),
+            (None, "") => PathBuf::from(DEFAULT_OUT),
+            (None, directory) => PathBuf::from(directory),
+        }
+    }
+}
+
+/// What a run that ended came to.
+pub(super) struct Judged {
+    pub(super) verdict: Verdict,
+    /// there is a defect, or the verdict names one
+    pub(super) defect: bool,
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -102,6 +124,11 @@ struct Start {
 
 /// Runs a scene, or goes on with a run.
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
+    wind_one(args, &stop_flag()).map(drop)
+}
+
+/// The same, until the flag is up.
+pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged, Failure> {
     let start = match &args.resume {
         Some(directory) => resume(directory, args)?,
         None => begin(args)?,
@@ -136,9 +163,8 @@ pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
             failed: false,
         },
     };
-    let stop = stop_flag();
-    simulation.stop_on(Arc::clone(&stop));
-    let ended = record.wind(&mut simulation, &mut drive, &stop, args.resume.is_none());
+    simulation.stop_on(Arc::clone(stop));
+    let ended = record.wind(&mut simulation, &mut drive, stop, args.resume.is_none());
     record.progress.finish();
 
     // Results first: whatever ended the run, what it computed stays usable.
@@ -213,11 +239,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     if let Drive::Signals { held, .. } = &drive {
         simulation.set_start(*held).map_err(start_failure)?;
     }
-    let directory = match (&args.out, settings.output.directory.as_str()) {
-        (Some(out), _) => out.clone(),
-        (None, "") => PathBuf::from(DEFAULT_OUT),
-        (None, directory) => PathBuf::from(directory),
-    };
+    let directory = args.directory(&settings);
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
     folder::prepare(&directory, args.force)?;
     let history = History::create(&directory.join("history.csv"))?;
@@ -281,7 +303,7 @@ fn conclude(
     simulation: &Simulation,
     page: Option<&Path>,
     directory: &Path,
-) -> Result<(), Failure> {
+) -> Result<Judged, Failure> {
     let outputs = simulation.outputs();
     let (verdict, defects) = (simulation.verdict(), simulation.defects());
     if !args.quiet {
@@ -305,12 +327,13 @@ fn conclude(
             simulation.reasons().join("; "),
         ))?;
     }
-    if args.fail_on_defect && (!defects.is_empty() || verdict.is_defect()) {
+    let defect = !defects.is_empty() || verdict.is_defect();
+    if args.fail_on_defect && defect {
         return Err(Failure::Defect {
             what: counted(verdict, &defects),
         });
     }
-    Ok(())
+    Ok(Judged { verdict, defect })
 }
 
 /// How many defects of each kind there are, in words.

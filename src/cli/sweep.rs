@@ -1,0 +1,239 @@
+//! `coilwind sweep`: many runs of one scene on all cores, one table.
+
+use super::failure::Failure;
+use super::scene::SceneArgs;
+use super::sweep_grid::Grid;
+use super::sweep_ledger::{self as ledger, Ledger};
+use super::sweep_range::Range;
+use super::terminal::{print, stop_flag};
+use super::{
+    sweep_find_max as find_max, sweep_map as map, sweep_statistics as statistics,
+    sweep_wind as wind,
+};
+use clap::Args;
+use clap::builder::RangedI64ValueParser;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Points of a grid that are told in words; the table has all.
+const TOLD: usize = 40;
+
+/// Arguments of `sweep`.
+#[derive(Args, Debug)]
+pub(super) struct SweepArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Vary a variable: N values evenly from A to B. Given again, every combination is wound
+    #[arg(long, value_name = "NAME=A:B:N", value_parser = Range::parse, required = true)]
+    over: Vec<Range>,
+    /// Wind so many runs at each point, with the nozzle up to half a wire nearer and farther
+    #[arg(long, value_name = "K", default_value_t = 1, value_parser = RangedI64ValueParser::<u32>::new().range(1..=1000))]
+    ensemble: u32,
+    /// Folder of the tables; a sweep that was stopped goes on there
+    #[arg(long, value_name = "DIR", default_value = "coilwind-sweep")]
+    out: PathBuf,
+    /// Find the highest value of this variable at which no run has a defect, by bisection between A and B of its range
+    #[arg(long, value_name = "NAME")]
+    find_max: Option<String>,
+    /// Overwrite the sweep that the folder holds
+    #[arg(long)]
+    force: bool,
+    /// Runs at a time; 0: one a core. Results do not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
+    /// No progress, no closing words; errors only
+    #[arg(long)]
+    quiet: bool,
+}
+
+/// Winds what is not wound yet, and tells what came of it.
+pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
+    let (base, _, warnings) = args.scene.build()?;
+    if !args.quiet {
+        warnings.iter().for_each(|w| eprintln!("warning: {w}"));
+    }
+    let ranges = match &args.find_max {
+        Some(name) => vec![find_max::candidates(name, &args.over)?],
+        None => args.over.clone(),
+    };
+    let grid = Grid::new(base, ranges, args.ensemble)?;
+    let ledger = Ledger::open(&args.out, &grid, args.find_max.is_some(), args.force)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads)
+        .build()
+        .map_err(|e| Failure::sweep(format!("--threads {}: {e}", args.threads)))?;
+    let mut work = Work {
+        before: ledger.count(),
+        ledger,
+        bar: bar(args.quiet),
+        stop: stop_flag(),
+        pool,
+        grid,
+    };
+    let told = match args.find_max {
+        Some(_) => work.find_max(),
+        None => work.all(),
+    };
+    work.bar.finish_and_clear();
+    work.ledger.write(&work.grid)?;
+    let told = told?;
+    let mapped = map::write(&args.out, &work.grid, work.ledger.rows())?;
+    if work.stop.load(Ordering::SeqCst) {
+        return Err(Failure::SweepInterrupted {
+            done: work.ledger.count(),
+            command: again(),
+        });
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    let total = work.ledger.count();
+    let failed = work
+        .ledger
+        .rows()
+        .values()
+        .filter(|row| row.failed())
+        .count();
+    let defects = work.ledger.rows().values().filter(|row| row.defect).count();
+    let unsettled = work
+        .ledger
+        .rows()
+        .values()
+        .filter(|row| row.is_unsettled())
+        .count();
+    if unsettled > 0 {
+        eprintln!(
+            "warning: in {unsettled} of {total} runs no wire came to rest, so nothing could be measured; wind more turns with --set spindle.turns=N"
+        );
+    }
+    let map = match mapped {
+        true => format!("map: {}\n", args.out.join(map::FILE).display()),
+        false => String::new(),
+    };
+    print(&format!(
+        "{told}{total} runs, {} of them new; {defects} with a defect, {failed} that the solver gave up\ntables: {} (a row a run), {} (a row a point)\n{map}",
+        total - work.before,
+        args.out.join(ledger::ROWS).display(),
+        args.out.join(ledger::STATISTICS).display(),
+    ))
+}
+
+/// A sweep that is going on.
+struct Work {
+    grid: Grid,
+    ledger: Ledger,
+    pool: rayon::ThreadPool,
+    bar: ProgressBar,
+    stop: Arc<AtomicBool>,
+    /// runs that were there
+    before: usize,
+}
+
+impl Work {
+    /// Winds the whole grid; tells it point by point.
+    fn all(&mut self) -> Result<String, Failure> {
+        self.bar.set_length(self.grid.runs() as u64);
+        self.wind(0..self.grid.runs())?;
+        let points = self.grid.points();
+        let lines = (0..points.min(TOLD)).filter_map(|point| self.line(point));
+        let mut told: String = lines.collect();
+        if points > TOLD {
+            told += &format!("... and {} more points\n", points - TOLD);
+        }
+        Ok(told)
+    }
+
+    /// Looks for the highest value without a defect; tells it with what was looked at.
+    fn find_max(&mut self) -> Result<String, Failure> {
+        let points = self.grid.points();
+        let looks = (points + 1).next_power_of_two().ilog2();
+        self.bar
+            .set_length(u64::from(looks) * u64::from(self.grid.members));
+        let mut told = String::new();
+        let free = find_max::bisect(points, |point| {
+            self.wind(self.grid.runs_at(point))?;
+            told += &self.line(point).unwrap_or_default();
+            let mut rows = self.grid.runs_at(point).map(|run| self.ledger.row(run));
+            // Of an interrupted look, and of those after it, nothing is told.
+            Ok::<bool, Failure>(rows.all(|row| row.is_some_and(|row| row.is_free())))
+        })?;
+        let range = &self.grid.ranges[0];
+        let (name, value) = (&range.name, |index: usize| range.value(index as u32));
+        told += &match free {
+            0 => format!(
+                "no value of {name} is free of defects: {} is not; try a lower bracket\n",
+                value(0)
+            ),
+            n if n == points => format!(
+                "{name} = {}: the whole bracket is free of defects; try a higher one\n",
+                value(n - 1)
+            ),
+            n => format!(
+                "{name} = {} is the highest value without a defect; {} is not free of them\n",
+                value(n - 1),
+                value(n)
+            ),
+        };
+        Ok(told)
+    }
+
+    /// Winds those of these runs that are not there, as many at a time as there are threads.
+    fn wind(&mut self, runs: std::ops::Range<usize>) -> Result<(), Failure> {
+        let Self {
+            grid,
+            ledger,
+            pool,
+            bar,
+            stop,
+            ..
+        } = self;
+        let missing: Vec<usize> = runs.filter(|&run| ledger.row(run).is_none()).collect();
+        bar.set_position(ledger.count() as u64);
+        bar.reset_eta();
+        let ledger = Mutex::new(ledger);
+        // One after the other from the front, so that what a stopped sweep has is one piece.
+        let each = |run: usize| -> Result<(), Failure> {
+            let settings = grid.settings(run)?;
+            if let Some(row) = wind::wind(&settings, grid.member(run), stop)? {
+                let mut ledger = ledger.lock().unwrap_or_else(PoisonError::into_inner);
+                ledger.add(grid, run, row)?;
+                bar.inc(1);
+            }
+            Ok(())
+        };
+        pool.install(|| missing.into_iter().par_bridge().try_for_each(each))
+    }
+
+    /// What a point came to, in a line.
+    fn line(&self, point: usize) -> Option<String> {
+        let ensemble = statistics::at(&self.grid, self.ledger.rows(), point)?;
+        Some(format!("{}: {}\n", self.grid.name(point), ensemble.line()))
+    }
+}
+
+fn bar(quiet: bool) -> ProgressBar {
+    let bar = match quiet {
+        true => ProgressBar::hidden(),
+        false => ProgressBar::new(0),
+    };
+    // The template is constant; a mistake in it would show as the default style.
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} runs  {eta} left") {
+        bar.set_style(style);
+    }
+    bar
+}
+
+/// The command that goes on, as a shell takes it.
+fn again() -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_=:./,+".contains(c);
+    let words = std::env::args().skip(1).filter(|word| word != "--force");
+    let words = words.map(|word| match !word.is_empty() && word.chars().all(plain) {
+        true => word,
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    });
+    let words: Vec<String> = words.collect();
+    format!("coilwind {}", words.join(" "))
+}

@@ -1,0 +1,214 @@
+//! The folder of a sweep: what it is, and the rows of the runs that ended, so that a stopped sweep goes on.
+
+use super::failure::Failure;
+use super::sweep_grid::Grid;
+use super::sweep_row::{COLUMNS, Row, Rows};
+use super::{sweep_map as map, sweep_statistics as statistics};
+use coilwind::output::write_summary;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// What the sweep is: scene, ranges, members.
+const PLAN: &str = "sweep.json";
+/// A row a run.
+pub(super) const ROWS: &str = "sweep.csv";
+/// A row a point of the grid.
+pub(super) const STATISTICS: &str = "ensemble.csv";
+/// Time between two writes of the rows while runs end one after the other.
+const EVERY: Duration = Duration::from_millis(500);
+
+/// Rows by the number of their run, in memory and on disk.
+pub(super) struct Ledger {
+    directory: PathBuf,
+    rows: Rows,
+    written: Option<Instant>,
+    /// keeps other sweeps out of the folder
+    _hold: File,
+}
+
+impl Ledger {
+    /// Begins a sweep in a folder, or goes on with the one that it holds.
+    ///
+    /// # Errors
+    /// A folder that holds another sweep without `force`, one where a sweep is going on, or one that cannot be written.
+    pub(super) fn open(
+        directory: &Path,
+        grid: &Grid,
+        find_max: bool,
+        force: bool,
+    ) -> Result<Self, Failure> {
+        let plan = plan(grid, find_max);
+        let path = directory.join(PLAN);
+        let found = fs::read(&path).ok();
+        let found = found.map(|bytes| serde_json::from_slice::<Value>(&bytes).unwrap_or_default());
+        let begun = directory.join(ROWS).exists();
+        if let Some(differs) = difference(&plan, found.as_ref(), begun).filter(|_| !force) {
+            return Err(Failure::sweep(format!(
+                "{} holds another sweep ({differs}); add --force to overwrite it, or --out for another folder",
+                directory.display()
+            )));
+        }
+        fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))?;
+        let goes_on = found.as_ref() == Some(&plan) && !force;
+        if found.is_none() {
+            write_summary(&path, &plan)?;
+        }
+        let hold = hold(directory, &path)?;
+        if !goes_on {
+            for name in [ROWS, STATISTICS, map::FILE] {
+                let path = directory.join(name);
+                if path.is_file() {
+                    fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
+                }
+            }
+            let text = format!("{plan:#}\n");
+            fs::write(&path, text).map_err(|e| Failure::write(&path, e))?;
+        }
+        let mut ledger = Self {
+            directory: directory.to_owned(),
+            rows: Rows::new(),
+            written: None,
+            _hold: hold,
+        };
+        if goes_on && begun {
+            ledger.read(grid)?;
+        }
+        Ok(ledger)
+    }
+
+    /// Takes the rows that are there.
+    fn read(&mut self, grid: &Grid) -> Result<(), Failure> {
+        let path = self.directory.join(ROWS);
+        let damaged = |line: u64| {
+            Failure::sweep(format!(
+                "{}:{line}: no row of this sweep; remove the line, or begin again with --force",
+                path.display()
+            ))
+        };
+        let mut reader = csv::Reader::from_path(&path).map_err(|_| damaged(1))?;
+        let columns = grid.ranges.len();
+        let names = csv::StringRecord::from(COLUMNS.to_vec());
+        let runs = (0..grid.runs()).map(|run| ((grid.values(run), grid.member(run)), run));
+        let runs: BTreeMap<_, _> = runs.collect();
+        if reader.headers().ok() != Some(&csv::StringRecord::from(header(grid))) {
+            return Err(damaged(1));
+        }
+        for (index, record) in reader.records().enumerate() {
+            let line = index as u64 + 2;
+            let record = record.map_err(|_| damaged(line))?;
+            let values = record.iter().take(columns).map(str::to_owned).collect();
+            let rest: csv::StringRecord = record.iter().skip(columns).collect();
+            let row: Row = rest.deserialize(Some(&names)).map_err(|_| damaged(line))?;
+            let run = runs.get(&(values, row.member));
+            self.rows.insert(*run.ok_or_else(|| damaged(line))?, row);
+        }
+        Ok(())
+    }
+
+    /// How many runs are done.
+    pub(super) fn count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The row of a run that is done.
+    pub(super) fn row(&self, run: usize) -> Option<&Row> {
+        self.rows.get(&run)
+    }
+
+    /// Rows of the runs that are done, in the order of the grid.
+    pub(super) fn rows(&self) -> &Rows {
+        &self.rows
+    }
+
+    /// Keeps a row; it is on disk soon.
+    pub(super) fn add(&mut self, grid: &Grid, run: usize, row: Row) -> Result<(), Failure> {
+        self.rows.insert(run, row);
+        match self.written {
+            Some(written) if written.elapsed() < EVERY => Ok(()),
+            _ => self.write(grid),
+        }
+    }
+
+    /// Writes what there is, in the order of the grid. A reader finds the old table or the new one, never half of it.
+    pub(super) fn write(&mut self, grid: &Grid) -> Result<(), Failure> {
+        let mut writer = csv::WriterBuilder::new()
+            .has_headers(false)
+            .from_writer(Vec::new());
+        let path = self.directory.join(ROWS);
+        let encode = |e: csv::Error| Failure::write(&path, e.into());
+        writer.write_record(header(grid)).map_err(encode)?;
+        for (&run, row) in &self.rows {
+            writer
+                .serialize((grid.values(run), row))
+                .map_err(|e| Failure::write(&path, e.into()))?;
+        }
+        replace(&path, writer)?;
+        let path = self.directory.join(STATISTICS);
+        replace(&path, statistics::table(grid, &self.rows, &path)?)?;
+        self.written = Some(Instant::now());
+        Ok(())
+    }
+}
+
+/// Columns of `sweep.csv`.
+fn header(grid: &Grid) -> Vec<&str> {
+    let names = grid.ranges.iter().map(|range| range.name.as_str());
+    names.chain(COLUMNS).collect()
+}
+
+/// What makes a sweep the same sweep.
+fn plan(grid: &Grid, find_max: bool) -> Value {
+    let over: Vec<String> = grid.ranges.iter().map(ToString::to_string).collect();
+    let core = fs::read(&grid.base().core.file).map_or(0, |bytes| crc32fast::hash(&bytes));
+    let table = fs::read(&grid.base().traverse.file).map_or(0, |bytes| crc32fast::hash(&bytes));
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "over": over,
+        "ensemble": grid.members,
+        "find_max": find_max,
+        "core_checksum": core,
+        "table_checksum": table,
+        "scene": grid.base().to_toml(),
+    })
+}
+
+/// In which respect the folder holds another sweep, if it does.
+fn difference(plan: &Value, found: Option<&Value>, begun: bool) -> Option<String> {
+    let Some(found) = found else {
+        return begun.then(|| format!("without {PLAN}"));
+    };
+    let names = plan.as_object()?.keys();
+    let names = names.filter(|name| plan[name.as_str()] != found[name.as_str()]);
+    let names: Vec<&str> = names.map(String::as_str).collect();
+    (!names.is_empty()).then(|| format!("another {}", names.join(", ")))
+}
+
+/// Holds the plan of a sweep that goes on; an error where another sweep holds it.
+fn hold(directory: &Path, path: &Path) -> Result<File, Failure> {
+    let file = File::open(path).map_err(|e| Failure::write(path, e))?;
+    // Not every file system has locks; on Windows a lock would keep readers out as well.
+    if cfg!(unix)
+        && let Err(fs::TryLockError::WouldBlock) = file.try_lock()
+    {
+        return Err(Failure::sweep(format!(
+            "{}: a sweep is going on here; wait for its end, or stop it first",
+            directory.display()
+        )));
+    }
+    Ok(file)
+}
+
+/// Puts a table in the place of the old one.
+fn replace(path: &Path, table: csv::Writer<Vec<u8>>) -> Result<(), Failure> {
+    let bytes = table
+        .into_inner()
+        .map_err(|e| Failure::write(path, e.into_error()))?;
+    let mut partial = path.as_os_str().to_owned();
+    partial.push(".partial");
+    fs::write(&partial, bytes)
+        .and_then(|()| fs::rename(&partial, path))
+        .map_err(|e| Failure::write(path, e))
+}

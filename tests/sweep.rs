@@ -1,0 +1,367 @@
+//! `coilwind sweep` and `coilwind run --ensemble` through their front door.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A sweep of `fig8` of 0.3 turns on coarse wire: enough to judge, over in a moment.
+const SHORT: [&str; 10] = [
+    "fig8",
+    "--quiet",
+    "--set",
+    "spindle.turns=0.3",
+    "--set",
+    "spindle.ramp_turns=0.1",
+    "--set",
+    "solver.spacing_near_mm=1",
+    "--set",
+    "solver.tolerance=1e-5",
+];
+
+fn coilwind(command: &str, out: &Path, more: &[&str]) -> Command {
+    let mut process = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    process.arg(command).args(SHORT).arg("--out").arg(out);
+    process.args(more);
+    process
+}
+
+fn finished(mut command: Command, code: i32) -> Output {
+    let output = command.output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    output
+}
+
+fn complaint(command: Command, code: i32) -> String {
+    String::from_utf8(finished(command, code).stderr).unwrap()
+}
+
+/// The rows of a table by column.
+fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(path).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+/// A table without its last column, which is a clock.
+fn without_clock(path: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(path).unwrap();
+    let lines = text
+        .lines()
+        .map(|line| line.rsplit_once(',').unwrap().0.to_owned());
+    lines.collect()
+}
+
+const GRID: [&str; 6] = [
+    "--over",
+    "spindle.speed=60:120:2",
+    "--over",
+    "tensioner.tension=10:15:2",
+    "--ensemble",
+    "2",
+];
+
+/// Rows stood in the order in which runs ended, and another number of threads made another table.
+#[test]
+fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let (one, three) = (folder.path().join("1"), folder.path().join("3"));
+    for (out, threads) in [(&one, "1"), (&three, "3")] {
+        finished(
+            coilwind("sweep", out, &[&GRID[..], &["--threads", threads]].concat()),
+            0,
+        );
+    }
+    assert_eq!(
+        without_clock(&one.join("sweep.csv")),
+        without_clock(&three.join("sweep.csv"))
+    );
+    assert_eq!(
+        std::fs::read(one.join("ensemble.csv")).unwrap(),
+        std::fs::read(three.join("ensemble.csv")).unwrap()
+    );
+    let found = rows(&one.join("sweep.csv"));
+    let place = |row: &BTreeMap<String, String>| {
+        ["spindle.speed", "tensioner.tension", "member"].map(|name| row[name].clone())
+    };
+    let places: Vec<[String; 3]> = found.iter().map(place).collect();
+    let mut expected = Vec::new();
+    for speed in ["60", "120"] {
+        for tension in ["10", "15"] {
+            for member in ["1", "2"] {
+                expected.push([speed, tension, member].map(str::to_owned));
+            }
+        }
+    }
+    assert_eq!(places, expected);
+    for row in &found {
+        assert_eq!(row["outcome"], "done");
+        let (least, most): (f64, f64) = (
+            row["tension_min_N"].parse().unwrap(),
+            row["tension_max_N"].parse().unwrap(),
+        );
+        let set: f64 = row["tensioner.tension"].parse().unwrap();
+        assert!(least <= set && set <= most && least > 0.0, "{row:?}");
+    }
+    // The nozzle's distance tells the members apart.
+    assert_ne!(found[0]["tension_max_N"], found[1]["tension_max_N"]);
+    let map = std::fs::read_to_string(one.join("map.svg")).unwrap();
+    assert_eq!(map, std::fs::read_to_string(three.join("map.svg")).unwrap());
+    assert_eq!(
+        map.matches("\n0 of 2\n").count(),
+        4,
+        "a cell a point: {map}"
+    );
+    for part in ["spindle.speed", "tensioner.tension", "\n120\n", "\n15\n"] {
+        assert!(map.contains(part), "{part}: {map}");
+    }
+    let ensembles = rows(&one.join("ensemble.csv"));
+    assert_eq!(ensembles.len(), 4);
+    assert!(ensembles.iter().all(|e| e["members"] == "2"));
+}
+
+/// A row of a sweep says what a run of the same scene says.
+#[test]
+fn a_row_equals_a_run_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let (many, single) = (folder.path().join("many"), folder.path().join("single"));
+    // Long enough for gaps between wire at rest.
+    let long = ["--set", "spindle.turns=2.2"];
+    let more = ["--over", "spindle.speed=60:120:3", "--ensemble", "3"];
+    finished(coilwind("sweep", &many, &[&long[..], &more].concat()), 0);
+    let set = ["spindle.speed=90", "nozzle.distance_mm=59.65"];
+    let more = ["--no-geometry", "--set", set[0], "--set", set[1]];
+    finished(coilwind("run", &single, &[&long[..], &more].concat()), 0);
+    let row = &rows(&many.join("sweep.csv"))[3];
+    assert_eq!((&*row["spindle.speed"], &*row["member"]), ("90", "1"));
+    let history = rows(&single.join("history.csv"));
+    let column = |name: &str| {
+        let cells: Vec<f64> = history
+            .iter()
+            .map(|row| row[name].parse().unwrap())
+            .collect();
+        cells
+    };
+    let least = column("wire_tension_min")
+        .into_iter()
+        .fold(f64::INFINITY, f64::min);
+    let most = column("wire_tension_max").into_iter().fold(0.0, f64::max);
+    assert_eq!(row["tension_min_N"].parse(), Ok(least));
+    assert_eq!(row["tension_max_N"].parse(), Ok(most));
+    let settled = *column("turns_settled").last().unwrap();
+    assert_eq!(row["turns_settled"].parse(), Ok(settled));
+    let text = std::fs::read_to_string(single.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(summary["verdict"], *row["verdict"]);
+    let turns = summary["turns"].as_array().unwrap();
+    let gaps = turns.iter().filter_map(|turn| turn["gap_mean"].as_f64());
+    let gap = gaps.fold(0.0, f64::max) / 0.7e-3;
+    assert!(gap > 0.0);
+    assert_eq!(row["gap_mean_d"].parse(), Ok(gap));
+    // Mean and deviation over the three members of this speed.
+    let gaps: Vec<f64> = rows(&many.join("sweep.csv"))[3..6]
+        .iter()
+        .map(|row| row["gap_mean_d"].parse().unwrap())
+        .collect();
+    let mean = gaps.iter().sum::<f64>() / 3.0;
+    let squares: f64 = gaps.iter().map(|gap| (gap - mean).powi(2)).sum();
+    let ensemble = &rows(&many.join("ensemble.csv"))[1];
+    let column = |name: &str| ensemble[name].parse::<f64>().unwrap();
+    assert!((column("gap_mean_d") - mean).abs() < 1e-12);
+    assert!((column("gap_deviation_d") - (squares / 2.0).sqrt()).abs() < 1e-12);
+}
+
+/// A sweep that went on wound everything again.
+#[test]
+fn what_is_wound_is_not_wound_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let over = ["--over", "spindle.speed=60:120:3"];
+    finished(coilwind("sweep", out, &over), 0);
+    let table = out.join("sweep.csv");
+    let whole = std::fs::read_to_string(&table).unwrap();
+    // A row that is kept keeps its clock; one that is missing is wound again.
+    let mut lines: Vec<&str> = whole.lines().collect();
+    lines.remove(2);
+    std::fs::write(&table, lines.join("\n") + "\n").unwrap();
+    finished(coilwind("sweep", out, &over), 0);
+    let again = std::fs::read_to_string(&table).unwrap();
+    let kept = |text: &str| [1, 3].map(|line| text.lines().nth(line).unwrap().to_owned());
+    assert_eq!(kept(&again), kept(&whole));
+    let without = |text: &str| {
+        text.lines()
+            .nth(2)
+            .unwrap()
+            .rsplit_once(',')
+            .unwrap()
+            .0
+            .to_owned()
+    };
+    assert_eq!(without(&again), without(&whole));
+
+    for (other, part) in [
+        (&["--over", "spindle.speed=60:120:2"][..], "another over"),
+        (
+            &[over[0], over[1], "--set", "wire.material=copper"],
+            "another scene",
+        ),
+        (&[over[0], over[1], "--ensemble", "2"], "another ensemble"),
+    ] {
+        let said = complaint(coilwind("sweep", out, other), 2);
+        assert!(said.contains(part) && said.contains("--force"), "{said}");
+        assert_eq!(std::fs::read_to_string(&table).unwrap(), again);
+    }
+    std::fs::write(&table, again.replace("60,1,", "61,1,")).unwrap();
+    let said = complaint(coilwind("sweep", out, &over), 2);
+    assert!(said.contains("sweep.csv:2: no row of this sweep"), "{said}");
+    let force = ["--force", "--over", "spindle.speed=60:60:1"];
+    finished(coilwind("sweep", out, &force), 0);
+    assert_eq!(rows(&table).len(), 1);
+}
+
+#[test]
+fn what_no_sweep_can_do_is_told_before_anything_is_wound() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    for (more, parts) in [
+        (
+            &["--over", "spindle.speed=300:100:3"][..],
+            &["spindle.speed", "reversed", "100:300:3"][..],
+        ),
+        (&["--over", "spindle.speed=100:100:3"], &["empty"]),
+        (&["--over", "spindle.speed=100:200:0"], &["N = 0"]),
+        (&["--over", "spindle.speed=100:200"], &["NAME=A:B:N"]),
+        (
+            &["--over", "spindle.sped=100:200:3"],
+            &["did you mean spindle.speed?"],
+        ),
+        (
+            &["--over", "nozzle.distance_mm=60:20000:3"],
+            &["nozzle.distance_mm = 10030", "out of range"],
+        ),
+        (
+            &["--over", "core.corner_radius_mm=1:7:2"],
+            &["core.corner_radius = 0.007 m", "0 to 0.006 m"],
+        ),
+        (&["--over", "wire.material=1:2:2"], &["is no number"]),
+        (
+            &[
+                "--over",
+                "spindle.speed=1:2:2",
+                "--over",
+                "spindle.speed=3:4:2",
+            ],
+            &["has a range already"],
+        ),
+        (
+            &["--over", "spindle.speed=1:2:100000", "--ensemble", "1000"],
+            &["more than 1000000 runs"],
+        ),
+        (
+            &[
+                "--over",
+                "spindle.speed=1:2:2",
+                "--find-max",
+                "wire.diameter",
+            ],
+            &["--over wire.diameter=A:B:N"],
+        ),
+        (&[], &["--over"]),
+    ] {
+        let said = complaint(coilwind("sweep", &out, more), 2);
+        for part in parts {
+            assert!(said.contains(part), "{more:?}: {said}");
+        }
+    }
+    assert!(!out.exists());
+}
+
+/// The highest tension below that at which wire breaks, found by bisection and by winding all.
+#[test]
+fn the_maximum_is_that_of_a_sweep_through_everything() {
+    let folder = tempfile::tempdir().unwrap();
+    let (all, some) = (folder.path().join("all"), folder.path().join("some"));
+    let wound = |out: &Path, more: &[&str]| {
+        let set = ["--set", "spindle.speed=900"];
+        let ensemble = ["--ensemble", "2"];
+        finished(
+            coilwind("sweep", out, &[&set[..], &ensemble, more].concat()),
+            0,
+        );
+        rows(&out.join("sweep.csv"))
+    };
+    let name = "tensioner.tension";
+    let every = wound(&all, &["--over", "tensioner.tension=48:83:8"]);
+    let looked = wound(
+        &some,
+        &["--over", "tensioner.tension=48:83:7", "--find-max", name],
+    );
+    let highest = |rows: &[BTreeMap<String, String>]| {
+        let value = |row: &BTreeMap<String, String>| row[name].parse::<f64>().unwrap();
+        let bad = rows
+            .iter()
+            .filter(|row| row["defect"] == "true" || row["outcome"] == "failed");
+        let least_bad = bad.map(value).fold(f64::INFINITY, f64::min);
+        let good = rows.iter().map(value).filter(|v| *v < least_bad);
+        (good.fold(0.0, f64::max), least_bad)
+    };
+    assert_eq!(highest(&every), highest(&looked));
+    let (free, not_free) = highest(&every);
+    assert!(48.0 < free && not_free == free + 5.0, "{free} {not_free}");
+    assert_eq!((every.len(), looked.len()), (16, 6));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_sweep_keeps_its_rows_and_says_how_to_go_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path();
+    let mut command = coilwind("sweep", out, &["--over", "spindle.speed=60:300:200"]);
+    command.stderr(std::process::Stdio::piped());
+    let process = command.spawn().unwrap();
+    let table = out.join("sweep.csv");
+    let lines = || std::fs::read_to_string(&table).map_or(0, |text| text.lines().count());
+    let patience = std::time::Instant::now();
+    while lines() < 2 && patience.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let id = process.id().to_string();
+    let kill = Command::new("kill").args(["-INT", &id]).status().unwrap();
+    assert!(kill.success());
+    let output = process.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        said.contains("go on with: coilwind sweep fig8 --quiet"),
+        "{said}"
+    );
+    let kept = rows(&table).len();
+    assert!((1..200).contains(&kept), "{kept}");
+    assert!(said.contains(&format!("{kept} runs are kept")), "{said}");
+}
+
+#[test]
+fn an_ensemble_of_a_run_leaves_a_folder_a_member() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+        command.args(["run", "fig8", "--ensemble", "3", "--no-geometry"]);
+        command.args(&SHORT[2..]).arg("--out").arg(&out).args(more);
+        command
+    };
+    let said = String::from_utf8(finished(run(&[]), 0).stdout).unwrap();
+    assert!(said.contains("3 of 3 (100 %)"), "{said}");
+    let mut distances = Vec::new();
+    for member in ["1", "2", "3"] {
+        let scene = std::fs::read_to_string(out.join(member).join("scene.toml")).unwrap();
+        let scene: toml::Table = scene.parse().unwrap();
+        distances.push(scene["nozzle"]["distance"].as_float().unwrap());
+        assert!(out.join(member).join("summary.json").exists());
+    }
+    assert_eq!(distances, [0.05965, 0.06, 0.06035]);
+    std::fs::remove_dir_all(out.join("1")).unwrap();
+    let said = complaint(run(&[]), 2);
+    assert!(said.contains("--force"), "{said}");
+    assert!(!out.join("1").exists(), "nothing is wound");
+    finished(run(&["--force"]), 0);
+}
