@@ -114,7 +114,7 @@ fn traverse_to_either_side() {
     mirrored
         .set("traverse.per_turn", other)
         .expect("a traverse");
-    let odd = ["layon_position", "nozzle_position"];
+    let odd = ["layon_position", "nozzle_position", "nozzle_angle"];
     for (a, b) in left.iter().zip(wound(&mirrored, 1.0)) {
         let sign = if odd.contains(&a.0) { -1.0 } else { 1.0 };
         assert_eq!((a.0, sign * a.1), b);
