@@ -1,0 +1,68 @@
+//! `coilwind motion`: a scene's own motion as sampled inputs.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What the command writes to standard error when it ends with this code.
+fn finished(arguments: &[&str], code: i32) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_coilwind"))
+        .args(arguments)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    said
+}
+
+fn number(folder: &str, key: &str) -> f64 {
+    let text = std::fs::read_to_string(Path::new(folder).join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    summary[key].as_f64().unwrap()
+}
+
+/// A master that plays back the scene's own motion winds the same coil.
+#[test]
+fn motion_of_a_scene_as_inputs() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let set = [
+        "--set",
+        "spindle.turns=1.3",
+        "--set",
+        "solver.tolerance_um=20",
+    ];
+    let csv = path("motion.csv");
+    let motion = ["motion", "bobbin", "--step", "1e-3", "--out", &csv];
+    finished(&[&motion[..], &set[..]].concat(), 0);
+    let mut table = csv::Reader::from_path(&csv).unwrap();
+    let header: Vec<_> = table.headers().unwrap().iter().map(str::to_owned).collect();
+    assert_eq!(header, ["time", "spindle_speed", "nozzle_position"]);
+    let rows: Vec<_> = table.records().map(Result::unwrap).collect();
+    assert!(rows.len() > 100, "{}", rows.len());
+    assert_eq!(&rows[rows.len() - 1][1], "100");
+
+    let (own, played) = (path("own"), path("played"));
+    let run = |out| {
+        [
+            &["run", "bobbin", "--quiet", "--no-report", "--out", out][..],
+            &set[..],
+        ]
+        .concat()
+    };
+    finished(&run(&own), 0);
+    let inputs = ["--inputs", &csv, "--step", "1e-3"];
+    finished(&[&run(&played)[..], &inputs[..]].concat(), 0);
+    for (key, most) in [
+        ("spindle_angle_rad", 1e-9),
+        ("turns_wound", 1e-3),
+        ("simulated_s", 1e-12),
+    ] {
+        let off = number(&own, key) - number(&played, key);
+        assert!(off.abs() < most, "{key} differs by {off}");
+    }
+    let wrong = finished(&["motion", "bobbin", "--step", "0"], 2);
+    assert!(
+        wrong.contains("--step 0") && wrong.contains("allowed: above 0 s"),
+        "{wrong}"
+    );
+}
