@@ -89,7 +89,8 @@ mod tests {
 
     #[test]
     fn the_default_experiment_sees_all_of_it() {
-        let spindle = SceneSettings::default().spindle;
+        let scene = SceneSettings::default().build().expect("a scene");
+        let spindle = scene.spindle;
         let end = end(spindle);
         assert!(end < DEFAULT_STOP_TIME && end > 0.9 * DEFAULT_STOP_TIME);
         let step = 1e-5;
