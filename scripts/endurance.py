@@ -47,7 +47,7 @@ def wind(name, samples, step, turns=6):
             file.write(f"{k * step!r},{speed!r},{nozzle!r},8.0\n")
     done = subprocess.run(
         [COMMAND, "run", folder / "in.toml", "--inputs", folder / "in.csv", "--step", repr(step),
-         "--no-geometry", "--quiet", "--out", folder / "out"],
+         "--no-geometry", "--quiet", "--force", "--out", folder / "out"],
         capture_output=True, text=True,
     )
     if done.returncode != 0:

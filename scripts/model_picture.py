@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes modelDescription/documentation/model.png, what importers show for the FMU.
 
-It is docs/coil.png, drawn by `coilwind run fig8`, at a third of the size. Run it with
+It is docs/coil.png, drawn by `coilwind run bobbin`, at a third of the size. Run it with
 `$(scripts/venv.sh) scripts/model_picture.py` when that picture has changed, and commit the result.
 """
 
