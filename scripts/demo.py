@@ -56,8 +56,8 @@ def main():
     started = sum(run.process is not None for run in runs)
     print(f"\n{started} of {len(runs)} runs in {clock(time.monotonic() - began)}\n", flush=True)
 
-    bobbin = None if interrupted or not arguments.bobbin else wound_bobbin(arguments.command, arguments.out)
-    report(arguments.command, arguments.out, [run.directory for run in runs], bobbin)
+    with_bobbin = arguments.bobbin and not interrupted
+    report(arguments.command, arguments.out, [run.directory for run in runs], with_bobbin)
     failed = [run for run in runs if run.failed]
     for run in failed:
         print(f"{run.label} failed: {run.reason()}", file=sys.stderr)
@@ -110,7 +110,7 @@ def wound_bobbin(command, out):
     return folder if done.returncode == 0 else None
 
 
-def report(command, out, directories, bobbin):
+def report(command, out, directories, with_bobbin):
     """Table, figures and page of the runs that left something; one failing keeps none back."""
     usable = [str(path) for path in directories if (path / "summary.json").exists()]
     if not usable:
@@ -124,6 +124,8 @@ def report(command, out, directories, bobbin):
     for path in usable:
         if subprocess.run([command, "report", path]).returncode != 0:
             print(f"no report of {path}", file=sys.stderr)
+    # after the verdicts, which compare second turns
+    bobbin = wound_bobbin(command, out) if with_bobbin else None
     more = ["--more", f"A bobbin with four layers={bobbin}"] if bobbin else []
     script("report.py", out, *more)
 
