@@ -30,16 +30,8 @@ if [ -n "$missing" ]; then
 fi
 python=$(scripts/venv.sh docs)
 
-node=$target/node-docs
-if ! cmp -s scripts/docs/package-lock.json "$node/installed.json"; then
-    rm -rf "$node"
-    mkdir "$node"
-    cp scripts/docs/package.json scripts/docs/package-lock.json "$node"
-    (cd "$node" && npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >&2)
-    # Last, so that an install that was cut short is made anew.
-    cp scripts/docs/package-lock.json "$node/installed.json"
-fi
-export COILWIND_NODE_MODULES=$node/node_modules
+COILWIND_NODE_MODULES=$(scripts/node_modules.sh docs)
+export COILWIND_NODE_MODULES
 # Says that another generator of sites has come; the versions here are pinned.
 export NO_MKDOCS_2_WARNING=1
 

@@ -60,9 +60,16 @@ fn motion_of_a_scene_as_inputs() {
         let off = number(&own, key) - number(&played, key);
         assert!(off.abs() < most, "{key} differs by {off}");
     }
+    for step in ["0", "-1", "1e-12", "1e9"] {
+        let wrong = finished(&["motion", "bobbin", &format!("--step={step}")], 2);
+        assert!(
+            wrong.contains(&format!("--step {}", step.parse::<f64>().unwrap())),
+            "{wrong}"
+        );
+    }
     let wrong = finished(&["motion", "bobbin", "--step", "0"], 2);
     assert!(
-        wrong.contains("--step 0") && wrong.contains("allowed: above 0 s"),
+        wrong.contains("--step 0") && wrong.contains("s to the length of the motion"),
         "{wrong}"
     );
 }

@@ -102,6 +102,12 @@ fn killed_until_it_ends(first: &mut Command, out: &Path, random: &mut ChaCha8Rng
     }
 }
 
+fn wait_for_checkpoint(out: &Path) {
+    while !out.join("checkpoint.bin").exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 #[test]
 fn a_run_that_is_killed_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();
@@ -181,9 +187,7 @@ fn a_run_by_inputs_that_is_stopped_goes_on_to_the_same_bytes() {
         .args(["--force", "--checkpoint-every", "0.02"])
         .spawn()
         .unwrap();
-    while !out.join("checkpoint.bin").exists() {
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for_checkpoint(&out);
     child.kill().unwrap();
     child.wait().unwrap();
     std::fs::write(&inputs, "time,spindle_speed\n0,0\n0.03,200\n").unwrap();
@@ -205,9 +209,7 @@ fn what_goes_on_is_told_where_a_run_is_stopped() {
         .args(["--set", "spindle.turns=50"])
         .stderr(std::process::Stdio::piped());
     let child = command.spawn().unwrap();
-    while !out.join("checkpoint.bin").exists() {
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    wait_for_checkpoint(&out);
     std::thread::sleep(Duration::from_millis(200));
     // Nobody else may go on with a run that is going on.
     let output = resume(&out).output().unwrap();

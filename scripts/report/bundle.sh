@@ -18,7 +18,7 @@ case "$#:${1-}" in
         ;;
 esac
 
-modules=$(scripts/report/modules.sh)
+modules=$(scripts/node_modules.sh report)
 mkdir -p "$out"
 # The entry is bundled where its packages are found.
 cp scripts/report/vendor.js "$modules/../vendor.js"

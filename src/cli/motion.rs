@@ -8,6 +8,9 @@ use coilwind::simulation::{MotionProfile, Simulation};
 use std::fmt::Write;
 use std::path::PathBuf;
 
+/// Most rows: a file of half a gigabyte.
+const MOST_ROWS: f64 = 1e7;
+
 /// Arguments of `motion`.
 #[derive(Args, Debug)]
 pub(super) struct MotionArgs {
@@ -33,10 +36,13 @@ pub(super) fn motion(args: &MotionArgs) -> Result<(), Failure> {
     })?;
     let profile = simulation.motion_profile();
     let end = profile.end();
-    if !(args.step > 0.0 && args.step <= end) {
+    if !(args.step > 0.0 && args.step <= end && end / args.step <= MOST_ROWS) {
         return Err(Failure::Signals {
             file: format!("--step {}", args.step),
-            reason: format!("allowed: above 0 s and at most the length of the motion, {end} s"),
+            reason: format!(
+                "allowed: {} s to the length of the motion, {end} s",
+                end / MOST_ROWS
+            ),
         });
     }
     let text = sampled(profile, args.step);

@@ -48,7 +48,7 @@ impl Flanges {
             (face, 0.0, 1.0)
         };
         let Outline { x, z, .. } = outline;
-        let along = along.copysign(from_middle).copysign(p.y * from_middle);
+        let along = along.copysign(p.y * from_middle);
         Nearness {
             distance: reach - self.edge_radius,
             normal: V3::new(across * x, along, across * z),

@@ -16,6 +16,9 @@ use std::path::Path;
 /// Turns of a run by the law `by-angle` that does not say how many.
 const TURNS: f64 = 2.5;
 
+/// Most turns of a coil: those that `spindle.turns` admits.
+const MOST_TURNS: f64 = 1e5;
+
 /// Share of a length by which sums of pitches may miss it.
 const ROUNDING: f64 = 1e-9;
 
@@ -130,6 +133,15 @@ impl SceneSettings {
         };
         if turns < 1.0 {
             // flanges so near to each other are told already
+            return None;
+        }
+        if turns * w.layers > MOST_TURNS {
+            let reason = format!(
+                "{turns} turns in {} layers are more than a run can have",
+                w.layers
+            );
+            let allowed = format!("at most {MOST_TURNS} turns in all");
+            problems.add(self.impossible("winding.turns_per_layer", reason, allowed));
             return None;
         }
         let room = window.map(|width| width * (1.0 + ROUNDING) - d);

@@ -7,80 +7,68 @@ use super::{Core, Integrator, NozzleLaw, Solver};
 use crate::rod::{Section, Twist};
 use crate::settings::SceneSettings;
 
-/// Keys of a choice: the shape of the core, or how the nozzle moves.
+/// Keys that only some values of a choice read: of the shape of the core, or of how the nozzle moves.
 struct KeysOf {
     choice: &'static str,
-    value: &'static str,
+    values: &'static [&'static str],
     keys: &'static [&'static str],
 }
 
-/// Keys that only some values of a choice read.
-const KEYS_OF_CHOICES: [KeysOf; 7] = [
+/// Keys of the values of a choice.
+const fn keys_of(
+    choice: &'static str,
+    values: &'static [&'static str],
+    keys: &'static [&'static str],
+) -> KeysOf {
     KeysOf {
-        choice: "core.shape",
-        value: "rounded-box",
-        keys: &[
-            "core.width_x",
-            "core.height_z",
+        choice,
+        values,
+        keys,
+    }
+}
+
+const SHAPE: &str = "core.shape";
+const MODE: &str = "traverse.mode";
+
+/// All keys that depend on a choice.
+const KEYS_OF_CHOICES: [KeysOf; 10] = [
+    keys_of(
+        SHAPE,
+        &["rounded-box"],
+        &["core.width_x", "core.height_z", "core.corner_radius"],
+    ),
+    keys_of(SHAPE, &["cylinder"], &["core.radius"]),
+    keys_of(
+        SHAPE,
+        &["rounded-box", "cylinder"],
+        &[
             "core.length_y",
-            "core.corner_radius",
             "core.flange.inner_distance",
             "core.flange.height",
             "core.flange.thickness",
             "core.flange.edge_radius",
         ],
-    },
-    KeysOf {
-        choice: "core.shape",
-        value: "cylinder",
-        keys: &[
-            "core.radius",
-            "core.length_y",
-            "core.flange.inner_distance",
-            "core.flange.height",
-            "core.flange.thickness",
-            "core.flange.edge_radius",
-        ],
-    },
-    KeysOf {
-        choice: "core.shape",
-        value: "mesh",
-        keys: &["core.file", "core.unit"],
-    },
-    KeysOf {
-        choice: "traverse.mode",
-        value: "by-angle",
-        keys: &["traverse.per_turn"],
-    },
-    KeysOf {
-        choice: "traverse.mode",
-        value: "orthocyclic",
-        keys: &[
-            "traverse.crossover",
-            "traverse.advance",
+    ),
+    keys_of(SHAPE, &["mesh"], &["core.file", "core.unit"]),
+    keys_of(MODE, &["by-angle"], &["traverse.per_turn"]),
+    keys_of(MODE, &["orthocyclic"], &["traverse.crossover"]),
+    keys_of(MODE, &["helical"], &["traverse.dwell_turns"]),
+    keys_of(MODE, &["table"], &["traverse.file"]),
+    keys_of(
+        MODE,
+        &["orthocyclic", "helical", "table"],
+        &["traverse.advance"],
+    ),
+    keys_of(
+        MODE,
+        &["orthocyclic", "helical"],
+        &[
             "winding.turns_per_layer",
             "winding.layers",
             "winding.direction",
             "winding.pitch",
         ],
-    },
-    KeysOf {
-        choice: "traverse.mode",
-        value: "helical",
-        keys: &[
-            "traverse.dwell_turns",
-            "traverse.advance",
-            "winding.turns_per_layer",
-            "winding.layers",
-            "winding.direction",
-            "winding.pitch",
-        ],
-    },
-    KeysOf {
-        choice: "traverse.mode",
-        value: "table",
-        keys: &["traverse.file", "traverse.advance"],
-    },
+    ),
 ];
 
 impl SceneSettings {
@@ -185,27 +173,21 @@ impl SceneSettings {
                 });
             }
         };
-        let chosen = |choice: &str| match choice {
-            "core.shape" => self.core.shape.as_str(),
-            _ => self.traverse.mode.as_str(),
-        };
-        for KeysOf {
-            choice,
-            value,
-            keys,
-        } in KEYS_OF_CHOICES
-        {
-            let now = chosen(choice);
-            let used = KEYS_OF_CHOICES
-                .iter()
-                .filter(|of| of.choice == choice && of.value == now)
-                .flat_map(|of| of.keys);
-            let used: Vec<_> = used.collect();
-            for &key in keys.iter().filter(|key| !used.contains(key)) {
+        for of in &KEYS_OF_CHOICES {
+            let choice = of.choice;
+            let now = match choice {
+                SHAPE => self.core.shape.as_str(),
+                _ => self.traverse.mode.as_str(),
+            };
+            if of.values.contains(&now) {
+                continue;
+            }
+            let others = of.values.join(" or ");
+            for &key in of.keys {
                 warn(
                     key,
                     format!(
-                        "has no effect: {choice} = {now} does not use it; set {choice} = {value}, or leave the key out"
+                        "has no effect: {choice} = {now} does not use it; set {choice} = {others}, or leave the key out"
                     ),
                 );
             }

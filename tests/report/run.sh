@@ -21,7 +21,7 @@ case "$#:${1-}" in
 esac
 
 scripts/report/bundle.sh --check
-modules=$(scripts/report/modules.sh)
+modules=$(scripts/node_modules.sh report)
 rm -rf "$out"
 "$command" run fig8_gap --set spindle.speed=500 --set spindle.turns=2.6 --set traverse.per_turn_mm=0.95 \
     --frames 6 --quiet --out "$out/gap"

@@ -237,6 +237,11 @@ fn what_cannot_be_wound_is_refused_with_the_key_to_change() {
     ] {
         assert_says(&with(from, to), says);
     }
+    let endless = "[traverse]\nmode = 'helical'\n[winding]\nturns_per_layer = 90000\nlayers = 1000";
+    assert_says(
+        &refused(endless),
+        &["winding.turns_per_layer", "at most 100000 turns in all"],
+    );
     let open = "[traverse]\nmode = 'helical'";
     assert_says(&refused(open), &["winding.turns_per_layer", "no flanges"]);
 }
