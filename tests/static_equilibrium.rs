@@ -12,6 +12,8 @@ fn cantilever() -> System {
         n_y: 38.5,
         m_y: 5.72e-3,
         diameter: 0.7e-3,
+        bare_diameter: 0.7e-3,
+        enamel_density: 1400.0,
         density: 8960.0,
         ea: 48900.0,
         ea_p: 1100.0,

@@ -13,6 +13,8 @@ fn section(t_y: f64) -> Section {
     let open = f64::INFINITY;
     Section {
         diameter: 0.7e-3,
+        bare_diameter: 0.7e-3,
+        enamel_density: 1400.0,
         density: 8960.0,
         ea: 48900.0,
         ea_p: 1100.0,

@@ -4,6 +4,7 @@ use super::failure::Failure;
 use super::scene::SceneArgs;
 use super::terminal::print;
 use clap::Args;
+use coilwind::scene::Bilinear;
 use coilwind::simulation::Simulation;
 
 /// Arguments of `check`.
@@ -27,13 +28,31 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         eprintln!("warning: {}", event.text);
     }
     let seconds = simulation.motion_profile().end();
+    let wire = &scene.wire;
+    let enamel = match wire.diameter > wire.bare_diameter {
+        true => format!(" ({} mm with its enamel)", wire.diameter * 1e3),
+        false => String::new(),
+    };
     print(&format!(
-        "{}: valid; {} wire of {} mm at {} N, {} turns at {} rad/s in {seconds:.4} s\n",
+        "{}: valid; {} wire of {} mm{enamel} at {} N, {} turns at {} rad/s in {seconds:.4} s\n",
         args.scene.scene,
         scene.wire_material,
-        scene.wire.diameter * 1e3,
+        wire.bare_diameter * 1e3,
         scene.tensioner.tension,
         scene.spindle.turns,
         scene.spindle.speed,
+    ))?;
+    let Some(laws) = &scene.wire_laws else {
+        return Ok(());
+    };
+    let percent = |law: Bilinear| 100.0 * law.error;
+    print(&format!(
+        "bilinear laws of the section: yield at {:.4} N, {:.4} N.mm, torque {:.4} N.mm; off the exact ones by up to {:.1} %, {:.1} %, {:.1} % of the last load\n",
+        wire.n_y,
+        1e3 * wire.m_y,
+        1e3 * wire.t_y,
+        percent(laws.stretch),
+        percent(laws.bend),
+        percent(laws.twist),
     ))
 }

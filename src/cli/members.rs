@@ -20,7 +20,8 @@ pub(super) fn setting(
         return None;
     }
     let share = 2.0 * f64::from(member - 1) / f64::from(count - 1) - 1.0;
-    let distance = 1e3 * (settings.nozzle.distance + SPREAD * settings.wire.diameter * share);
+    let distance =
+        1e3 * (settings.nozzle.distance + SPREAD * settings.wire.outer_diameter() * share);
     Some((VARIABLE.to_owned(), rounded(distance, DIGITS).to_string()))
 }
 

@@ -10,6 +10,7 @@
 //! back is truncation and leaves exactly what was there before.
 
 mod coil;
+mod contour;
 mod defect;
 mod marks;
 mod passes;
@@ -24,6 +25,7 @@ mod words;
 
 pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode};
+pub use contour::LayerContour;
 pub use defect::{BulgeLimit, Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
 pub use profile::Profile;
 pub use state::Worst;

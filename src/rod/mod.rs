@@ -6,8 +6,10 @@
 
 pub mod batch;
 mod bending;
+mod flow_curve;
 mod forces;
 mod joint;
+mod material;
 mod plasticity;
 mod section;
 mod state;
@@ -22,12 +24,14 @@ pub use bending::bent;
 #[cfg(feature = "lab")]
 pub use bending::{Bent, Symmetric, add_square};
 pub use bending::{Stretched, stretched, turning};
+pub use flow_curve::{Bilinear, FlowCurve, FlowCurveError, MOST_STRAIN, RoundLaws};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::Joint;
+pub use material::{Elastic, Material};
 pub use plasticity::{Bend, Law, Scalar};
 #[cfg(feature = "lab")]
 pub use plasticity::{respond_bend, respond_scalar};
-pub use section::Section;
+pub use section::{ENAMEL_DENSITY, Section};
 pub use state::Rod;
 pub use twist::Twist;
 #[cfg(any(test, feature = "lab"))]

@@ -1,15 +1,24 @@
 //! Rigidities and yield limits of the wire's round section.
 
+use std::f64::consts::PI;
+
+/// Density of wire enamel, kg/m^3. Polyamide-imide has 1420 (data sheet of Torlon 4203), polyesters of enamels somewhat less.
+pub const ENAMEL_DENSITY: f64 = 1400.0;
+
 /// Elastic-plastic section with three uncoupled bilinear laws and isotropic hardening.
 ///
 /// Above a yield limit the tangent falls from `e*` to `e*_p`; an infinite limit makes the law
 /// elastic.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
-    /// diameter, m
+    /// outer diameter over the enamel, m: what touches, and what lies beside what
     pub diameter: f64,
-    /// density, kg/m^3
+    /// diameter of the metal, m; the outer one of bare wire
+    pub bare_diameter: f64,
+    /// density of the metal, kg/m^3
     pub density: f64,
+    /// density of the enamel, kg/m^3; it has mass and no stiffness
+    pub enamel_density: f64,
     /// elastic stretch rigidity, N
     pub ea: f64,
     /// tangent stretch rigidity above yield, N
@@ -35,19 +44,37 @@ pub struct Section {
 }
 
 impl Section {
-    /// Radius, m.
+    /// Outer radius, m.
     pub fn radius(&self) -> f64 {
         0.5 * self.diameter
     }
 
-    /// Mass per length, kg/m.
-    pub fn mass_per_length(&self) -> f64 {
-        self.density * std::f64::consts::PI * self.diameter * self.diameter / 4.0
+    /// Area of the metal, m^2.
+    pub fn bare_area(&self) -> f64 {
+        PI * self.bare_diameter * self.bare_diameter / 4.0
     }
 
-    /// Polar moment of inertia per length about the wire axis, `1/2 rho A r^2`, kg m.
+    /// Mass per length, kg/m: metal and enamel.
+    pub fn mass_per_length(&self) -> f64 {
+        self.metal_per_length() + self.enamel_per_length()
+    }
+
+    /// Polar moment of inertia per length about the wire axis, kg m: `1/2 rho A r^2` of the metal, and
+    /// `1/2 rho A (R^2 + r^2)` of the ring of enamel.
     pub fn spin_inertia_per_length(&self) -> f64 {
-        0.5 * self.mass_per_length() * self.radius() * self.radius()
+        let (outer, bare) = (self.radius(), 0.5 * self.bare_diameter);
+        0.5 * self.metal_per_length() * bare * bare
+            + 0.5 * self.enamel_per_length() * (outer * outer + bare * bare)
+    }
+
+    fn metal_per_length(&self) -> f64 {
+        self.density * PI * self.bare_diameter * self.bare_diameter / 4.0
+    }
+
+    /// 0 for bare wire.
+    fn enamel_per_length(&self) -> f64 {
+        let squares = self.diameter * self.diameter - self.bare_diameter * self.bare_diameter;
+        self.enamel_density * PI * squares / 4.0
     }
 }
 
@@ -58,7 +85,9 @@ impl Section {
         let open = f64::INFINITY;
         Self {
             diameter: 0.7e-3,
+            bare_diameter: 0.7e-3,
             density: 8960.0,
+            enamel_density: ENAMEL_DENSITY,
             ea: 48900.0,
             ea_p: 1100.0,
             ei: 3.06e-3,
@@ -71,5 +100,29 @@ impl Section {
             moment_cap: open,
             strength: open,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn enamel_adds_the_mass_of_its_ring_and_nothing_else() {
+        let bare = Section::table1_elastic();
+        let enamelled = Section {
+            diameter: 0.8e-3,
+            ..bare.clone()
+        };
+        let (outer, inner) = (0.4e-3_f64, 0.35e-3_f64);
+        let ring = 1400.0 * PI * (outer.powi(2) - inner.powi(2));
+        let more = enamelled.mass_per_length() - bare.mass_per_length();
+        assert!((more / ring - 1.0).abs() < 1e-12, "{more} {ring}");
+        // 1/2 pi rho (R^4 - r^4)
+        let about = 0.5 * 1400.0 * PI * (outer.powi(4) - inner.powi(4));
+        let more = enamelled.spin_inertia_per_length() - bare.spin_inertia_per_length();
+        assert!((more / about - 1.0).abs() < 1e-12, "{more} {about}");
+        assert_eq!(enamelled.bare_area(), bare.bare_area());
+        assert_eq!(enamelled.radius(), outer);
     }
 }

@@ -100,6 +100,10 @@ impl SceneSettings {
             }
             (Given::Number(_), _) => return Err(wrong_type("a number")),
             (Given::Other(_, noun), _) => return Err(wrong_type(noun)),
+            (Given::List(text), Kind::String) if variable.name == "wire.stress_strain" => {
+                Value::String(text.clone())
+            }
+            (Given::List(_), _) => return Err(wrong_type("a list")),
             (Given::Text(text), Kind::Real) => Value::Real(
                 parse_scaled(text.trim(), scale).ok_or_else(|| wrong_type("no number"))?,
             ),
@@ -171,6 +175,8 @@ pub(super) enum Given<'a> {
     Text(&'a str),
     /// a number as a file spells it
     Number(String),
+    /// a list of numbers or of such lists, as a text
+    List(String),
     /// what no leaf takes, and its noun
     Other(String, &'static str),
 }
@@ -181,7 +187,7 @@ impl std::fmt::Display for Given<'_> {
             Self::Value(Value::String(text)) => write!(f, "{text:?}"),
             Self::Value(value) => write!(f, "{value}"),
             Self::Text(text) => f.write_str(text),
-            Self::Number(text) | Self::Other(text, _) => f.write_str(text),
+            Self::Number(text) | Self::List(text) | Self::Other(text, _) => f.write_str(text),
         }
     }
 }

@@ -6,7 +6,9 @@ use super::features::Decisions;
 use super::impossible::si;
 use super::material::section;
 use super::problems::Problems;
-use super::{Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver};
+use super::{
+    Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver, Window,
+};
 use crate::rod::Twist;
 use crate::settings::{SceneSettings, Spindle};
 use std::path::{Path, PathBuf};
@@ -44,11 +46,15 @@ impl SceneSettings {
         self.check_ranges()?;
         let mut problems = Problems::default();
         let wire = problems.note(section(self));
+        let (laws, resistivity) = wire
+            .as_ref()
+            .map_or((None, 0.0), |wire| (wire.laws, wire.resistivity));
+        let wire = wire.map(|wire| wire.section);
         let core = self.core(&mut problems);
         let core = problems.note(core);
-        let law = core
-            .as_ref()
-            .and_then(|(_, extent)| self.nozzle_law(self.wire.diameter, extent, &mut problems));
+        let law = core.as_ref().and_then(|(_, extent)| {
+            self.nozzle_law(self.wire.outer_diameter(), extent, &mut problems)
+        });
         self.check_motion_and_friction(law.as_ref(), &mut problems);
         if let (Some(wire), Some((_, extent))) = (&wire, &core) {
             self.check_core(wire, extent, &mut problems);
@@ -76,14 +82,19 @@ impl SceneSettings {
         let span = self.nozzle.distance - extent.turning_radius;
         let solver = self.solver_for(integrator, twist, (wire.diameter, span));
         self.check_spacing(&solver, &wire, &extent, &mut problems);
-        let warnings = self.warnings(&solver, &wire, &core, &extent, &nozzle_law);
+        let window = self.window(core.flange(), &mut problems);
+        let mut warnings = self.warnings(&solver, &wire, &core, &extent, &nozzle_law);
+        warnings.extend(laws.and_then(|laws| self.rough_laws(&laws)));
 
         let mut scene = Scene {
             name: self.name.clone(),
             preset,
             wire,
             wire_material: self.wire.material.clone(),
+            wire_laws: laws,
+            resistivity,
             core,
+            window,
             nozzle: self.nozzle,
             tensioner: self.tensioner,
             start: self.start,
@@ -117,7 +128,18 @@ impl SceneSettings {
         if f.inner_distance == 0.0 {
             return None;
         }
-        let most = (0.5 * f.thickness).min(f.height);
+        // Insulation stands on the core and on the inner faces; rim and outer faces stay where they are.
+        let (under, beside) = (self.core.insulation, f.insulation);
+        if under >= f.height {
+            let reason = "the insulation of the core reaches the rim of the flanges";
+            let allowed = format!("less than {} m", si(f.height));
+            problems.add(self.impossible("core.insulation", reason, allowed));
+        }
+        let height = match under < f.height {
+            true => f.height - under,
+            false => f.height,
+        };
+        let most = (0.5 * f.thickness).min(height);
         if f.edge_radius > most {
             problems.add(self.impossible(
                 "core.flange.edge_radius",
@@ -125,18 +147,47 @@ impl SceneSettings {
                 format!("0 to {} m", si(most)),
             ));
         }
-        if f.inner_distance < self.wire.diameter {
+        let least = self.wire.outer_diameter() + 2.0 * beside;
+        if f.inner_distance < least {
+            let reason = match beside > 0.0 {
+                true => "the wire is wider than the insulated flanges are apart",
+                false => "the wire is wider than the flanges are apart",
+            };
             problems.add(self.impossible(
                 "core.flange.inner_distance",
-                "the wire is wider than the flanges are apart",
-                format!("at least {} m, or 0 for no flanges", si(self.wire.diameter)),
+                reason,
+                format!("at least {} m, or 0 for no flanges", si(least)),
             ));
         }
         Some(Flange {
-            inner_distance: f.inner_distance,
-            height: f.height,
-            thickness: f.thickness,
+            inner_distance: f.inner_distance - 2.0 * beside,
+            height,
+            thickness: f.thickness + beside,
             edge_radius: f.edge_radius.min(most),
+        })
+    }
+
+    /// The room that the coil may take, where the scene says it.
+    fn window(&self, flange: Option<Flange>, problems: &mut Problems) -> Option<Window> {
+        let c = &self.core;
+        let height = match c.window_height {
+            0.0 => flange?.height,
+            height => height,
+        };
+        let width = flange.map(|f| f.inner_distance);
+        let lowest = height - 0.5 * width.unwrap_or(0.0) * libm::tan(c.window_taper).abs();
+        if lowest <= 0.0 {
+            let reason = "the limit line meets the core between the flanges";
+            let least = format!(
+                "more than {} m, or a smaller core.window_taper",
+                si(height - lowest)
+            );
+            problems.add(self.impossible("core.window_height", reason, least));
+        }
+        Some(Window {
+            width,
+            height,
+            taper: c.window_taper,
         })
     }
 
@@ -146,12 +197,13 @@ impl SceneSettings {
             "cylinder" => {
                 let half = 0.5 * c.length_y;
                 let flange = self.flange(problems);
+                let radius = c.radius + c.insulation;
                 let core = Core::Cylinder {
-                    radius: c.radius,
+                    radius,
                     length_y: c.length_y,
                     flange,
                 };
-                Ok((core, Extent::of(c.radius, half, flange)))
+                Ok((core, Extent::of(radius, half, flange)))
             }
             "mesh" => {
                 let unit = match c.unit.as_str() {
@@ -176,14 +228,16 @@ impl SceneSettings {
                     problems.add(self.corner_too_large(r));
                 }
                 let flange = self.flange(problems);
+                // An even layer all round makes every corner rounder by its thickness.
+                let t = c.insulation;
                 let core = Core::RoundedBox {
-                    width_x: c.width_x,
-                    height_z: c.height_z,
+                    width_x: c.width_x + 2.0 * t,
+                    height_z: c.height_z + 2.0 * t,
                     length_y: c.length_y,
-                    corner_radius: r,
+                    corner_radius: r + t,
                     flange,
                 };
-                let turning_radius = libm::hypot(half_x - r, half_z - r) + r;
+                let turning_radius = libm::hypot(half_x - r, half_z - r) + (r + t);
                 let half = 0.5 * c.length_y;
                 Ok((core, Extent::of(turning_radius, half, flange)))
             }

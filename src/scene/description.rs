@@ -2,7 +2,7 @@
 
 use super::nozzle_law::NozzleLaw;
 use crate::measure::DefectLimits;
-use crate::rod::{Section, Twist};
+use crate::rod::{RoundLaws, Section, Twist};
 use crate::settings::{
     Contact, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse, Winding,
 };
@@ -17,10 +17,17 @@ pub struct Scene {
     pub preset: Preset,
     /// wire section and yield limits
     pub wire: Section,
-    /// `copper`, `table1` or `custom`
+    /// name of the material, as given
     pub wire_material: String,
-    /// core geometry
+    /// laws that were integrated over the section, before single limits replaced them; `None` where the material gives
+    /// rigidities
+    pub wire_laws: Option<RoundLaws>,
+    /// resistivity of the wire at 20 degC, ohm m
+    pub resistivity: f64,
+    /// core geometry, with its insulation
     pub core: Core,
+    /// room that the coil may take
+    pub window: Option<Window>,
     /// nozzle
     pub nozzle: Nozzle,
     /// tensioner and the line to the nozzle
@@ -92,6 +99,17 @@ pub enum Core {
         /// metres per file unit
         unit: f64,
     },
+}
+
+/// The winding window over one flank of the core: from flange to flange, and up to the limit line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// distance of the flanges, m; `None` without flanges
+    pub width: Option<f64>,
+    /// height of the limit line over the core at y = 0, m
+    pub height: f64,
+    /// angle of the limit line to the axis, rad; it rises towards +y
+    pub taper: f64,
 }
 
 /// Two flanges beside a core, the same on both sides of y = 0. Their rim stands the same height above it all round.

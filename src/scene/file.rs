@@ -204,7 +204,24 @@ fn given(value: &DeValue<'_>) -> Given<'static> {
             Err(_) => Given::Other(i.as_str().to_owned(), "no number"),
         },
         DeValue::Datetime(date) => Given::Other(date.to_string(), "a date"),
-        DeValue::Array(_) => Given::Other("[...]".to_owned(), "a list"),
+        DeValue::Array(list) => match numbers(list) {
+            Some(text) => Given::List(text),
+            None => Given::Other("[...]".to_owned(), "a list"),
+        },
         DeValue::Table(_) => Given::Other("{...}".to_owned(), "a section"),
     }
+}
+
+/// A list of numbers, or of such lists, as a text that reads like it.
+fn numbers(list: &[Spanned<DeValue<'_>>]) -> Option<String> {
+    let texts: Option<Vec<String>> = list
+        .iter()
+        .map(|value| match value.get_ref() {
+            DeValue::Array(inner) => numbers(inner),
+            DeValue::Float(x) => Some(x.as_str().to_owned()),
+            DeValue::Integer(i) if i.radix() == 10 => Some(i.as_str().to_owned()),
+            _ => None,
+        })
+        .collect();
+    Some(format!("[{}]", texts?.join(", ")))
 }

@@ -3,11 +3,13 @@
 use super::SceneError;
 use super::impossible::si;
 use super::problems::Problems;
-use crate::rod::Section;
+use super::stress_strain::curve;
+use crate::rod::{RoundLaws, Section};
 use crate::settings::{SceneSettings, WireSettings};
 use std::f64::consts::PI;
 
 /// Stretch, bend and twist rigidities: elastic, then beyond yield.
+#[derive(Clone, Copy)]
 struct Rigidities {
     ea: f64,
     ea_p: f64,
@@ -15,6 +17,15 @@ struct Rigidities {
     ei_p: f64,
     gj: f64,
     gj_p: f64,
+}
+
+/// A wire's section, and what else of its metal a run needs.
+pub(super) struct Wire {
+    pub(super) section: Section,
+    /// laws that were integrated over the section; `None` where the material gives rigidities
+    pub(super) laws: Option<RoundLaws>,
+    /// at 20 degC, ohm m
+    pub(super) resistivity: f64,
 }
 
 /// The paper's Table 1: EA, EA', EI, EI', GJ, GJ' of its 0.7 mm wire. EI is 2.0 and GJ 3.8 times
@@ -58,23 +69,83 @@ fn or(given: f64, derived: f64) -> f64 {
     if given > 0.0 { given } else { derived }
 }
 
+/// What a section of this radius has by its laws.
+fn of_laws(laws: &RoundLaws) -> Rigidities {
+    Rigidities {
+        ea: laws.stretch.elastic,
+        ea_p: laws.stretch.tangent,
+        ei: laws.bend.elastic,
+        ei_p: laws.bend.tangent,
+        gj: laws.twist.elastic,
+        gj_p: laws.twist.tangent,
+    }
+}
+
+/// Least values of leaves that may also be 0, for "of the material".
+const LEAST: [(&str, fn(&WireSettings) -> f64, f64, &str); 4] = [
+    ("wire.density", |wire| wire.density, 100.0, "kg/m3"),
+    ("wire.yield_stress", |wire| wire.yield_stress, 1e5, "Pa"),
+    ("wire.flow_stress", |wire| wire.flow_stress, 1e5, "Pa"),
+    ("wire.resistivity", |wire| wire.resistivity, 1e-9, "Ohm.m"),
+];
+
+/// Thickest enamel: the outer diameter over the bare one. Chosen: grade 3 of the finest wire of IEC 60317-0-1 has 1.6.
+const THICKEST: f64 = 2.0;
+
+/// Everything that is wrong with single leaves of the wire.
+fn check_leaves(settings: &SceneSettings) -> Result<(), SceneError> {
+    let wire = &settings.wire;
+    let mut problems = Problems::default();
+    for (key, value, least, unit) in LEAST {
+        if value(wire) > 0.0 && value(wire) < least {
+            let allowed = format!(
+                "at least {} {unit}, or 0 for that of the material",
+                si(least)
+            );
+            problems.add(settings.impossible(key, "less than any metal has", allowed));
+        }
+    }
+    let (outer, most) = (wire.enamelled_diameter, THICKEST * wire.diameter);
+    if outer > 0.0 && !(wire.diameter..=most).contains(&outer) {
+        let reason = match outer < wire.diameter {
+            true => "thinner than the bare wire",
+            false => "the enamel would be thicker than the bare wire's radius",
+        };
+        let allowed = format!(
+            "{} to {} m (one to {THICKEST} bare diameters), or 0 for bare wire",
+            si(wire.diameter),
+            si(most)
+        );
+        problems.add(settings.impossible("wire.enamelled_diameter", reason, allowed));
+    }
+    problems.finish()
+}
+
 /// The section of a wire, or what contradicts itself.
 ///
-/// Limits of a rigid-perfectly-plastic round section at the yield stress `s`:
-/// `N_y = s A`, `M_y = s d^3/6`, `T_y = s/sqrt(3) pi d^3/12`.
-pub(super) fn section(settings: &SceneSettings) -> Result<Section, SceneError> {
+/// Rigidities and limits go with the bare diameter. Those of `copper` and `table1` have the limits of a
+/// rigid-perfectly-plastic round section at the yield stress `s`: `N_y = s A`, `M_y = s d^3/6`,
+/// `T_y = s/sqrt(3) pi d^3/12`. Those of the other metals, and of points of a curve, are integrated.
+pub(super) fn section(settings: &SceneSettings) -> Result<Wire, SceneError> {
+    check_leaves(settings)?;
     let wire = &settings.wire;
     let d = wire.diameter;
-    let of_material = match wire.material.as_str() {
-        "copper" => Some(copper(d)),
-        "table1" if (d - TABLE1_DIAMETER).abs() > 1e-12 => {
+    let metal = wire.metal();
+    let laws = curve(settings)?.map(|(curve, shear)| {
+        let laws = curve.round(0.5 * d, shear);
+        (laws, curve.yield_stress(), curve.last_stress())
+    });
+    let of_material = match (wire.material.as_str(), &laws) {
+        (_, Some((laws, ..))) => Some(of_laws(laws)),
+        ("copper", _) => Some(copper(d)),
+        ("table1", _) if (d - TABLE1_DIAMETER).abs() > 1e-12 => {
             return Err(settings.impossible(
                 "wire.diameter",
                 "the paper gives the rigidities of wire.material = table1 for 0.7 mm only",
                 "0.0007 m, or wire.material copper or custom",
             ));
         }
-        "table1" => Some(TABLE1),
+        ("table1", _) => Some(TABLE1),
         _ => None,
     };
     let rigidities = rigidities(settings, of_material)?;
@@ -82,27 +153,43 @@ pub(super) fn section(settings: &SceneSettings) -> Result<Section, SceneError> {
     let area = PI * d * d / 4.0;
     let d3 = d * d * d;
     let elastic = |limit: f64| if wire.elastic { f64::INFINITY } else { limit };
-    let cap = match wire.material.as_str() {
-        "copper" => wire.flow_stress * d3 / 6.0,
-        _ => f64::INFINITY,
+    let (yield_stress, flow_stress) = match laws {
+        Some((_, first, last)) => (first, last),
+        None => (metal.yield_stress, metal.flow_stress),
+    };
+    let [n_y, m_y, t_y, cap] = match laws {
+        Some((laws, ..)) => [
+            laws.stretch.limit,
+            laws.bend.limit,
+            laws.twist.limit,
+            laws.moment_cap,
+        ],
+        None => [
+            yield_stress * area,
+            yield_stress * d3 / 6.0,
+            yield_stress / 3.0_f64.sqrt() * PI * d3 / 12.0,
+            match wire.material.as_str() {
+                "copper" => flow_stress * d3 / 6.0,
+                _ => f64::INFINITY,
+            },
+        ],
     };
     let section = Section {
-        diameter: d,
-        density: wire.density,
+        diameter: wire.outer_diameter(),
+        bare_diameter: d,
+        density: metal.density,
+        enamel_density: wire.enamel_density,
         ea: rigidities.ea,
         ea_p: rigidities.ea_p,
         ei: rigidities.ei,
         ei_p: rigidities.ei_p,
         gj: rigidities.gj,
         gj_p: rigidities.gj_p,
-        n_y: elastic(or(wire.n_y, wire.yield_stress * area)),
-        m_y: elastic(or(wire.m_y, wire.yield_stress * d3 / 6.0)),
-        t_y: elastic(or(
-            wire.t_y,
-            wire.yield_stress / 3.0_f64.sqrt() * PI * d3 / 12.0,
-        )),
+        n_y: elastic(or(wire.n_y, n_y)),
+        m_y: elastic(or(wire.m_y, m_y)),
+        t_y: elastic(or(wire.t_y, t_y)),
         moment_cap: elastic(or(wire.moment_cap, cap)),
-        strength: or(wire.strength, elastic(wire.flow_stress * area)),
+        strength: or(wire.strength, elastic(flow_stress * area)),
     };
     if section.moment_cap < section.m_y {
         let (key, allowed) = if wire.moment_cap > 0.0 {
@@ -114,8 +201,10 @@ pub(super) fn section(settings: &SceneSettings) -> Result<Section, SceneError> {
             && settings.origins.contains_key("wire.yield_stress")
             && !settings.origins.contains_key("wire.flow_stress")
         {
-            let most = format!("at most wire.flow_stress, {} Pa", si(wire.flow_stress));
+            let most = format!("at most wire.flow_stress, {} Pa", si(flow_stress));
             ("wire.yield_stress", most)
+        } else if wire.m_y > 0.0 && laws.is_some() {
+            ("wire.M_y", format!("at most {} N.m", si(cap)))
         } else {
             (
                 "wire.flow_stress",
@@ -128,7 +217,11 @@ pub(super) fn section(settings: &SceneSettings) -> Result<Section, SceneError> {
             allowed,
         ));
     }
-    Ok(section)
+    Ok(Wire {
+        section,
+        laws: laws.map(|(laws, ..)| laws),
+        resistivity: metal.resistivity,
+    })
 }
 
 /// What was given, else of the material; the tangent beyond yield must be the softer one.
@@ -202,7 +295,7 @@ mod tests {
 
     #[test]
     fn copper_reproduces_the_published_variant() {
-        let s = section(&SceneSettings::default()).unwrap();
+        let s = section(&SceneSettings::default()).unwrap().section;
         for (x, printed, n) in [
             (s.ea, 48900.0, 3),
             (s.ea_p, 1100.0, 3),
@@ -220,11 +313,11 @@ mod tests {
     #[test]
     fn copper_scales_with_the_diameter() {
         let mut settings = SceneSettings::default();
-        let thin = section(&settings).unwrap();
+        let thin = section(&settings).unwrap().section;
         settings
             .set("wire.diameter_mm", crate::variables::Value::Real(1.4))
             .unwrap();
-        let thick = section(&settings).unwrap();
+        let thick = section(&settings).unwrap().section;
         for (ratio, power) in [
             (thick.ea / thin.ea, 2),
             (thick.ei_p / thin.ei_p, 4),
@@ -244,13 +337,13 @@ mod tests {
     fn elastic_wire_has_no_limits_but_a_given_strength() {
         let mut settings = SceneSettings::default();
         settings.wire.elastic = true;
-        let s = section(&settings).unwrap();
+        let s = section(&settings).unwrap().section;
         assert!(
             [s.n_y, s.m_y, s.t_y, s.moment_cap, s.strength]
                 .iter()
                 .all(|x| x.is_infinite())
         );
         settings.wire.strength = 50.0;
-        assert_eq!(section(&settings).unwrap().strength, 50.0);
+        assert_eq!(section(&settings).unwrap().section.strength, 50.0);
     }
 }

@@ -19,12 +19,13 @@ mod nozzle_law;
 mod nozzle_plan;
 mod problems;
 mod saved;
+mod stress_strain;
 mod warnings;
 mod write;
 
-pub use crate::rod::{Section, Twist};
+pub use crate::rod::{Bilinear, RoundLaws, Section, Twist};
 pub use description::{
-    Core, Decision, Features, Flange, Integrator, LiveContact, Preset, Scene, Solver,
+    Core, Decision, Features, Flange, Integrator, LiveContact, Preset, Scene, Solver, Window,
 };
 pub use error::{SceneError, Warning};
 pub use file::packed_names;

@@ -4,7 +4,7 @@ use super::error::Warning;
 use super::extent::Extent;
 use super::impossible::si;
 use super::{Core, Integrator, NozzleLaw, Solver};
-use crate::rod::{Section, Twist};
+use crate::rod::{RoundLaws, Section, Twist};
 use crate::settings::SceneSettings;
 
 /// Keys that only some values of a choice read: of the shape of the core, or of how the nozzle moves.
@@ -27,6 +27,10 @@ const fn keys_of(
     }
 }
 
+/// Difference of a bilinear law to the curve's, in percent of the last load, from which on it is told. Chosen: what data of one
+/// spool scatter by.
+const ROUGH: f64 = 10.0;
+
 const SHAPE: &str = "core.shape";
 const MODE: &str = "traverse.mode";
 
@@ -43,10 +47,12 @@ const KEYS_OF_CHOICES: [KeysOf; 10] = [
         &["rounded-box", "cylinder"],
         &[
             "core.length_y",
+            "core.insulation",
             "core.flange.inner_distance",
             "core.flange.height",
             "core.flange.thickness",
             "core.flange.edge_radius",
+            "core.flange.insulation",
         ],
     ),
     keys_of(SHAPE, &["mesh"], &["core.file", "core.unit"]),
@@ -110,7 +116,7 @@ impl SceneSettings {
         if let (Some(_), true) = (extent.window, self.winds_layers()) {
             // each layer but the first lies in the grooves of the one below
             let coil = wire.diameter * (1.0 + (self.winding.layers - 1.0) * 0.75_f64.sqrt());
-            if coil > self.core.flange.height {
+            if core.flange().is_some_and(|flange| coil > flange.height) {
                 let message = format!("the coil stands {} m high, above the flanges", si(coil));
                 warn("core.flange.height", message);
             }
@@ -159,6 +165,24 @@ impl SceneSettings {
         }
         warnings
     }
+
+    /// A curve that the bilinear laws of the mechanics follow badly.
+    pub(super) fn rough_laws(&self, laws: &RoundLaws) -> Option<Warning> {
+        let key = "wire.stress_strain";
+        let errors = [laws.stretch, laws.bend, laws.twist].map(|law| 100.0 * law.error);
+        let worst = errors.iter().copied().fold(0.0, f64::max);
+        (!self.wire.stress_strain.is_empty() && worst > ROUGH).then(|| Warning {
+            origin: self.origin(key),
+            key,
+            value: self.shown(key),
+            message: format!(
+                "the bilinear laws of this section miss the curve's by up to {:.0} % of the last force, {:.0} % of the last \
+                 moment and {:.0} % of the last torque; end the points at the largest strain that winding reaches",
+                errors[0], errors[1], errors[2]
+            ),
+        })
+    }
+
     /// Keys that were given for another choice.
     fn keys_without_effect(&self) -> Vec<Warning> {
         let mut warnings: Vec<Warning> = Vec::new();
@@ -195,6 +219,13 @@ impl SceneSettings {
         if self.core.flange.inner_distance > 0.0 {
             let message = "has no effect: between flanges the core ends at their outer faces";
             warn("core.length_y", message.to_owned());
+        } else {
+            let message = "has no effect: there are no flanges without core.flange.inner_distance";
+            warn("core.flange.insulation", message.to_owned());
+        }
+        if self.wire.enamelled_diameter == 0.0 {
+            let message = "has no effect: wire without wire.enamelled_diameter is bare";
+            warn("wire.enamel_density", message.to_owned());
         }
         warnings
     }

@@ -10,6 +10,7 @@ pub use sections::{
 };
 
 use crate::measure::DefectLimits;
+use crate::rod::{ENAMEL_DENSITY, Material};
 use crate::signals::Inputs;
 use std::collections::BTreeMap;
 
@@ -60,18 +61,26 @@ pub struct SceneSettings {
 /// `[wire]`; 0 in a rigidity or limit: from the material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WireSettings {
-    /// copper: section-consistent; table1: the paper's wire of 0.7 mm; custom: every rigidity given (one of `copper`, `table1`, `custom`)
+    /// copper: section-consistent; table1: the paper's wire of 0.7 mm; custom: every rigidity given; the others: metals of the library (one of `copper`, `table1`, `custom`, `copper-soft`, `copper-half-hard`, `copper-hard`, `aluminium`)
     pub material: String,
     /// true: no yield, no moment cap, and no break unless wire.strength is given
     pub elastic: bool,
-    /// diameter of the bare round wire, m
+    /// diameter of the bare round wire, m: stiffness, yield, mass of the metal and resistance go with it
     pub diameter: f64,
-    /// density, kg/m^3
+    /// outer diameter over the enamel, m: contact, gaps, heights and pitch go with it; 0: bare wire
+    pub enamelled_diameter: f64,
+    /// density of the enamel, kg/m^3
+    pub enamel_density: f64,
+    /// density of the metal, kg/m^3; 0: of the material
     pub density: f64,
-    /// stress at first yield, Pa; makes N_y, M_y and T_y where those are 0
+    /// stress at first yield, Pa; makes N_y, M_y and T_y where those are 0; 0: of the material
     pub yield_stress: f64,
-    /// stress at the end of hardening, Pa; makes strength and copper's moment cap where those are 0
+    /// stress at the end of hardening, Pa; makes strength and moment cap where those are 0; 0: of the material
     pub flow_stress: f64,
+    /// resistivity at 20 degC, ohm m; 0: of the material
+    pub resistivity: f64,
+    /// points `[[strain, stress in Pa], ...]` of the metal's stress-strain curve from yield on; empty: of the material
+    pub stress_strain: String,
     /// stretch rigidity, N; 0: of the material
     pub ea: f64,
     /// stretch rigidity beyond yield, N; 0: of the material
@@ -84,13 +93,13 @@ pub struct WireSettings {
     pub gj: f64,
     /// torsional rigidity beyond yield, N m^2; 0: of the material
     pub gj_p: f64,
-    /// axial force at yield, N; 0: yield_stress times area
+    /// axial force at yield, N; 0: of the material
     pub n_y: f64,
-    /// bending moment at yield, N m; 0: yield_stress d^3/6
+    /// bending moment at yield, N m; 0: of the material
     pub m_y: f64,
-    /// torque at yield, N m; 0: yield_stress/sqrt(3) pi d^3/12
+    /// torque at yield, N m; 0: of the material
     pub t_y: f64,
-    /// largest bending moment, N m; 0: flow_stress d^3/6 for copper, none for the others
+    /// largest bending moment, N m; 0: flow_stress d^3/6, none for table1 and custom
     pub moment_cap: f64,
     /// tension at break, N; 0: flow_stress times area
     pub strength: f64,
@@ -115,6 +124,12 @@ pub struct CoreSettings {
     pub file: String,
     /// mesh: unit of the STL file (one of `m`, `mm`, `um`, `inch`)
     pub unit: String,
+    /// rounded box and cylinder: thickness of the insulation round the core, m
+    pub insulation: f64,
+    /// height over the insulated core that the coil may take, m; 0: to the rim of the flanges
+    pub window_height: f64,
+    /// angle of the limit line at that height to the axis, rad; it rises towards +y
+    pub window_taper: f64,
     /// flanges beside a rounded box or a cylinder
     pub flange: FlangeSettings,
 }
@@ -152,6 +167,26 @@ pub struct SolverSettings {
     pub coarse_settled: String,
 }
 
+impl WireSettings {
+    /// Diameter over the enamel, m; of bare wire its own.
+    pub fn outer_diameter(&self) -> f64 {
+        self.enamelled_diameter.max(self.diameter)
+    }
+
+    /// The metal: what was given, else of the material. Points of a stress-strain curve are not among it.
+    pub(crate) fn metal(&self) -> Material {
+        let of = Material::named(&self.material);
+        let or = |given: f64, known: f64| if given > 0.0 { given } else { known };
+        Material {
+            density: or(self.density, of.density),
+            yield_stress: or(self.yield_stress, of.yield_stress),
+            flow_stress: or(self.flow_stress, of.flow_stress),
+            resistivity: or(self.resistivity, of.resistivity),
+            ..of
+        }
+    }
+}
+
 impl SceneSettings {
     /// Inputs before the first step: core at rest, nozzle where the motion profile starts, set
     /// tension.
@@ -181,10 +216,13 @@ impl Default for SceneSettings {
                 material: "copper".to_owned(),
                 elastic: false,
                 diameter: 0.7e-3,
-                density: 8960.0,
-                yield_stress: 100e6,
-                // annealed copper at break, rounded; also the flow stress that caps its moment
-                flow_stress: 220e6,
+                enamelled_diameter: 0.0,
+                enamel_density: ENAMEL_DENSITY,
+                density: 0.0,
+                yield_stress: 0.0,
+                flow_stress: 0.0,
+                resistivity: 0.0,
+                stress_strain: String::new(),
                 ea: 0.0,
                 ea_p: 0.0,
                 ei: 0.0,
@@ -206,8 +244,12 @@ impl Default for SceneSettings {
                 radius: 10e-3,
                 file: String::new(),
                 unit: "mm".to_owned(),
+                insulation: 0.0,
+                window_height: 0.0,
+                window_taper: 0.0,
                 flange: FlangeSettings {
                     inner_distance: 0.0,
+                    insulation: 0.0,
                     height: 3e-3,
                     thickness: 1e-3,
                     edge_radius: 0.0,

@@ -65,6 +65,8 @@ pub struct FlangeSettings {
     pub thickness: f64,
     /// radius of the edges of the rim, m
     pub edge_radius: f64,
+    /// thickness of the insulation on the inner faces, m
+    pub insulation: f64,
 }
 
 /// Traverse motion profile of a native run: nozzle y over the core angle.
@@ -95,7 +97,7 @@ pub struct Winding {
     pub layers: f64,
     /// direction of the first layer along y (one of `+y`, `-y`)
     pub direction: String,
-    /// distance of neighbouring turns, m; 0: fills the window, or the wire's diameter where there is none
+    /// distance of neighbouring turns, m; 0: fills the window, or the wire's outer diameter where there is none
     pub pitch: f64,
 }
 

@@ -33,7 +33,7 @@ pub use core_model::core_surface;
 pub use freezing::{FreezePolicy, Watch};
 pub use io::{Centreline, SimError};
 pub use motion_profile::MotionProfile;
-pub use product::Product;
+pub use product::{Fill, Product};
 pub use saved::RestoreError;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
 

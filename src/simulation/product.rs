@@ -1,44 +1,95 @@
 //! The coil as a product: what a drawing or a bill of material says of it.
 
 use super::Simulation;
+use crate::measure::LayerContour;
+use crate::scene::Window;
 use serde::Serialize;
 use std::f64::consts::PI;
-
-/// Resistivity of annealed copper at 20 degC, ohm m: 1/58 ohm mm2/m (IEC 60028).
-const COPPER_20_DEGC: f64 = 1.0 / 58.0 * 1e-6;
 
 /// The coil as a product, over the settled wire.
 ///
 /// The bits of these numbers do not enter a computation.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Product {
     /// turns at rest
     pub turns: f64,
-    /// layers that settled wire lies in
+    /// layers that settled wire lies in; a last turn that climbs is none
     pub layers: u32,
-    /// diameter of the wire, m
+    /// name of the material
+    pub material: String,
+    /// diameter of the bare wire, m
     pub wire_diameter_m: f64,
+    /// diameter over the enamel, m; that of the bare wire without
+    pub enamelled_diameter_m: f64,
     /// unstretched length of the settled wire from the clamp, m
     pub wire_length_m: f64,
-    /// resistance of that wire at 20 degC, as annealed copper of its unstretched section, ohm
+    /// mass of that wire with its enamel, kg
+    pub wire_mass_kg: f64,
+    /// resistivity of the wire at 20 degC, ohm m
+    pub resistivity_ohm_m: f64,
+    /// resistance of that wire at 20 degC, of its unstretched bare section, ohm
     pub resistance_ohm: f64,
-    /// wire section over the winding section it takes up, as the output `fill_factor`
+    /// wire section with its enamel over the winding section it takes up, as the output `fill_factor`
     pub fill: f64,
+    /// how full the winding window is; `None` without flanges
+    pub window: Option<Fill>,
+    /// how full the coil is: its width, and the median height of its last layer; `None` without wire
+    pub coil: Option<Fill>,
+    /// outer side of each layer over the core
+    pub contour: Vec<LayerContour>,
+    /// least distance of the wire from the limit line, m; negative beyond it, `None` without a limit
+    pub clearance_m: Option<f64>,
+}
+
+/// A rectangle over the core, and the share of it that wire takes up: turns at rest times the section of the wire.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Fill {
+    /// along the axis, m
+    pub width_m: f64,
+    /// over the core, m
+    pub height_m: f64,
+    /// share of metal
+    pub fill_bare: f64,
+    /// share of wire with its enamel
+    pub fill_enamelled: f64,
 }
 
 impl Simulation {
     /// The coil as a product.
     pub fn product(&self) -> Product {
-        let d = self.scene.wire.diameter;
+        let wire = &self.scene.wire;
         let last = self.coil.stations().last();
         let length = last.map_or(0.0, |station| station.arc);
+        let turns = self.run.outputs.turns_settled;
+        let fill = |width_m: f64, height_m: f64| {
+            let share = |d: f64| turns * 0.25 * PI * d * d / (width_m * height_m);
+            Fill {
+                width_m,
+                height_m,
+                fill_bare: share(wire.bare_diameter),
+                fill_enamelled: share(wire.diameter),
+            }
+        };
+        let contour = self.coil.contour();
+        let layers = self.coil.layers();
+        let top = contour.iter().find(|layer| layer.layer == layers);
+        let limit = self.scene.window;
         Product {
-            turns: self.run.outputs.turns_settled,
-            layers: self.coil.stations().map(|s| s.layer).max().unwrap_or(0),
-            wire_diameter_m: d,
+            turns,
+            layers,
+            material: self.scene.wire_material.clone(),
+            wire_diameter_m: wire.bare_diameter,
+            enamelled_diameter_m: wire.diameter,
             wire_length_m: length,
-            resistance_ohm: COPPER_20_DEGC * length / (0.25 * PI * d * d),
+            wire_mass_kg: wire.mass_per_length() * length,
+            resistivity_ohm_m: self.scene.resistivity,
+            resistance_ohm: self.scene.resistivity * length / wire.bare_area(),
             fill: self.coil.fill_factor(),
+            // the limit line is as high in the middle as it is on average
+            window: limit.and_then(|Window { width, height, .. }| Some(fill(width?, height))),
+            coil: top.map(|layer| fill(self.coil.coil_width(), layer.height_median_m)),
+            contour,
+            clearance_m: limit.and_then(|window| self.coil.clearance(window.height, window.taper)),
         }
     }
 }

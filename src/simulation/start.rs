@@ -66,6 +66,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     let mut section = scene.wire.clone();
     if !scene.solver.features.inertia {
         section.density *= MASSLESS;
+        section.enamel_density *= MASSLESS;
     }
     let radius = section.radius();
     let half = half_width(scene, &surface)?;
@@ -322,7 +323,7 @@ fn stepper_for(scene: &Scene) -> Result<(Stepper, f64), SimError> {
         stable * solver.step_share
     };
     let Some(method) = method else {
-        let [shortest, first, most] = STEPS.map(|time| scaled(time, scene.wire.diameter));
+        let [shortest, first, most] = STEPS.map(|time| scaled(time, scene.wire.bare_diameter));
         let mut method = Implicit::new(Scheme::Bdf2, solver.tolerance, shortest, most);
         method.next = first;
         method.fixed = (solver.step > 0.0).then_some(solver.step);

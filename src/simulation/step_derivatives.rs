@@ -85,8 +85,8 @@ type Smooth = [f64; Outputs::SMOOTH.len()];
 
 /// How far to go in the direction `along`, so that no input of a step of `dt`, s, changes by more than its share.
 fn reach(scene: &Scene, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
-    let diameter = scene.wire.diameter;
-    let least = scaled(scaled(LEAST_PULL, diameter), diameter);
+    let (diameter, bare) = (scene.wire.diameter, scene.wire.bare_diameter);
+    let least = scaled(scaled(LEAST_PULL, bare), bare);
     let turn = TURN / dt;
     let share = (SPEED * inputs.spindle_speed.abs()).max(0.1 * turn);
     let most = [

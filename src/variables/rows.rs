@@ -284,23 +284,27 @@ table! {
     local(203, penetration_max, "m", "um", -1.0, 1.0, 1e-6, "deepest penetration in contact since the last communication point");
     local(204, energy_residual, "J", "", -1e9, 1e9, 1e-3, "error of the energy balance since the start");
 
-    text(1000, "wire.material", (wire.material), ["copper", "table1", "custom"], "copper: section-consistent; table1: the paper's wire of 0.7 mm; custom: every rigidity given");
+    text(1000, "wire.material", (wire.material), ["copper", "table1", "custom", "copper-soft", "copper-half-hard", "copper-hard", "aluminium"], "copper: section-consistent; table1: the paper's wire of 0.7 mm; custom: every rigidity given; the others: metals of the library");
     switch(1001, "wire.elastic", wire.elastic, "true: no yield, no moment cap, and no break unless wire.strength is given");
-    fixed(1002, "wire.diameter", wire.diameter, "m", "mm", 2e-5, 5e-3, 1e-3, "diameter of the bare round wire");
-    fixed(1003, "wire.density", wire.density, "kg/m3", "", 100.0, 3e4, 1e4, "density");
-    fixed(1004, "wire.yield_stress", wire.yield_stress, "Pa", "MPa", 1e5, 1e10, 1e8, "stress at first yield; makes N_y, M_y and T_y where those are 0");
-    fixed(1005, "wire.flow_stress", wire.flow_stress, "Pa", "MPa", 1e5, 1e10, 1e8, "stress at the end of hardening; makes strength and copper's moment cap where those are 0");
+    fixed(1002, "wire.diameter", wire.diameter, "m", "mm", 2e-5, 5e-3, 1e-3, "diameter of the bare round wire: stiffness, yield, mass of the metal and resistance go with it");
+    fixed(1003, "wire.density", wire.density, "kg/m3", "", 0.0, 3e4, 1e4, "density of the metal, 100 at least; 0: of the material");
+    fixed(1004, "wire.yield_stress", wire.yield_stress, "Pa", "MPa", 0.0, 1e10, 1e8, "stress at first yield, 0.1 MPa at least; makes N_y, M_y and T_y where those are 0; 0: of the material");
+    fixed(1005, "wire.flow_stress", wire.flow_stress, "Pa", "MPa", 0.0, 1e10, 1e8, "stress at the end of hardening, 0.1 MPa at least; makes strength and moment cap where those are 0; 0: of the material");
     fixed(1006, "wire.EA", wire.ea, "N", "", 0.0, 1e9, 1e4, "stretch rigidity; 0: of the material");
     fixed(1007, "wire.EAp", wire.ea_p, "N", "", 0.0, 1e9, 1e3, "stretch rigidity beyond yield; 0: of the material");
     fixed(1008, "wire.EI", wire.ei, "N.m2", "", 0.0, 1e3, 1e-3, "bending rigidity; 0: of the material");
     fixed(1009, "wire.EIp", wire.ei_p, "N.m2", "", 0.0, 1e3, 1e-4, "bending rigidity beyond yield; 0: of the material");
     fixed(1010, "wire.GJ", wire.gj, "N.m2", "", 0.0, 1e3, 1e-3, "torsional rigidity; 0: of the material");
     fixed(1011, "wire.GJp", wire.gj_p, "N.m2", "", 0.0, 1e3, 1e-4, "torsional rigidity beyond yield; 0: of the material");
-    fixed(1012, "wire.N_y", wire.n_y, "N", "", 0.0, 1e6, 10.0, "axial force at yield; 0: yield_stress times area");
-    fixed(1013, "wire.M_y", wire.m_y, "N.m", "N.mm", 0.0, 1e3, 1e-2, "bending moment at yield; 0: yield_stress d^3/6");
-    fixed(1014, "wire.T_y", wire.t_y, "N.m", "N.mm", 0.0, 1e3, 1e-2, "torque at yield; 0: yield_stress/sqrt(3) pi d^3/12");
-    fixed(1015, "wire.moment_cap", wire.moment_cap, "N.m", "N.mm", 0.0, 1e3, 1e-2, "largest bending moment; 0: flow_stress d^3/6 for copper, none for the others");
+    fixed(1012, "wire.N_y", wire.n_y, "N", "", 0.0, 1e6, 10.0, "axial force at yield; 0: of the material");
+    fixed(1013, "wire.M_y", wire.m_y, "N.m", "N.mm", 0.0, 1e3, 1e-2, "bending moment at yield; 0: of the material");
+    fixed(1014, "wire.T_y", wire.t_y, "N.m", "N.mm", 0.0, 1e3, 1e-2, "torque at yield; 0: of the material");
+    fixed(1015, "wire.moment_cap", wire.moment_cap, "N.m", "N.mm", 0.0, 1e3, 1e-2, "largest bending moment; 0: flow_stress d^3/6, none for table1 and custom");
     fixed(1016, "wire.strength", wire.strength, "N", "", 0.0, 1e6, 100.0, "tension at break; 0: flow_stress times area");
+    fixed(1017, "wire.enamelled_diameter", wire.enamelled_diameter, "m", "mm", 0.0, 1e-2, 1e-3, "outer diameter over the enamel: contact, gaps, heights and pitch go with it; 0: bare wire");
+    fixed(1018, "wire.enamel_density", wire.enamel_density, "kg/m3", "", 0.0, 1e4, 1e3, "density of the enamel, which has mass and no stiffness");
+    fixed(1019, "wire.resistivity", wire.resistivity, "Ohm.m", "", 0.0, 1e-4, 1e-8, "resistivity at 20 degC; 0: of the material");
+    text(1020, "wire.stress_strain", (wire.stress_strain), [], "points [[strain, stress in Pa], ...] of the metal's stress-strain curve from yield on, which make rigidities and limits; empty: of the material");
 
     text(1100, "core.shape", (core.shape), ["rounded-box", "cylinder", "mesh"], "shape of the core");
     fixed(1101, "core.width_x", core.width_x, "m", "mm", 1e-4, 1.0, 1e-2, "rounded box: full width along x");
@@ -314,6 +318,10 @@ table! {
     fixed(1109, "core.flange.height", core.flange.height, "m", "mm", 1e-5, 1.0, 1e-3, "how far the rim of the flanges stands above the core");
     fixed(1110, "core.flange.thickness", core.flange.thickness, "m", "mm", 1e-5, 1.0, 1e-3, "thickness of each flange along the axis");
     fixed(1111, "core.flange.edge_radius", core.flange.edge_radius, "m", "mm", 0.0, 1.0, 1e-4, "radius of the edges of the flanges' rim");
+    fixed(1112, "core.flange.insulation", core.flange.insulation, "m", "mm", 0.0, 1e-2, 1e-3, "thickness of the insulation on the inner faces of the flanges");
+    fixed(1113, "core.insulation", core.insulation, "m", "mm", 0.0, 1e-2, 1e-3, "rounded box and cylinder: thickness of the insulation round the core, under the wire");
+    fixed(1114, "core.window_height", core.window_height, "m", "mm", 0.0, 1.0, 1e-2, "height over the insulated core that the coil may take, to the neighbouring coil's limit line; 0: to the rim of the flanges");
+    fixed(1115, "core.window_taper", core.window_taper, "rad", "deg", -1.4, 1.4, 0.1, "angle of the limit line to the axis: it is window_height high at y = 0 and rises towards +y");
 
     fixed(1200, "nozzle.distance", nozzle.distance, "m", "mm", 1e-3, 10.0, 0.1, "nozzle exit from the core axis, on +x");
     fixed(1201, "nozzle.y_start", nozzle.y_start, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis at the start");
@@ -341,7 +349,7 @@ table! {
     native(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
     native(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");
     native_text(1652, "winding.direction", (winding.direction), ["+y", "-y"], "layered traverse modes: direction of the first layer");
-    native(1653, "winding.pitch", winding.pitch, "m", "mm", 0.0, 1.0, 1e-3, "layered traverse modes: distance of neighbouring turns; 0: fills the window, or the wire's diameter without flanges");
+    native(1653, "winding.pitch", winding.pitch, "m", "mm", 0.0, 1.0, 1e-3, "layered traverse modes: distance of neighbouring turns; 0: fills the window, or the wire's outer diameter without flanges");
 
     fixed(1700, "contact.stiffness", contact.stiffness, "N/m2", "", 1e6, 1e13, 1e10, "line load per depth");
     fixed(1701, "contact.restitution", contact.restitution, "1", "", 0.0, 1.0, 1.0, "rebound over impact speed");

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 pub struct Unit {
     /// FMI unit name
     pub name: &'static str,
-    /// exponents of the SI base units `kg`, `m`, `s`, `rad`; the factor is 1 throughout
+    /// exponents of the SI base units `kg`, `m`, `s`, `A`, `rad`; the factor is 1 throughout
     pub base: &'static [(&'static str, i32)],
     /// units shown to people: name, factor, offset, with `shown = factor * value + offset`
     pub display: &'static [(&'static str, f64, f64)],
@@ -91,6 +91,11 @@ pub fn units() -> &'static [Unit] {
             base: &[("kg", 1), ("m", -1), ("s", -2)],
             display: &[("MPa", 1e-6, 0.0)],
         },
+        Unit {
+            name: "Ohm.m",
+            base: &[("kg", 1), ("m", 3), ("s", -3), ("A", -2)],
+            display: &[],
+        },
     ]
 }
 
@@ -135,6 +140,8 @@ const SUFFIXES: &[(&str, &str, Scale)] = &[
     ("Pa", "Pa", Scale::Tens(0)),
     ("MPa", "Pa", Scale::Tens(6)),
     ("GPa", "Pa", Scale::Tens(9)),
+    ("Ohm_m", "Ohm.m", Scale::Tens(0)),
+    ("Ohm_mm2_per_m", "Ohm.m", Scale::Tens(-6)),
 ];
 
 /// The suffixes a key with this unit may carry.

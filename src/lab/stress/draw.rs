@@ -195,7 +195,7 @@ fn wire(case_random: &mut CaseRandom, s: &mut SceneSettings) {
     }
     let d = w.diameter;
     let area = 0.25 * PI * d * d;
-    let strength = w.flow_stress * area;
+    let strength = w.metal().flow_stress * area;
     if case_random.chance(0.12) {
         w.elastic = true;
         w.strength = strength;

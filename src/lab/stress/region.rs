@@ -34,7 +34,7 @@ const AXES: &[Axis] = &[
         of: |c, s| {
             let w = &c.settings.wire;
             let area = 0.25 * std::f64::consts::PI * w.diameter * w.diameter;
-            s.tensioner.tension / (w.yield_stress * area)
+            s.tensioner.tension / (w.metal().yield_stress * area)
         },
     },
     Axis {

@@ -1,7 +1,7 @@
 //! Case files: one `kind`, the wire, what is checked how closely, and the cases.
 
 use super::VerifyError;
-use crate::rod::Section;
+use crate::rod::{ENAMEL_DENSITY, Section};
 use crate::scene::Preset;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -217,8 +217,11 @@ fn section(wire: &Map<String, Value>) -> Result<Section, (&'static str, String)>
         good.then_some(value)
             .ok_or((key, format!("{value}: a finite number {range} is wanted")))
     };
+    let diameter = number("d", true)?;
     Ok(Section {
-        diameter: number("d", true)?,
+        diameter,
+        bare_diameter: diameter,
+        enamel_density: ENAMEL_DENSITY,
         density: number("rho", true)?,
         ea: number("EA", true)?,
         ea_p: number("EAp", false)?,
