@@ -433,7 +433,7 @@ mod tests {
             let below = 0.5 * law.limit * (end - yielded) + 0.5 * (law.limit + last) * yielded;
             assert!((below / work - 1.0).abs() < 1e-4, "{law:?} {below} {work}");
             assert!(law.tangent > 0.0 && law.tangent < law.elastic, "{law:?}");
-            assert!(law.error > 0.02 && law.error < 0.25, "{law:?}");
+            assert!(law.error > 0.02 && law.error < 0.35, "{law:?}");
         }
         // one that ends at the moment of the last point stays below that of the section yielding whole
         assert!(ends[1].2 < laws.moment_cap);

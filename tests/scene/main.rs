@@ -6,3 +6,4 @@ mod common;
 mod reading;
 mod refusals;
 mod several;
+mod wire;

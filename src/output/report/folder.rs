@@ -49,8 +49,10 @@ impl Run {
         })?;
         let summary: serde_json::Value =
             serde_json::from_str(&text).map_err(|e| broken(&path, e))?;
-        let diameter = summary["product"]["wire_diameter_m"]
+        let product = &summary["product"];
+        let diameter = product["enamelled_diameter_m"]
             .as_f64()
+            .or_else(|| product["wire_diameter_m"].as_f64())
             .ok_or_else(|| broken(&path, "product.wire_diameter_m is missing"))?;
         let end = Wire::read(&directory.join("coil.vtp"))?;
         let mut frames = Vec::new();

@@ -1,0 +1,99 @@
+//! The coil as a product: layers, contour, fill and clearance of an ideal orthocyclic coil.
+
+use crate::coils::{D, on_cylinder, spec, wound};
+use coilwind::measure::Coil;
+use std::f64::consts::{PI, TAU};
+
+const TURNS: f64 = 20.0;
+
+/// Rise from layer to layer in grooves of touching turns, m.
+fn step() -> f64 {
+    0.75f64.sqrt() * D
+}
+
+/// A coil of layers of twenty touching turns in each other's grooves, with steps of no length, and so much more wire.
+fn ideal(layers: u32, more: f64, climbs: bool) -> Coil {
+    let nodes = on_cylinder(f64::from(layers) * TURNS + more, 1.0, |angle| {
+        let turn = (angle / TAU).floor();
+        let full = f64::from(layers);
+        let layer = (turn / TURNS).floor();
+        let (layer, along) = match layer < full {
+            true => (layer, turn - layer * TURNS),
+            false if climbs => (full, turn - full * TURNS),
+            false => (full - 1.0, TURNS - 1.0),
+        };
+        let back = layer % 2.0 == 1.0;
+        let y = D * if back { TURNS - 0.5 - along } else { along };
+        (y, step() * layer)
+    });
+    let mut coil = wound(spec(), &nodes);
+    for layer in 1..layers {
+        let sense = if layer % 2 == 1 { -1.0 } else { 1.0 };
+        coil.begin_pass(f64::from(layer) * TURNS * TAU, sense);
+    }
+    coil
+}
+
+#[test]
+fn an_ideal_coil_is_as_full_as_geometry_says() {
+    for layers in 1..=4 {
+        let coil = ideal(layers, -0.01, false);
+        assert_eq!(coil.layers(), layers);
+        let contour = coil.contour();
+        assert_eq!(contour.len() as u32, layers);
+        for (below, layer) in contour.iter().enumerate() {
+            let top = D + below as f64 * step();
+            for height in [
+                layer.height_min_m,
+                layer.height_mean_m,
+                layer.height_median_m,
+                layer.height_max_m,
+            ] {
+                // one node of a step lies between two layers
+                assert!((height - top).abs() < 0.01 * D || height == layer.height_max_m);
+            }
+            assert!((layer.turns - TURNS).abs() < 0.02, "{layer:?}");
+        }
+        let top = contour[layers as usize - 1].height_median_m;
+        let width = D * if layers > 1 { TURNS + 0.5 } else { TURNS };
+        let turns = TURNS * f64::from(layers);
+        let of_geometry = turns * PI / 4.0 * D * D / (width * (D + f64::from(layers - 1) * step()));
+        let fill = coil.turns_settled() * PI / 4.0 * D * D / (coil.coil_width() * top);
+        assert!(
+            (fill / of_geometry - 1.0).abs() < 0.005,
+            "{layers} layers: {fill} for {of_geometry}"
+        );
+    }
+}
+
+/// Wire that climbs at the end of its pass counted as a layer of its own.
+#[test]
+fn a_last_turn_that_climbs_is_no_layer() {
+    let coil = ideal(4, 1.4, true);
+    let contour = coil.contour();
+    assert_eq!((contour.len(), contour[4].layer), (5, 5));
+    assert!((contour[4].turns - 1.4).abs() < 0.05);
+    assert_eq!(coil.layers(), 4);
+    // wire in disorder has layers too, though the nozzle never turned
+    assert_eq!(ideal(4, 3.0, true).layers(), 5);
+    assert_eq!(Coil::new(spec()).layers(), 0);
+    assert!(Coil::new(spec()).contour().is_empty());
+}
+
+#[test]
+fn clearance_is_the_distance_to_the_limit_line() {
+    let coil = ideal(2, -0.01, false);
+    let limit = 4e-3;
+    let top = D + step();
+    let level = coil.clearance(limit, 0.0).unwrap();
+    assert!((level - (limit - top)).abs() < 1e-9, "{level}");
+    assert!(coil.clearance(top - 0.2 * D, 0.0).unwrap() < -0.19 * D);
+    // a line that falls towards +y comes nearest to the outermost turn there
+    let taper = -0.1_f64;
+    let y = D * (TURNS - 0.5);
+    let centre = top - 0.5 * D;
+    let expected = (limit + y * taper.tan() - centre) * taper.cos() - 0.5 * D;
+    let got = coil.clearance(limit, taper).unwrap();
+    assert!((got - expected).abs() < 1e-9, "{got} {expected}");
+    assert_eq!(Coil::new(spec()).clearance(limit, 0.0), None);
+}
