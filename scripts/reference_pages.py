@@ -180,7 +180,7 @@ CELLS = {
 
 
 def leaf(v):
-    return v["name"].split(".")[-1]
+    return v["name"].partition(".")[2] or v["name"]
 
 
 def unit(v):

@@ -48,7 +48,9 @@ fn settings(wire: &str) -> SceneSettings {
 }
 
 fn section(wire: &str) -> Section {
-    settings(wire).build().expect("a scene").wire
+    let text = format!("[tensioner]\ntension = 5\n[wire]\n{wire}");
+    let settings = SceneSettings::from_toml_str(&text, "wire.toml", Path::new("")).expect("reads");
+    settings.build().expect("a scene").wire
 }
 
 fn wound(wire: &str, turns: f64) -> Simulation {

@@ -27,7 +27,7 @@ pub use bending::{Stretched, stretched, turning};
 pub use flow_curve::{Bilinear, FlowCurve, FlowCurveError, MOST_STRAIN, RoundLaws};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::Joint;
-pub use material::{Elastic, Material};
+pub use material::Material;
 pub use plasticity::{Bend, Law, Scalar};
 #[cfg(feature = "lab")]
 pub use plasticity::{respond_bend, respond_scalar};

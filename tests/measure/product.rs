@@ -52,7 +52,8 @@ fn an_ideal_coil_is_as_full_as_geometry_says() {
                 // one node of a step lies between two layers
                 assert!((height - top).abs() < 0.01 * D || height == layer.height_max_m);
             }
-            assert!((layer.turns - TURNS).abs() < 0.02, "{layer:?}");
+            // a layer changes once so many stations have said so
+            assert!((layer.turns - TURNS).abs() < 0.05, "{layer:?}");
         }
         let top = contour[layers as usize - 1].height_median_m;
         let width = D * if layers > 1 { TURNS + 0.5 } else { TURNS };

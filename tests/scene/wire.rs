@@ -36,7 +36,7 @@ fn enamel_has_a_range() {
 #[test]
 fn pitch_and_turns_of_a_window_go_with_the_enamel() {
     let coil = "[core]\nshape = 'cylinder'\nradius_mm = 8\n[core.flange]\ninner_distance_mm = 14.5\nheight_mm = 4\n\
-                [start]\nclamp_y_mm = -6.8\n[nozzle]\ny_start_mm = -6.8\n[traverse]\nmode = 'orthocyclic'\n[wire]\n";
+                [start]\nclamp_y_mm = -6.85\n[nozzle]\ny_start_mm = -6.85\n[traverse]\nmode = 'orthocyclic'\n[wire]\n";
     let bare = scene(&format!("{coil}diameter_mm = 0.8"));
     let enamelled = scene(&format!(
         "{coil}diameter_mm = 0.7\nenamelled_diameter_mm = 0.8"
@@ -53,7 +53,7 @@ fn pitch_and_turns_of_a_window_go_with_the_enamel() {
         "{open}diameter_mm = 0.7\nenamelled_diameter_mm = 0.8"
     ))
     .nozzle_law;
-    let [low, high] = law.range();
+    let (low, high) = (law.start(), law.position(law.end()));
     assert!((high - low - 2.0 * 0.8e-3).abs() < 1e-12, "{low} {high}");
 }
 
