@@ -124,6 +124,14 @@ fn points_of_a_curve_make_the_section() {
     close(wire.gj / wire.ei, 1.0 / 1.326);
     assert!(wire.ea_p > 0.0 && wire.ea_p < 0.05 * wire.ea);
     assert!(wire.m_y > 92e6 * 0.7e-3_f64.powi(3) / 6.0 && wire.m_y < wire.moment_cap);
+    // a curve that bends much over a long way is told to be followed badly
+    let told = |points: &str| {
+        let settings = parse(&format!("[wire]\nstress_strain = {points}")).unwrap();
+        let (_, warnings) = settings.build_with_warnings().unwrap();
+        warnings.iter().any(|w| w.key == "wire.stress_strain")
+    };
+    assert!(told("[[0.0008, 92e6], [0.02, 140e6], [0.4, 225e6]]"));
+    assert!(!told("[[0.0008, 92e6], [0.02, 115e6], [0.08, 160e6]]"));
     // written out and read again it is the same scene
     let settings = parse(&text).unwrap();
     let again = SceneSettings::from_toml_str(&settings.to_toml(), "again", Path::new("")).unwrap();
