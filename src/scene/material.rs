@@ -81,14 +81,6 @@ fn of_laws(laws: &RoundLaws) -> Rigidities {
     }
 }
 
-/// Least values of leaves that may also be 0, for "of the material".
-const LEAST: [(&str, fn(&WireSettings) -> f64, f64, &str); 4] = [
-    ("wire.density", |wire| wire.density, 100.0, "kg/m3"),
-    ("wire.yield_stress", |wire| wire.yield_stress, 1e5, "Pa"),
-    ("wire.flow_stress", |wire| wire.flow_stress, 1e5, "Pa"),
-    ("wire.resistivity", |wire| wire.resistivity, 1e-9, "Ohm.m"),
-];
-
 /// Thickest enamel: the outer diameter over the bare one. Chosen: grade 3 of the finest wire of IEC 60317-0-1 has 1.6.
 const THICKEST: f64 = 2.0;
 
@@ -96,8 +88,14 @@ const THICKEST: f64 = 2.0;
 fn check_leaves(settings: &SceneSettings) -> Result<(), SceneError> {
     let wire = &settings.wire;
     let mut problems = Problems::default();
-    for (key, value, least, unit) in LEAST {
-        if value(wire) > 0.0 && value(wire) < least {
+    // 0 stands for that of the material
+    for (key, value, least, unit) in [
+        ("wire.density", wire.density, 100.0, "kg/m3"),
+        ("wire.yield_stress", wire.yield_stress, 1e5, "Pa"),
+        ("wire.flow_stress", wire.flow_stress, 1e5, "Pa"),
+        ("wire.resistivity", wire.resistivity, 1e-9, "Ohm.m"),
+    ] {
+        if value > 0.0 && value < least {
             let allowed = format!(
                 "at least {} {unit}, or 0 for that of the material",
                 si(least)

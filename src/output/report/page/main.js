@@ -101,14 +101,8 @@ function head(run) {
 
 /** Share of metal in the winding window, or of wire in the coil where there is no window. */
 function fill(p) {
-  if (p.window) return [["Metal in the window", fixed(100 * p.window.fill_bare, 1), "%"]];
+  if (p.window) return [["Metal in window", fixed(100 * p.window.fill_bare, 1), "%"]];
   return [["Fill factor", p.fill > 0 ? fixed(100 * p.fill, 1) : "–", "%"]];
-}
-
-/** Bare diameter, and that over the enamel where there is some, mm. */
-function wireDiameter(p) {
-  const bare = digits(1e3 * p.wire_diameter_m);
-  return p.enamelled_diameter_m > p.wire_diameter_m ? `${bare} / ${digits(1e3 * p.enamelled_diameter_m)}` : bare;
 }
 
 function product(run) {
@@ -116,9 +110,10 @@ function product(run) {
   const ohm = p.resistance_ohm < 1 ? [digits(1e3 * p.resistance_ohm), "mΩ"] : [digits(p.resistance_ohm), "Ω"];
   const figures = [
     ["Turns at rest", fixed(p.turns, 2), ""], ["Layers", p.layers, ""], ["Wire length", digits(p.wire_length_m, 4), "m"],
-    ["Resistance at 20 °C", ...ohm], ...fill(p), ["Wire diameter", wireDiameter(p), "mm"],
+    ["Resistance at 20 °C", ...ohm], ...fill(p), ["Wire diameter", digits(1e3 * p.wire_diameter_m), "mm"],
   ];
-  if (p.clearance_m != null) figures.push(["Clearance to the limit line", digits(1e3 * p.clearance_m), "mm"]);
+  if (p.enamelled_diameter_m > p.wire_diameter_m) figures.push(["Over the enamel", digits(1e3 * p.enamelled_diameter_m), "mm"]);
+  if (p.clearance_m != null) figures.push(["Clearance", digits(1e3 * p.clearance_m), "mm"]);
   return el("dl", { class: "product" }, ...figures.map(([name, value, unit]) =>
     el("div", {}, el("dt", {}, name), el("dd", {}, `${value} `, el("small", {}, unit)))));
 }
