@@ -146,6 +146,10 @@ docs() {
         skip "report in a browser" "$missing"
     fi
 
+    step "films, calibration, control, sweeps through the FMU"
+    COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_RENDER_PYTHON=$(scripts/venv.sh render) \
+        "$(scripts/venv.sh study)" -m pytest -q -rs tests/study
+
     step what pages tell a reader to type
     "$python" scripts/docs/check_commands.py
 
