@@ -5,7 +5,7 @@
 #
 #     lint    format, lints of every target and set of features, layout of the sources, documentation of the code
 #     lab     exact answers, random scenes, benchmarks at their coarsest, results as recorded
-#     docs    generated pages, the site, reports in a browser, what pages tell a reader to type
+#     docs    generated pages, the site, reports in a browser, scripts around runs, what pages tell a reader to type
 #     rust    tests of the library, of the command and of the packages beside it
 #     fmu     the FMU, the portable FMU, its validation, tests that drive it
 #
@@ -21,7 +21,7 @@ minutes_of() {
     case $1 in
         lint) echo 4 ;;
         lab) echo 8 ;;
-        docs) echo 7 ;;
+        docs) echo 9 ;;
         rust) echo 12 ;;
         fmu) echo 8 ;;
     esac
@@ -145,6 +145,10 @@ docs() {
     else
         skip "report in a browser" "$missing"
     fi
+
+    step "films, calibration, control, sweeps through the FMU"
+    COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_RENDER_PYTHON=$(scripts/venv.sh render) \
+        "$(scripts/venv.sh study)" -m pytest -q -rs tests/study
 
     step what pages tell a reader to type
     "$python" scripts/docs/check_commands.py

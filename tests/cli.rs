@@ -187,10 +187,10 @@ fn run_leaves_its_files() {
     assert_eq!(summary["status"], "done");
     assert_eq!(summary["scene"], "fig8");
     assert_eq!(summary["simulated_s"].as_f64(), time.last().copied());
-    for stem in ["coil", "frames/frame_0001", "frames/frame_0002"] {
-        let picture = image::open(out.join(stem).with_extension("png")).unwrap();
-        assert_eq!((picture.width(), picture.height()), (1200, 900), "{stem}");
-        let wire = std::fs::read_to_string(out.join(stem).with_extension("vtp")).unwrap();
+    let picture = image::open(out.join("coil.png")).unwrap();
+    assert_eq!((picture.width(), picture.height()), (1200, 900));
+    for name in ["coil.vtp", "frames/frame_0001.vtp", "frames/frame_0002.vtp"] {
+        let wire = std::fs::read_to_string(out.join(name)).unwrap();
         for array in [
             "turn",
             "frozen",
@@ -204,10 +204,17 @@ fn run_leaves_its_files() {
         ] {
             assert!(
                 wire.contains(&format!("Name=\"{array}\"")),
-                "{stem}: {array}"
+                "{name}: {array}"
             );
         }
     }
+    let listed = std::fs::read_to_string(out.join("frames.pvd")).unwrap();
+    let at_the_end = format!(
+        "<DataSet timestep=\"{}\" part=\"0\" file=\"frames/frame_0002.vtp\"/>",
+        time[18]
+    );
+    assert!(listed.contains(&at_the_end), "{listed}");
+    assert_eq!(listed.matches("<DataSet ").count(), 2);
     assert!(!out.join("frames/frame_0003.vtp").exists());
     let core = std::fs::read_to_string(out.join("core.vtp")).unwrap();
     assert!(core.contains("NumberOfPolys"), "{core}");

@@ -114,6 +114,28 @@ fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
     for part in ["spindle.speed", "tensioner.tension", "\n120\n", "\n15\n"] {
         assert!(map.contains(part), "{part}: {map}");
     }
+    let page = std::fs::read_to_string(one.join("map.html")).unwrap();
+    assert_eq!(
+        page,
+        std::fs::read_to_string(three.join("map.html")).unwrap()
+    );
+    let (_, data) = page.split_once("application/json\" id=\"data\">").unwrap();
+    let (data, _) = data.split_once("</script>").unwrap();
+    let map: serde_json::Value = serde_json::from_str(data).unwrap();
+    let cells = map["cells"].as_array().unwrap();
+    assert_eq!(cells.len(), 4);
+    for (cell, runs) in cells.iter().zip(found.chunks(2)) {
+        let (x, y) = (&map["x"]["values"], &map["y"]["values"]);
+        let value = |axis: &serde_json::Value, key: &str| {
+            axis[cell[key].as_u64().unwrap() as usize].to_string()
+        };
+        let is = |a: &str, b: String| a.parse::<f64>().unwrap() == b.parse::<f64>().unwrap();
+        assert!(is(&runs[0]["spindle.speed"], value(x, "x")));
+        assert!(is(&runs[0]["tensioner.tension"], value(y, "y")));
+        assert_eq!((&cell["members"], &cell["defects"]), (&2.into(), &0.into()));
+        let most = cell["runs"][1]["tension_max_N"].to_string();
+        assert!(is(&runs[1]["tension_max_N"], most));
+    }
     let ensembles = rows(&one.join("ensemble.csv"));
     assert_eq!(ensembles.len(), 4);
     assert!(ensembles.iter().all(|e| e["members"] == "2"));

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// Name of the file in the folder of a run.
 pub(super) const FILE: &str = "checkpoint.bin";
 /// Changes whenever the layout does; the state has a version of its own.
-const MAGIC: &[u8; 8] = b"coilwck1";
+const MAGIC: &[u8; 8] = b"coilwck2";
 
 /// What does not change during a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -35,8 +35,8 @@ pub(super) struct Checkpoint {
     pub(super) place: Place,
     /// end of the history
     pub(super) history: Mark,
-    /// frames written
-    pub(super) frames: u32,
+    /// number and time of the frames written
+    pub(super) frames: Vec<(u32, f64)>,
     /// wall time so far, s
     pub(super) wall_s: f64,
     /// [`Simulation::to_bytes`](coilwind::simulation::Simulation::to_bytes)

@@ -2,6 +2,7 @@
 
 use super::checkpoint;
 use super::failure::Failure;
+use super::frames;
 use coilwind::settings::SceneSettings;
 use std::fs;
 use std::path::Path;
@@ -15,7 +16,7 @@ const SIGNS: [&str; 4] = [
 ];
 
 /// Files that a run leaves when it ends. Those of an earlier run would mix with a later one that is stopped.
-const RESULTS: [&str; 9] = [
+const RESULTS: [&str; 10] = [
     "summary.json",
     "turns.csv",
     "stations.csv",
@@ -24,6 +25,7 @@ const RESULTS: [&str; 9] = [
     "coil.png",
     "core.vtp",
     "report.html",
+    frames::SERIES,
     checkpoint::FILE,
 ];
 

@@ -1,40 +1,44 @@
-//! Snapshots on the way, for films.
+//! Frames of a film on the way: the wire at evenly spread times, and the file that lists them.
 
 use super::failure::Failure;
-use coilwind::output::Snapshot;
+use coilwind::output::{Snapshot, write_series};
 use coilwind::simulation::Simulation;
 use std::path::{Path, PathBuf};
 
-/// Snapshots evenly spread over a run, in `frames/`.
+/// Name of the list in the folder of a run; ParaView opens it as a film.
+pub(super) const SERIES: &str = "frames.pvd";
+
+/// Frames evenly spread over a run, in `frames/`, listed in [`SERIES`].
 pub(super) struct Frames {
     directory: PathBuf,
     count: u32,
     end: f64,
-    written: u32,
+    /// number, from 1, and time in s of the frames written
+    written: Vec<(u32, f64)>,
 }
 
 impl Frames {
     /// `count` frames over `end` seconds; none makes no folder.
     pub(super) fn new(directory: &Path, count: u32, end: f64) -> Result<Self, Failure> {
-        let directory = directory.join("frames");
+        let folder = directory.join("frames");
         if count > 0 {
-            std::fs::create_dir_all(&directory).map_err(|e| Failure::write(&directory, e))?;
+            std::fs::create_dir_all(&folder).map_err(|e| Failure::write(&folder, e))?;
         }
         Ok(Self {
-            directory,
+            directory: directory.to_owned(),
             count,
             end,
-            written: 0,
+            written: Vec::new(),
         })
     }
 
-    /// Frames written, for [`Self::go_on`].
-    pub(super) fn written(&self) -> u32 {
-        self.written
+    /// Numbers and times of the frames written, for [`Self::go_on`].
+    pub(super) fn written(&self) -> &[(u32, f64)] {
+        &self.written
     }
 
-    /// Goes on after so many frames.
-    pub(super) fn go_on(&mut self, written: u32) {
+    /// Goes on after these frames.
+    pub(super) fn go_on(&mut self, written: Vec<(u32, f64)>) {
         self.written = written;
     }
 
@@ -46,14 +50,23 @@ impl Frames {
     ) -> Result<(), Failure> {
         // A share of the end, with room for the rounding of times.
         let share = simulation.time() / self.end * (1.0 + 1e-9);
-        let due = (share * f64::from(self.count))
-            .floor()
-            .min(f64::from(self.count)) as u32;
-        if due > self.written {
-            self.written = due;
-            let stem = self.directory.join(format!("frame_{due:04}"));
-            snapshot.write(&stem, simulation)?;
+        let count = f64::from(self.count);
+        let due = (share * count).floor().min(count) as u32;
+        if due > self.written.last().map_or(0, |&(number, _)| number) {
+            snapshot.write_frame(&self.directory.join(name(due)), simulation)?;
+            self.written.push((due, simulation.time()));
+            let listed: Vec<(f64, String)> = self
+                .written
+                .iter()
+                .map(|&(number, time)| (time, name(number)))
+                .collect();
+            write_series(&self.directory.join(SERIES), &listed)?;
         }
         Ok(())
     }
+}
+
+/// A frame's file, from the folder of the run.
+fn name(number: u32) -> String {
+    format!("frames/frame_{number:04}.vtp")
 }

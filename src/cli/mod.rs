@@ -22,6 +22,7 @@ mod sweep_find_max;
 mod sweep_grid;
 mod sweep_ledger;
 mod sweep_map;
+mod sweep_page;
 mod sweep_range;
 mod sweep_row;
 mod sweep_statistics;

@@ -53,7 +53,7 @@ pub(super) struct RunArgs {
     /// Wall time between two checkpoints from which a stopped run could go on, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = positive)]
     checkpoint_every: f64,
-    /// Write this many snapshots on the way, in DIR/frames: a picture and the wire as VTP each
+    /// Keep this many frames of the wire on the way, in DIR/frames; ParaView opens them as DIR/frames.pvd
     #[arg(long, value_name = "N", default_value_t = 0)]
     frames: u32,
     /// Leave coil.vtp, core.vtp, coil.png and report.html out: many short runs spend most of their time on them
@@ -445,7 +445,7 @@ impl Checkpoints {
                     plan: self.plan.clone(),
                     place: drive.place(),
                     history,
-                    frames: frames.written(),
+                    frames: frames.written().to_vec(),
                     wall_s,
                     state,
                 };

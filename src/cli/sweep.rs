@@ -7,8 +7,8 @@ use super::sweep_ledger::{self as ledger, Ledger};
 use super::sweep_range::Range;
 use super::terminal::{print, stop_flag};
 use super::{
-    sweep_find_max as find_max, sweep_map as map, sweep_statistics as statistics,
-    sweep_wind as wind,
+    sweep_find_max as find_max, sweep_map as map, sweep_page as page,
+    sweep_statistics as statistics, sweep_wind as wind,
 };
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
@@ -110,7 +110,11 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         );
     }
     let map = match mapped {
-        true => format!("map: {}\n", args.out.join(map::FILE).display()),
+        true => format!(
+            "map: {}, {}\n",
+            args.out.join(page::FILE).display(),
+            args.out.join(map::FILE).display()
+        ),
         false => String::new(),
     };
     print(&format!(

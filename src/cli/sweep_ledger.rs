@@ -3,7 +3,7 @@
 use super::failure::Failure;
 use super::sweep_grid::Grid;
 use super::sweep_row::{COLUMNS, Row, Rows};
-use super::{sweep_map as map, sweep_statistics as statistics};
+use super::{sweep_map as map, sweep_page as page, sweep_statistics as statistics};
 use coilwind::output::write_summary;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -58,7 +58,7 @@ impl Ledger {
         }
         let hold = hold(directory, &path)?;
         if !goes_on {
-            for name in [ROWS, STATISTICS, map::FILE] {
+            for name in [ROWS, STATISTICS, map::FILE, page::FILE] {
                 let path = directory.join(name);
                 if path.is_file() {
                     fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::sweep_grid::Grid;
+use super::sweep_page as page;
 use super::sweep_row::Rows;
 use super::sweep_statistics::{self as statistics, Ensemble};
 use plotters::prelude::*;
@@ -22,7 +23,7 @@ const FREE: [f64; 3] = [214.0, 232.0, 244.0];
 const DEFECT: [f64; 3] = [213.0, 94.0, 0.0];
 const FAILED: [f64; 3] = [150.0, 150.0, 150.0];
 
-/// Draws the map where two variables are swept and it can be read; tells whether.
+/// Draws the map, as a picture and as a page, where two variables are swept and it can be read; tells whether.
 ///
 /// # Errors
 /// Where the picture cannot be drawn or written.
@@ -38,6 +39,7 @@ pub(super) fn write(directory: &Path, grid: &Grid, rows: &Rows) -> Result<bool, 
         Failure::sweep(format!("{} cannot be drawn: {reason}", path.display()))
     })?;
     fs::write(&path, text).map_err(|e| Failure::write(&path, e))?;
+    page::write(directory, grid, rows)?;
     Ok(true)
 }
 

@@ -27,9 +27,9 @@ pub(super) struct Ensemble {
     /// mean over the runs of their largest mean gap, in wire diameters
     pub(super) gap_mean_d: Option<f64>,
     /// standard deviation of the same between runs, of a sample
-    gap_deviation_d: Option<f64>,
+    pub(super) gap_deviation_d: Option<f64>,
     /// how often each verdict was given
-    verdicts: BTreeMap<String, usize>,
+    pub(super) verdicts: BTreeMap<String, usize>,
 }
 
 impl Ensemble {

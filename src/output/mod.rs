@@ -12,6 +12,7 @@ mod shade;
 mod summary;
 mod tables;
 mod tube;
+mod vtk_xml;
 mod vtp;
 
 pub use history::{History, Mark};
@@ -21,7 +22,7 @@ pub use results::{Ending, Snapshot, write_results};
 pub use summary::write_summary;
 pub use tables::{write_defects, write_stations, write_turns};
 pub use tube::{TubeMesh, tube_mesh};
-pub use vtp::{WireFields, write_core_vtp, write_vtp};
+pub use vtp::{WireFields, write_core_vtp, write_frame, write_series, write_vtp};
 
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,7 @@
 
 use super::{
     CoreMesh, OutputError, Picture, WireFields, render_png, write_core_vtp, write_defects,
-    write_stations, write_summary, write_turns, write_vtp,
+    write_frame, write_stations, write_summary, write_turns, write_vtp,
 };
 use crate::geometry::Surface;
 use crate::math::V3;
@@ -68,6 +68,14 @@ impl Snapshot {
         let picture = Picture::new(Some(self.mesh()), &wire, radius);
         let picture = render_png(&stem.with_extension("png"), &picture);
         geometry.and(picture)
+    }
+
+    /// Writes the wire as it is now as a frame of a film, with what is known of it.
+    pub fn write_frame(&self, path: &Path, simulation: &Simulation) -> Result<(), OutputError> {
+        let wire = simulation.centreline();
+        let radius = simulation.scene().wire.radius();
+        let fields = self.fields(&wire, simulation);
+        write_frame(path, &wire, radius, Some(&fields), simulation.time())
     }
 
     /// Height of every node, and the measures of the station nearest to it along the wire.

@@ -54,11 +54,11 @@ impl Run {
             .as_f64()
             .or_else(|| product["wire_diameter_m"].as_f64())
             .ok_or_else(|| broken(&path, "product.wire_diameter_m is missing"))?;
-        let end = Wire::read(&directory.join("coil.vtp"))?;
+        let end = Wire::read(&directory.join("coil.vtp"), SIDES)?;
         let mut frames = Vec::new();
         if let Some(end) = &end {
             for path in frame_files(&directory.join("frames")) {
-                if let Some(wire) = Wire::read(&path)? {
+                if let Some(wire) = Wire::read(&path, 1)? {
                     frames.push(wire.frame(end, SAME * diameter));
                 }
             }
@@ -110,8 +110,8 @@ const REALS: [&str; 5] = ["arc", "tension", "plastic_strain", "gap", "bulge"];
 const BYTES: [&str; 3] = ["layer", "defect", "frozen"];
 
 impl Wire {
-    /// `None` if there is no such file, or no wire in it.
-    fn read(path: &Path) -> Result<Option<Self>, ReportError> {
+    /// `None` if there is no such file, or no wire in it. `sides`: points of the file for a node of the wire.
+    fn read(path: &Path, sides: usize) -> Result<Option<Self>, ReportError> {
         if !path.exists() {
             return Ok(None);
         }
@@ -122,11 +122,11 @@ impl Wire {
         }
         // The centreline is the middle of each ring.
         let points: Vec<[f64; 3]> = tube
-            .chunks(3 * SIDES)
+            .chunks(3 * sides)
             .map(|ring| {
                 let mut sum = [0.0; 3];
                 for point in ring.chunks(3) {
-                    (0..3).for_each(|axis| sum[axis] += point[axis] / SIDES as f64);
+                    (0..3).for_each(|axis| sum[axis] += point[axis] / sides as f64);
                 }
                 sum
             })
@@ -134,10 +134,10 @@ impl Wire {
         let mut fields = Arrays::new();
         for name in REALS.into_iter().chain(BYTES) {
             let values = arrays.remove(name).unwrap_or_default();
-            if values.len() != SIDES * points.len() {
+            if values.len() != sides * points.len() {
                 return Err(broken(path, format!("{name} is not on every node")));
             }
-            fields.insert(name.to_owned(), values.into_iter().step_by(SIDES).collect());
+            fields.insert(name.to_owned(), values.into_iter().step_by(sides).collect());
         }
         let time = arrays.get("TimeValue").and_then(|t| t.first());
         Ok(Some(Self {

@@ -8,7 +8,9 @@ const STATIONS = 360;
 /** The array of a text such as `f32:BASE64`. */
 function decode(text) {
   const at = text.indexOf(":");
-  const bytes = Uint8Array.from(atob(text.slice(at + 1)), (letter) => letter.charCodeAt(0));
+  const letters = atob(text.slice(at + 1));
+  const bytes = new Uint8Array(letters.length);
+  for (let k = 0; k < bytes.length; k += 1) bytes[k] = letters.charCodeAt(k);
   return new KINDS[text.slice(0, at)](bytes.buffer);
 }
 

@@ -1,0 +1,414 @@
+#!/usr/bin/env python3
+"""Fits parameters of a scene to what was measured on a machine.
+
+    calibrate.py SCENE.toml --measured FILE.csv --fit tensioner.mass=0.002 --fit wire.yield_stress --out DIR
+
+The Python is that of `scripts/venv.sh study`. A measured file has a column of the spindle's angle (angle_deg, angle_rad or
+turns) and one or more of
+
+    tension_N      wire tension at the nozzle (also _mN, _cN)
+    coil_width_mm  width of the settled wire along the core (also _m, _um)
+    height_mm      height of the settled wire over the core, over the angle from the clamp (also _m, _um)
+    resistance_ohm of the wire from the clamp on, at 20 degC (also _mohm)
+
+Every parameter starts from the value behind its name, or from the scene's, and stays within a factor of ten of it. Least
+squares in the logarithms of the parameters, with derivatives by central differences; each run is `coilwind run` and all
+cores work. DIR gets calibration.json, residuals.csv and residuals.png.
+"""
+
+import argparse
+import csv
+import json
+import os
+import subprocess
+import sys
+import tempfile
+import tomllib
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+ANGLES = {"angle_deg": np.radians(1.0), "angle_rad": 1.0, "turns": 2.0 * np.pi}
+LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
+UNITS = {
+    "tension": {"N": 1.0, "mN": 1e-3, "cN": 1e-2},
+    "coil_width": LENGTHS,
+    "height": LENGTHS,
+    "resistance": {"ohm": 1.0, "mohm": 1e-3},
+}
+# Differences of the logarithm of a parameter, both ways: large against what a run's adaptive steps scatter by.
+DIFFERENCE = 0.03
+# How far around a solution is looked for a better one, in the logarithms, and how often.
+LOOKS = (0.01, 0.03, 0.06)
+ROUNDS = 4
+# A parameter may go as far from its start, as a factor.
+REACH = 10.0
+# Share of measured heights that has to lie on settled wire.
+SETTLED = 0.8
+# Measured and computed levels that differ by more than this factor are of other units.
+FOREIGN = 8.0
+# Of 1: above it, residuals are not noise, or two parameters cannot be told apart.
+CORRELATED = 0.95
+AUTOCORRELATED = 0.5
+
+
+class Mistake(Exception):
+    """What the user can mend, in a line."""
+
+
+@dataclass
+class Curve:
+    """A measured quantity over the angle of the spindle (rad), in SI units."""
+
+    source: Path
+    column: str
+    quantity: str
+    unit: float
+    angle: np.ndarray
+    values: np.ndarray
+    # standard deviation of the noise
+    sigma: float = 1.0
+
+
+def read_curves(path):
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise Mistake(f"{path} cannot be read: {error}") from None
+    if len(rows) < 2:
+        raise Mistake(f"{path} holds no measurement: give a header and a row for each angle")
+    header = [name.strip() for name in rows[0]]
+    angles = [name for name in header if name in ANGLES]
+    if len(angles) != 1:
+        raise Mistake(f"{path} has {len(angles)} columns of the angle; give one, named {', '.join(ANGLES)}")
+    numbers = {name: [] for name in header}
+    for line, row in enumerate(rows[1:], 2):
+        if len(row) != len(header):
+            raise Mistake(f"{path}:{line} has {len(row)} cells, the header has {len(header)}")
+        for name, cell in zip(header, row):
+            try:
+                numbers[name].append(float(cell) if cell.strip() else np.nan)
+            except ValueError:
+                raise Mistake(f"{path}:{line}: {name} is {cell!r}, which is not a number") from None
+    angle = ANGLES[angles[0]] * np.array(numbers.pop(angles[0]))
+    if not np.all(np.diff(angle) > 0.0):
+        raise Mistake(f"{path}: {angles[0]} has to rise from row to row")
+    curves = []
+    for column, values in numbers.items():
+        quantity, _, unit = column.rpartition("_")
+        if quantity not in UNITS:
+            known = ", ".join(f"{name}_{next(iter(units))}" for name, units in UNITS.items())
+            raise Mistake(f"{path}: column {column} is none of {known}")
+        if unit not in UNITS[quantity]:
+            raise Mistake(f"{path}: column {column} has the unit {unit}; {quantity} takes {', '.join(UNITS[quantity])}")
+        factor, values = UNITS[quantity][unit], np.array(values)
+        there = np.isfinite(values)
+        curves.append(Curve(path, column, quantity, factor, angle[there], factor * values[there]))
+    if not curves or any(curve.angle.size == 0 for curve in curves):
+        raise Mistake(f"{path} has a column without a measurement")
+    return curves
+
+
+class Model:
+    """Runs of the scene, as measured."""
+
+    def __init__(self, command, scene, sets, names, curves, folder):
+        self.command, self.scene, self.sets = command, scene, sets
+        self.names, self.curves, self.folder = names, curves, Path(folder)
+        self.runs = 0
+        listed = subprocess.run([command, "variables", "--json"], capture_output=True, text=True, check=True).stdout
+        self.table = {row["name"]: row for row in json.loads(listed)}
+
+    def wind(self, values):
+        """Computed curves with these values of the parameters."""
+        out = self.run(values)
+        return [self.compare(curve, out) for curve in self.curves]
+
+    def settings(self):
+        """The scene with its settings, as a run leaves it."""
+        return tomllib.loads((self.run([]) / "scene.toml").read_text(encoding="utf-8"))
+
+    def run(self, values):
+        """The folder of a run."""
+        out = Path(tempfile.mkdtemp(dir=self.folder))
+        words = [f"{name}={value!r}" for name, value in zip(self.names, map(float, values))]
+        words = [word for setting in [*self.sets, *words] for word in ("--set", setting)]
+        files = ["--no-geometry", "--no-report", "--quiet", "--force", "--out", out]
+        done = subprocess.run([self.command, "run", self.scene, *words, *files], capture_output=True, text=True, check=False)
+        self.runs += 1
+        if done.returncode:
+            reason = (done.stderr.strip().splitlines() or ["the run failed"])[0]
+            raise Mistake(f"with {', '.join(words[1::2]) or self.scene}: {reason}")
+        return out
+
+    def compare(self, curve, out):
+        if curve.quantity == "height":
+            angle, values = columns(out / "stations.csv", "angle", "height")
+        else:
+            column = {"tension": "wire_tension", "coil_width": "coil_width", "resistance": "wire_length"}[curve.quantity]
+            angle, values = columns(out / "history.csv", "spindle_angle", column)
+            if curve.quantity == "resistance":
+                product = json.loads((out / "summary.json").read_text(encoding="utf-8"))["product"]
+                if not product["wire_length_m"]:
+                    raise Mistake("no wire has settled; wind more turns to compare resistances")
+                values = values * product["resistance_ohm"] / product["wire_length_m"]
+        angle = np.abs(angle)
+        covered = (curve.angle >= angle[0] - 1e-6) & (curve.angle <= angle[-1] + 1e-6) if angle.size > 1 else np.zeros(1, bool)
+        # How much wire settles depends on the parameters a little; what has not counts for nothing.
+        if np.mean(covered) < (SETTLED if curve.quantity == "height" else 1.0):
+            turns = 2.0 * np.pi
+            low, high = (angle[0], angle[-1]) if angle.size else (0.0, 0.0)
+            raise Mistake(
+                f"{curve.source}: {curve.column} is measured from {curve.angle[0] / turns:.2f} to {curve.angle[-1] / turns:.2f} turns, "
+                f"{'settled wire of the run goes' if curve.quantity == 'height' else 'the run goes'} from {low / turns:.2f} to "
+                f"{high / turns:.2f}; wind more with --set spindle.turns=N, or cut the file"
+            )
+        return np.where(covered, np.interp(curve.angle, angle, values), np.nan)
+
+
+def columns(path, *names):
+    with open(path, newline="", encoding="utf-8") as file:
+        reader = csv.reader(file)
+        header = next(reader)
+        places = [header.index(name) for name in names]
+        rows = [[float(row[place]) for place in places] for row in reader]
+    return np.array(rows).reshape(-1, len(names)).T
+
+
+def check_levels(curves, computed):
+    """A mistake where a measured curve is so far from the first run that its unit must be another."""
+    for curve, values in zip(curves, computed):
+        measured, expected = np.median(np.abs(curve.values)), np.nanmedian(np.abs(values))
+        if expected > 0.0 and not 1.0 / FOREIGN < measured / expected < FOREIGN:
+            raise Mistake(
+                f"{curve.source}: {curve.column} is {measured / expected:.3g} times what the scene gives ({expected / curve.unit:.3g}); "
+                "is its unit the one in its name? If so, give starts nearer to the machine with --fit NAME=VALUE or --set"
+            )
+
+
+class Fit:
+    """Least squares over the logarithms of the parameters, relative to where they start."""
+
+    def __init__(self, model, starts, threads):
+        self.model, self.starts = model, np.array(starts)
+        self.pool = ThreadPoolExecutor(threads)
+        self.seen = {}
+
+    def computed(self, points):
+        """Curves at several points at once."""
+        keys = [tuple(point) for point in points]
+        fresh = [key for key in dict.fromkeys(keys) if key not in self.seen]
+        runs = self.pool.map(lambda key: self.model.wind(self.starts * np.exp(key)), fresh)
+        self.seen.update(zip(fresh, runs))
+        return [self.seen[key] for key in keys]
+
+    def weighed(self, computed):
+        pieces = [np.nan_to_num((values - curve.values) / curve.sigma) for curve, values in zip(self.model.curves, computed)]
+        return np.concatenate(pieces)
+
+    def residuals(self, point):
+        return self.weighed(self.computed([point])[0])
+
+    def jacobian(self, point):
+        steps = DIFFERENCE * np.eye(len(point))
+        points = [point + sign * step for step in steps for sign in (1, -1)]
+        found = [self.weighed(computed) for computed in self.computed(points)]
+        return np.column_stack([(found[2 * k] - found[2 * k + 1]) / (2 * DIFFERENCE) for k in range(len(point))])
+
+    def solve(self, point):
+        from scipy import optimize
+
+        reach = np.log(REACH)
+        return optimize.least_squares(
+            self.residuals, point, self.jacobian, bounds=(-reach, reach), xtol=2e-3, ftol=1e-5, gtol=1e-10, max_nfev=25
+        )
+
+    def settle(self, found):
+        """Looks past the dips that ringing and adaptive steps leave in the sum of squares: along the axes of the valley."""
+        for _ in range(ROUNDS):
+            _, axes = np.linalg.eigh(found.jac.T @ found.jac)
+            points = [found.x + reach * sign * axis for axis in axes.T for reach in LOOKS for sign in (1, -1)]
+            points = [np.clip(point, -np.log(REACH), np.log(REACH)) for point in points]
+            costs = [0.5 * np.sum(self.weighed(computed) ** 2) for computed in self.computed(points)]
+            best = int(np.argmin(costs))
+            if costs[best] > (1.0 - 1e-3) * found.cost:
+                break
+            found = self.solve(points[best])
+        return found
+
+
+def calibrate(model, starts, threads):
+    """The solution, and standard deviations and correlations of the logarithms."""
+    fit = Fit(model, starts, threads)
+    start = fit.computed([np.zeros(len(starts))])[0]
+    check_levels(model.curves, start)
+    for curve in model.curves:
+        curve.sigma = np.std(curve.values) or 1.0
+    found = fit.settle(fit.solve(np.zeros(len(starts))))
+    if len(model.curves) > 1:
+        # Each curve counts by its own noise, which is known once it has been fitted.
+        for curve, values in zip(model.curves, fit.computed([found.x])[0]):
+            curve.sigma = max(rms(values - curve.values), 1e-9 * curve.sigma)
+        found = fit.settle(fit.solve(found.x))
+    freedom = np.count_nonzero(found.fun) - len(starts)
+    jacobian = fit.jacobian(found.x)
+    covariance = np.linalg.pinv(jacobian.T @ jacobian) * np.sum(found.fun**2) / freedom
+    deviation = np.sqrt(np.diag(covariance))
+    blind = np.linalg.norm(jacobian, axis=0) < 1e-9
+    deviation[blind] = np.inf
+    with np.errstate(invalid="ignore"):
+        correlation = covariance / np.outer(deviation, deviation)
+    return found, deviation, correlation, freedom, fit.computed([found.x])[0]
+
+
+def rms(residual):
+    return float(np.sqrt(np.nanmean(residual**2)))
+
+
+def autocorrelation(residual):
+    residual = residual[np.isfinite(residual)]
+    residual = residual - np.mean(residual)
+    power = np.sum(residual**2)
+    return float(np.sum(residual[1:] * residual[:-1]) / power) if power > 0.0 else 0.0
+
+
+def warnings_of(names, found, deviation, correlation, curves, computed):
+    for k, name in enumerate(names):
+        if not deviation[k] < 0.5:
+            yield f"{name} hardly shows in what was measured: measure something else, or leave it out"
+        elif abs(found.x[k]) > 0.999 * np.log(REACH):
+            yield f"{name} went as far from its start as it may: give another start"
+        for other in range(k):
+            if abs(correlation[k, other]) > CORRELATED:
+                yield f"{names[other]} and {name} cannot be told apart (correlation {correlation[k, other]:.2f}): fit one of them"
+    for curve, values in zip(curves, computed):
+        if (along := autocorrelation(curve.values - values)) > AUTOCORRELATED:
+            yield f"what is left of {curve.column} is no noise (autocorrelation {along:.2f}): the scene differs from the machine in something else, and the intervals are too narrow"
+    if not found.success:
+        yield "the search ended before it converged; start again from these values"
+
+
+def draw(path, curves, computed):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from runs import COLOURS, STYLE
+
+    plt.rcParams.update(STYLE)
+    figure, axes = plt.subplots(2, len(curves), figsize=(5.2 * len(curves) + 1, 4.6), squeeze=False, sharex="col", layout="constrained", height_ratios=[2, 1])
+    for (above, below), curve, values in zip(axes.T, curves, computed):
+        turns = curve.angle / (2.0 * np.pi)
+        above.plot(turns, curve.values / curve.unit, ".", color=COLOURS[0], markersize=2.5, label="measured")
+        above.plot(turns, values / curve.unit, color=COLOURS[3], linewidth=1.1, label="fitted")
+        above.set_ylabel(curve.column)
+        above.legend(frameon=False, fontsize=8)
+        below.axhline(0.0, color="#5b616b", linewidth=0.7)
+        below.plot(turns, (curve.values - values) / curve.unit, ".", color=COLOURS[0], markersize=2.5)
+        below.set_ylabel("measured - fitted")
+        below.set_xlabel("turns of the spindle")
+    figure.savefig(path)
+    plt.close(figure)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", help="scene file, or the name of a packed scene")
+    parser.add_argument("--measured", action="append", required=True, type=Path, metavar="FILE.csv", help="may be given several times")
+    parser.add_argument("--fit", action="append", required=True, metavar="NAME[=START]", help="parameter, in SI; may be given several times")
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="as for coilwind run")
+    parser.add_argument("--out", type=Path, default=Path("calibration"), metavar="DIR", help="where results go (default: calibration)")
+    parser.add_argument("--confidence", type=float, default=0.95, metavar="P", help="of the intervals (default: 0.95)")
+    parser.add_argument("--threads", type=int, default=os.cpu_count(), metavar="N", help="runs at a time (default: all cores)")
+    parser.add_argument("--command", default=os.environ.get("COILWIND_COMMAND") or str(ROOT / "target/release/coilwind"), help=argparse.SUPPRESS)
+    args = parser.parse_args()
+    try:
+        run(args)
+    except Mistake as mistake:
+        sys.exit(f"calibrate.py: {mistake}")
+
+
+def starts_of(model, wanted):
+    """Starting values: those given, else those of the scene."""
+    names, starts, scene = [], [], None
+    for text in wanted:
+        name, _, value = text.partition("=")
+        if name not in model.table:
+            raise Mistake(f"--fit {name}: there is no such parameter; `coilwind variables` lists them, without units in their names")
+        if not value:
+            scene = scene or model.settings()
+            value = scene
+            for key in name.split("."):
+                value = value.get(key, {}) if isinstance(value, dict) else {}
+            value = value if value != {} else model.table[name]["start"]
+        try:
+            start = float(value)
+        except (TypeError, ValueError):
+            raise Mistake(f"--fit {text}: {value} is not a number") from None
+        if not start > 0.0:
+            raise Mistake(f"--fit {name}: it starts from {start:g}; give a start above zero: --fit {name}=VALUE")
+        names.append(name)
+        starts.append(start)
+    return names, starts
+
+
+def run(args):
+    if not Path(args.command).is_file():
+        raise Mistake(f"{args.command} is missing; build it with cargo build --release")
+    if not 0.5 <= args.confidence < 1.0:
+        raise Mistake(f"--confidence {args.confidence:g} has to be at least 0.5 and below 1")
+    curves = [curve for path in args.measured for curve in read_curves(path)]
+    points = sum(curve.angle.size for curve in curves)
+    if points <= len(args.fit):
+        raise Mistake(f"{points} measured values are too few for {len(args.fit)} parameters")
+    with tempfile.TemporaryDirectory() as folder:
+        model = Model(args.command, args.scene, args.set, [], curves, folder)
+        model.names, starts = starts_of(model, args.fit)
+        found, deviation, correlation, freedom, computed = calibrate(model, starts, args.threads)
+    best = np.array(starts) * np.exp(found.x)
+    from scipy import stats
+
+    width = stats.t.ppf(0.5 + 0.5 * args.confidence, freedom) * deviation
+    with np.errstate(over="ignore"):
+        low, high = best * np.exp(-width), best * np.exp(width)
+    told = list(warnings_of(model.names, found, deviation, correlation, curves, computed))
+
+    args.out.mkdir(parents=True, exist_ok=True)
+    finite = lambda value: float(value) if np.isfinite(value) else None
+    result = {
+        "scene": args.scene, "runs": model.runs, "confidence": args.confidence, "warnings": told,
+        "parameters": {
+            name: {"start": start, "value": float(value), "low": finite(a), "high": finite(b)}
+            for name, start, value, a, b in zip(model.names, starts, best, low, high)
+        },
+        "correlation": [[finite(cell) for cell in row] for row in correlation],
+        "curves": {
+            curve.column: {"rms": rms(curve.values - values) / curve.unit, "autocorrelation": autocorrelation(curve.values - values)}
+            for curve, values in zip(curves, computed)
+        },
+    }
+    (args.out / "calibration.json").write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
+    with open(args.out / "residuals.csv", "w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["column", "angle_rad", "measured", "fitted"])
+        for curve, values in zip(curves, computed):
+            writer.writerows(zip([curve.column] * values.size, curve.angle, curve.values / curve.unit, values / curve.unit))
+    draw(args.out / "residuals.png", curves, computed)
+
+    print(f"{'parameter':32} {'start':>11} {'fitted':>11}   {100 * args.confidence:g} % interval")
+    for name, start, value, a, b in zip(model.names, starts, best, low, high):
+        print(f"{name:32} {start:11.5g} {value:11.5g}   {a:.5g} to {b:.5g}")
+    for curve, values in zip(curves, computed):
+        print(f"{curve.column}: rms {rms(curve.values - values) / curve.unit:.3g} over {values.size} points")
+    for sentence in told:
+        print(f"warning: {sentence}")
+    settings = " ".join(f"--set {name}={value:.6g}" for name, value in zip(model.names, best))
+    print(f"{model.runs} runs; residuals: {args.out / 'residuals.png'}\nwind with: {settings}")
+
+
+if __name__ == "__main__":
+    main()

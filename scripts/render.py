@@ -1,0 +1,207 @@
+#!/usr/bin/env python3
+"""Pictures and films of a run, from the files in its folder.
+
+    render.py DIR                                     DIR/render.png: the coil at the end
+    render.py DIR --colour layer --from x             coloured by layer, seen along x
+    render.py DIR --film FILM.mp4                     a film of the frames (coilwind run --frames N); .gif works too
+
+The Python is that of `scripts/venv.sh render`. The camera stands so that the windings fill the picture. Of a core with
+flanges it shows the part between them; --flanges shows it whole.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+import numpy as np
+import pyvista as pv
+
+# Columns that colour the wire: array, factor to the unit, title.
+COLOURS = {
+    "tension": ("tension", 1.0, "tension (N)"),
+    "plastic_strain": ("plastic_strain", 100.0, "plastic strain (%)"),
+    "gap": ("gap", 1e6, "gap (um)"),
+    "height": ("height", 1e3, "height over the core (mm)"),
+    "bulge": ("bulge", 1e3, "bulge (mm)"),
+    "layer": ("layer", 1.0, "layer"),
+    "turn": ("turn", 1.0, "turn"),
+    "none": (None, 1.0, ""),
+}
+# The axis of the core is y.
+VIEWS = {"corner": (1.0, 0.55, 0.8), "x": (1.0, 0.0, 0.0), "z": (0.0, 0.0, 1.0), "axis": (0.001, 1.0, 0.0)}
+COPPER, CORE, PAPER = "#c87941", "#9aa3ad", "white"
+SIDES = 20
+
+
+class Mistake(Exception):
+    """What the user can mend, in a line."""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("run", type=Path, metavar="DIR", help="folder of a run")
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE.png", help="picture (default: DIR/render.png)")
+    parser.add_argument("--film", type=Path, metavar="FILE", help="film of the frames, .mp4 or .gif, instead of a picture")
+    parser.add_argument("--colour", choices=COLOURS, default="tension", help="what colours the wire (default: tension)")
+    parser.add_argument("--from", dest="view", choices=VIEWS, default="corner", help="where the camera stands (default: corner)")
+    parser.add_argument("--flanges", action="store_true", help="show the flanges of the core")
+    parser.add_argument("--no-core", action="store_true", help="show the wire alone")
+    parser.add_argument("--size", default="1280x960", metavar="WxH", help="pixels (default: 1280x960)")
+    parser.add_argument("--rate", type=float, default=20.0, metavar="FPS", help="frames a second of the film (default: 20)")
+    args = parser.parse_args()
+    try:
+        print(f"wrote {film(args) if args.film else picture(args)}")
+    except Mistake as mistake:
+        sys.exit(f"render.py: {mistake}")
+
+
+def size_of(text):
+    try:
+        width, height = (int(number) for number in text.split("x"))
+    except ValueError:
+        raise Mistake(f"--size {text} is not WIDTHxHEIGHT, such as 1280x960") from None
+    # Encoders of films want even numbers.
+    if min(width, height) < 16 or max(width, height) > 8192 or width % 2 or height % 2:
+        raise Mistake(f"--size {text}: both have to be even, from 16 to 8192")
+    return width, height
+
+
+def read(path, what):
+    if not path.is_file():
+        raise Mistake(f"{path} is missing; {what}")
+    try:
+        return pv.read(path)
+    except Exception as error:
+        raise Mistake(f"{path} cannot be read ({error}); wind the run again") from None
+
+
+def picture(args):
+    coil = Coil(args)
+    plotter = coil.stage()
+    plotter.add_mesh(coil.tube(coil.end), reset_camera=False, **coil.look)
+    output = args.output or args.run / "render.png"
+    plotter.screenshot(output)
+    return output
+
+
+def film(args):
+    if args.film.suffix not in (".mp4", ".gif"):
+        raise Mistake(f"--film {args.film}: the ending has to be .mp4 or .gif")
+    series = args.run / "frames.pvd"
+    if not series.is_file():
+        raise Mistake(f"{series} is missing; wind the run with --frames N, such as --frames 100")
+    coil = Coil(args)
+    frames = pv.get_reader(series)
+    plotter = coil.stage()
+    if args.film.suffix == ".mp4":
+        plotter.open_movie(args.film, framerate=args.rate, quality=7)
+    else:
+        plotter.open_gif(args.film, fps=args.rate, loop=0)
+    for time in frames.time_values:
+        frames.set_active_time_value(time)
+        wire = frames.read()[0]
+        if wire.n_points < 2:
+            continue
+        plotter.add_mesh(coil.tube(wire), name="wire", reset_camera=False, **coil.look)
+        plotter.add_text(f"{1e3 * time:.1f} ms", name="time", font_size=12, color="black", position="upper_left")
+        plotter.write_frame()
+    plotter.close()
+    return args.film
+
+
+class Coil:
+    """What does not change in a film: core, camera and colours."""
+
+    def __init__(self, args):
+        self.args, self.size = args, size_of(args.size)
+        if not args.run.is_dir():
+            raise Mistake(f"{args.run} is no folder; name that of a run (coilwind run SCENE --out DIR)")
+        surface = read(args.run / "coil.vtp", "wind the run without --no-geometry")
+        if surface.n_points == 0:
+            raise Mistake(f"{args.run / 'coil.vtp'} holds no wire; wind for longer")
+        self.end = centreline(surface)
+        self.radius = float(np.linalg.norm(surface.points[0] - self.end.points[0]))
+        # Wire at rest is the coil; the rest leads to the nozzle.
+        self.rest = self.end["frozen"] == 1
+        if self.rest.sum() < 2:
+            self.rest = np.full(self.end.n_points, True)
+        self.look = {"smooth_shading": True, "specular": 0.3, "specular_power": 25, **self.colours()}
+
+    def colours(self):
+        array, factor, title = COLOURS[self.args.colour]
+        if array is None:
+            return {"color": COPPER}
+        values = factor * self.end[array][self.rest].astype(float)
+        values = values[np.isfinite(values)]
+        if values.size == 0:
+            raise Mistake(f"no wire of {self.args.run} has a {self.args.colour} yet; choose --colour tension")
+        counted = array in ("layer", "turn")
+        # One place that stands out must not take the colours from all others.
+        low, high = (values.min(), values.max()) if counted else np.percentile(values, [1, 99])
+        high = max(high, low + (1.0 if counted else 1e-9))
+        bar = {
+            "title": title, "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.2, "width": 0.06, "height": 0.6,
+            "title_font_size": 20, "label_font_size": 18, "fmt": "%.0f" if counted else "%.3g",
+            "n_labels": int(min(high - low + 1, 6)) if counted else 5,
+        }
+        return {"scalars": "shown", "clim": (low, high), "cmap": "viridis", "nan_color": "#c9c9c9", "scalar_bar_args": bar}
+
+    def tube(self, wire):
+        """The surface of a wire, with the numbers that colour it."""
+        array, factor, _ = COLOURS[self.args.colour]
+        line = pv.lines_from_points(wire.points)
+        if array is not None:
+            line["shown"] = factor * wire[array].astype(float)
+        return line.tube(radius=self.radius, n_sides=SIDES)
+
+    def stage(self):
+        """The core, seen such that the windings of the end fill the picture."""
+        plotter = pv.Plotter(off_screen=True, window_size=self.size, lighting="three lights")
+        plotter.set_background(PAPER)
+        plotter.enable_anti_aliasing("ssaa")
+        points = self.end.points[self.rest]
+        low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
+        core = None if self.args.no_core else read(self.args.run / "core.vtp", "wind the run without --no-geometry")
+        if core is not None:
+            if not self.args.flanges:
+                core = between(core, low[1] + 0.3 * self.radius, high[1] - 0.3 * self.radius)
+            plotter.add_mesh(core, color=CORE, specular=0.1, reset_camera=False)
+        middle, reach = 0.5 * (low + high), 0.5 * np.linalg.norm(high - low)
+        if core is not None and self.args.flanges:
+            reach = max(reach, np.linalg.norm(core.points - middle, axis=1).max())
+        towards = np.array(VIEWS[self.args.view]) / np.linalg.norm(VIEWS[self.args.view])
+        plotter.camera.view_angle = 30.0
+        distance = 1.05 * reach / np.sin(np.radians(15.0))
+        plotter.camera.focal_point = middle
+        plotter.camera.position = middle + distance * towards
+        # The axis of the core stands upright, but where the camera looks along it.
+        plotter.camera.up = (0.0, 0.0, 1.0) if self.args.view == "axis" else (0.0, 1.0, 0.0)
+        plotter.camera.clipping_range = (0.05 * distance, 20.0 * distance)
+        return plotter
+
+
+def centreline(surface):
+    """The middle of each ring of a wire's surface, with what is known of the nodes."""
+    sides = int(np.argmax(surface["arc"] != surface["arc"][0]))
+    line = pv.PolyData(surface.points.reshape(-1, sides, 3).mean(axis=1))
+    for name in surface.point_data.keys():
+        if name != "Normals":
+            line[name] = surface[name][::sides]
+    return line
+
+
+def between(core, low, high):
+    """The part of a core from one height along its axis to another, closed where it is cut."""
+    bottom, top = core.points[:, 1].min(), core.points[:, 1].max()
+    for height, normal, cuts in ((low, (0, 1, 0), low > bottom), (high, (0, -1, 0), high < top)):
+        if not cuts:
+            continue
+        try:
+            core = core.clip_closed_surface(normal=normal, origin=(0, height, 0))
+        except ValueError:  # a mesh with holes
+            core = core.clip(normal=normal, origin=(0, height, 0), invert=False)
+    return core
+
+
+if __name__ == "__main__":
+    main()

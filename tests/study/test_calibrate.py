@@ -1,0 +1,117 @@
+"""scripts/calibrate.py finds the parameters that a measurement was made with, and tells what is wrong with a measurement."""
+
+import json
+import subprocess
+
+import pytest
+
+SCENE = """
+[core]
+width_x_mm = 14
+height_z_mm = 20
+corner_radius_mm = 3
+[nozzle]
+distance_mm = 50
+[tensioner]
+line_damping_ratio = 0.2
+[spindle]
+speed = 200
+turns = 1.4
+[traverse]
+per_turn_mm = 1.5
+"""
+# The machine, far from where the fit starts: 1 g, 0.2, 100 MPa, 220 MPa, 0.1.
+TRUTH = {
+    "tensioner.mass": 1.6e-3,
+    "tensioner.line_damping_ratio": 0.26,
+    "wire.yield_stress": 1.25e8,
+    "wire.flow_stress": 2.6e8,
+    "nozzle.exit_friction": 0.14,
+}
+NOISE = {"tension_N": 0.05, "height_mm": 0.003}
+
+
+@pytest.fixture(scope="module")
+def scene(tmp_path_factory):
+    path = tmp_path_factory.mktemp("scene") / "machine.toml"
+    path.write_text(SCENE, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def measured(scene, command, script):
+    run, path = scene.parent / "run", scene.parent / "measured.csv"
+    sets = [word for name, value in TRUTH.items() for word in ("--set", f"{name}={value}")]
+    subprocess.run([command, "run", scene, *sets, "--no-geometry", "--no-report", "--quiet", "--out", run], check=True)
+    noise = [word for column, sigma in NOISE.items() for word in ("--noise", f"{column}={sigma}")]
+    code, said = script("scripts/measure.py", run, *noise, "-o", path)
+    assert code == 0, said
+    return path
+
+
+@pytest.fixture(scope="module")
+def calibrate(scene, command, script):
+    def run(measured, *words):
+        return script("scripts/calibrate.py", scene, "--measured", measured, "--command", command, *words)
+
+    return run
+
+
+def test_parameters_of_a_noisy_measurement_are_recovered(calibrate, measured, tmp_path):
+    names = [name if name != "nozzle.exit_friction" else f"{name}=0.1" for name in TRUTH]
+    code, said = calibrate(measured, *(word for name in names for word in ("--fit", name)), "--out", tmp_path)
+    assert code == 0, said
+    result = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
+    for name, truth in TRUTH.items():
+        got = result["parameters"][name]
+        assert abs(got["value"] / truth - 1.0) < 0.05, f"{name}\n{said}"
+        # Four standard deviations of a fit with the noise as it is.
+        assert got["low"] < got["value"] < got["high"]
+        assert abs(got["value"] - truth) < 2.0 * (got["high"] - got["low"]), f"{name}\n{said}"
+        assert got["high"] / got["low"] < 1.2, f"{name}\n{said}"
+    for column, sigma in NOISE.items():
+        assert result["curves"][column]["rms"] == pytest.approx(sigma, rel=0.15)
+    assert result["warnings"] == []
+    assert (tmp_path / "residuals.png").stat().st_size > 10_000
+    assert (tmp_path / "residuals.csv").read_text(encoding="utf-8").startswith("column,angle_rad,measured,fitted\n")
+
+
+def test_what_does_not_show_is_told(calibrate, measured, tmp_path):
+    lines = measured.read_text(encoding="utf-8").splitlines(keepends=True)
+    short = tmp_path / "short.csv"
+    tension = (",".join(line.rstrip().split(",")[:2]) + "\n" for line in lines[:100])
+    short.write_text("".join(tension), encoding="utf-8")
+    words = ["--set", "spindle.turns=0.65", "--fit", "friction.slip_speed", "--out", tmp_path]
+    code, said = calibrate(short, *words)
+    assert code == 0, said
+    assert "friction.slip_speed hardly shows in what was measured" in said
+    assert "what is left of tension_N is no noise" in said
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "complaint"),
+    [
+        ("turns,tension_lb\n0.3,1\n0.4,1\n", [], "has the unit lb; tension takes N, mN, cN"),
+        ("turns,tension\n0.3,1\n0.4,1\n", [], "column tension is none of tension_N, coil_width_m, height_m, resistance_ohm"),
+        ("time,tension_N\n0.3,1\n0.4,1\n", [], "has 0 columns of the angle; give one, named angle_deg, angle_rad, turns"),
+        ("turns,tension_N\n0.3,15\n0.4\n", [], ":3 has 1 cells, the header has 2"),
+        ("turns,tension_N\n0.3,15\n0.4,much\n", [], ":3: tension_N is 'much', which is not a number"),
+        ("turns,tension_N\n0.4,15\n0.3,15\n", [], "turns has to rise from row to row"),
+        ("turns,tension_N\n", [], "holds no measurement"),
+        ("turns,tension_N\n0.3,15\n", [], "1 measured values are too few for 1 parameters"),
+        ("turns,tension_N\n0.3,15000\n0.4,15000\n", [], "tension_N is 1.01e+03 times what the scene gives (14.8)"),
+        ("turns,tension_N\n0.3,15\n2.5,15\n", [], "from 0.30 to 2.50 turns, the run goes from 0.00 to 1.40; wind more with --set spindle.turns=N"),
+        ("turns,height_mm\n0.3,0.1\n1.38,0.1\n2,0.1\n", [], "settled wire of the run goes from"),
+        ("turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "tensioner.mas"], "--fit tensioner.mas: there is no such parameter"),
+        ("turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "nozzle.exit_friction"], "it starts from 0; give a start above zero"),
+        ("turns,tension_N\n0.3,15\n0.4,15\n", ["--set", "wire.diametr=1"], "wire.diametr"),
+    ],
+)
+def test_a_wrong_measurement_is_told_in_a_line(text, words, complaint, calibrate, tmp_path):
+    path = tmp_path / "measured.csv"
+    path.write_text(text, encoding="utf-8")
+    code, said = calibrate(path, "--fit", "tensioner.mass", *words, "--out", tmp_path / "out")
+    assert code == 1
+    assert complaint in said, said
+    assert len(said.splitlines()) == 1, said
+    assert not (tmp_path / "out").exists()

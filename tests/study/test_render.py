@@ -1,0 +1,81 @@
+"""scripts/render.py draws the wire that a run has, and frames are read by VTK's own reader."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+RENDER = os.environ.get("COILWIND_RENDER_PYTHON")
+pytestmark = pytest.mark.skipif(not RENDER, reason="COILWIND_RENDER_PYTHON does not name the Python of scripts/venv.sh render")
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory, command):
+    out = tmp_path_factory.mktemp("film") / "run"
+    words = ["run", "fig8", "--set", "spindle.speed=100", "--set", "spindle.turns=1", "--frames", "3", "--no-report", "--quiet"]
+    subprocess.run([command, *words, "--out", out], check=True)
+    return out
+
+
+def render_python(text):
+    return subprocess.run([RENDER, "-c", text], capture_output=True, text=True, check=True).stdout
+
+
+def test_the_last_frame_is_the_coil(run):
+    said = render_python(f"""
+import numpy as np, pyvista as pv
+frames = pv.get_reader(r"{run / 'frames.pvd'}")
+sizes = []
+for time in frames.time_values:
+    frames.set_active_time_value(time)
+    wire = frames.read()[0]
+    sizes.append(wire.n_points)
+coil = pv.read(r"{run / 'coil.vtp'}")
+assert len(sizes) == 3 and sizes == sorted(sizes), sizes
+assert wire.n_lines == 1 and 16 * wire.n_points == coil.n_points
+middle = coil.points.reshape(-1, 16, 3).mean(axis=1)
+assert np.abs(middle - wire.points).max() < 1e-8
+for name in ["tension", "plastic_strain", "layer", "turn", "defect", "frozen", "arc"]:
+    np.testing.assert_allclose(wire[name], coil[name][::16], rtol=1e-6, atol=1e-7, err_msg=name)
+assert wire.field_data["TimeValue"][0] == frames.time_values[-1]
+assert abs(wire.field_data["WireRadius"][0] - 0.35e-3) < 1e-12
+print("same")
+""")
+    assert said == "same\n"
+
+
+def test_a_picture_shows_wire_and_core(run, script, tmp_path):
+    picture = tmp_path / "x.png"
+    code, said = script("scripts/render.py", run, "-o", picture, "--colour", "none", "--size", "320x240", python=RENDER)
+    assert code == 0, said
+    copper, grey, paper = map(float, render_python(f"""
+import numpy as np, pyvista as pv
+pixels = pv.read(r"{picture}").point_data.active_scalars[:, :3].astype(int)
+red, _, blue = pixels.T
+print(np.mean(red > blue + 40), np.mean((abs(red - blue) < 40) & (red < 235)), np.mean(pixels.min(axis=1) > 250))
+""").split())
+    assert copper > 0.01 and grey > 0.05 and paper > 0.2, (copper, grey, paper)
+
+
+def test_a_film_has_the_frames(run, script, tmp_path):
+    film = tmp_path / "x.gif"
+    code, said = script("scripts/render.py", run, "--film", film, "--size", "160x120", python=RENDER)
+    assert code == 0, said
+    assert render_python(f"import imageio; print(len(imageio.mimread(r'{film}')))") == "3\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (["{folder}/none"], "is no folder"),
+        (["{folder}"], "coil.vtp is missing; wind the run without --no-geometry"),
+        (["{folder}", "--film", "film.mp4"], "frames.pvd is missing; wind the run with --frames N"),
+        (["{folder}", "--film", "film.avi"], "the ending has to be .mp4 or .gif"),
+        (["{folder}", "--size", "big"], "--size big is not WIDTHxHEIGHT"),
+    ],
+)
+def test_what_cannot_be_drawn_is_told_in_a_line(words, complaint, script, tmp_path):
+    code, said = script("scripts/render.py", *(word.format(folder=tmp_path) for word in words), python=RENDER)
+    assert code == 1
+    assert complaint in said and "Traceback" not in said
