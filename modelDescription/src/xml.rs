@@ -19,6 +19,9 @@ pub(crate) const MODEL_IDENTIFIER: &str = "CoilWinding";
 /// End of the default experiment, s: an importer that only simulates sees the demonstration to its end.
 pub const DEFAULT_STOP_TIME: f64 = 0.2;
 
+/// Tolerance of the default experiment, the one that most importers have: with it the solver keeps `solver.tolerance`.
+pub const DEFAULT_TOLERANCE: f64 = 1e-4;
+
 /// What the FMU can do, as attributes of `CoSimulation`.
 ///
 /// They announce what the C boundary does. A flag becomes true in the same commit as the code
@@ -73,12 +76,13 @@ pub(crate) fn render(guid: &str) -> Result<String, DescriptionError> {
             units::write(writer)?;
             write_categories(writer)?;
             // A millisecond is at most 0.1 rad of the demonstration.
-            let stop = number(DEFAULT_STOP_TIME);
+            let (stop, tolerance) = (number(DEFAULT_STOP_TIME), number(DEFAULT_TOLERANCE));
             writer
                 .create_element("DefaultExperiment")
                 .with_attributes([
                     ("startTime", "0"),
                     ("stopTime", stop.as_str()),
+                    ("tolerance", tolerance.as_str()),
                     ("stepSize", "0.001"),
                 ])
                 .write_empty()?;
@@ -161,7 +165,11 @@ fn write_type(
     if variable.kind == Kind::Real {
         attributes.extend(variable.nominal.map(|nominal| ("nominal", number(nominal))));
     }
-    attributes.extend(variable.start(settings).map(|value| ("start", text(value))));
+    attributes.extend(
+        variable
+            .start_in_fmu(settings)
+            .map(|value| ("start", text(value))),
+    );
     writer
         .create_element(variable.kind.as_str())
         .with_attributes(attributes.iter().map(|(key, value)| (*key, value.as_str())))

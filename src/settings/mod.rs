@@ -13,6 +13,9 @@ use crate::measure::DefectLimits;
 use crate::signals::Inputs;
 use std::collections::BTreeMap;
 
+/// Choice of `traverse.mode` in which the nozzle follows its input.
+pub const BY_INPUT: &str = "by-input";
+
 /// The leaves of a scene, in SI units. A rigidity, limit or length of 0 is derived when the
 /// [`Scene`](crate::scene::Scene) is built; `description` in the variable table says from what.
 ///
@@ -161,6 +164,12 @@ impl SceneSettings {
             nozzle_position: self.nozzle.y_start + self.traverse.lead,
             tension_setpoint: self.tensioner.tension,
         }
+    }
+
+    /// Whether the nozzle of a run that is driven by inputs follows the law of `traverse.mode`: where that was set by
+    /// name. A scene file's mode is for runs of its own motion.
+    pub fn nozzle_follows_law(&self) -> bool {
+        self.traverse.mode != BY_INPUT && self.origin("traverse.mode") == Origin::Set
     }
 
     /// Where the value of a leaf came from, by the name of its variable.

@@ -67,10 +67,10 @@ pub struct FlangeSettings {
     pub edge_radius: f64,
 }
 
-/// Traverse motion profile of a native run: nozzle y over the core angle.
+/// Law of the traverse: nozzle y over the core angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traverse {
-    /// how the nozzle moves (one of `by-angle`, `orthocyclic`, `helical`, `table`)
+    /// how the nozzle moves (one of `by-input`, `by-angle`, `orthocyclic`, `helical`, `table`)
     pub mode: String,
     /// by-angle: nozzle travel per turn of the spindle, m (sign: direction along y)
     pub per_turn: f64,

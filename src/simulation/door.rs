@@ -27,7 +27,8 @@ impl Simulation {
 
     /// Advances by `dt`, s, with inputs that start at `inputs` and change evenly, at `rates` per s.
     ///
-    /// The nozzle moves evenly from where it is to where its input is at the end. Steps below a nanosecond only
+    /// The nozzle moves evenly from where it is to where its input is at the end, or with the core by the scene's law
+    /// ([`Self::starting_by_law`]). Steps below a nanosecond only
     /// add up until they are worth solving for. After an error see [`Self::advance`].
     pub fn advance_ramped(
         &mut self,
@@ -69,7 +70,10 @@ impl Simulation {
         let gone = match &source {
             Source::Inputs { inputs, rates } => {
                 let drive = self.drive_of(*inputs, rates, [dt, span], owed);
-                self.follow(&drive)
+                match self.run.nozzle_by_law {
+                    true => self.follow_by_law(&drive),
+                    false => self.follow(&drive),
+                }
             }
             Source::Profile => {
                 let start = self.run.time - owed;
@@ -89,7 +93,7 @@ impl Simulation {
             let end = inputs.after(rates, dt);
             self.sys.state.spindle.speed = end.spindle_speed;
             self.sys.state.set_tension = end.tension_setpoint;
-            self.sys.state.support[1].point.y = end.nozzle_position;
+            self.sys.state.support[1].point.y = self.nozzle_at_end(end.nozzle_position);
         }
         self.pass_time(dt);
         self.finish();
@@ -98,7 +102,7 @@ impl Simulation {
     }
 
     /// Goes through the interval of one drive.
-    fn follow(&mut self, drive: &Drive) -> Result<(), SimError> {
+    pub(super) fn follow(&mut self, drive: &Drive) -> Result<(), SimError> {
         self.sys.begin_drive(drive);
         self.through(drive)
     }
@@ -130,7 +134,7 @@ impl Simulation {
                 let end = inputs.after(rates, dt);
                 *rates != Inputs::HELD
                     || inputs.spindle_speed != 0.0
-                    || end.nozzle_position - self.sys.state.support[1].point.y != 0.0
+                    || self.nozzle_at_end(end.nozzle_position) != self.sys.state.support[1].point.y
                     || inputs.tension_setpoint != self.sys.state.set_tension
             }
             Source::Profile => true,

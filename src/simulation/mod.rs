@@ -13,6 +13,7 @@ mod io;
 mod judgement;
 mod layon;
 mod motion_profile;
+mod nozzle_by_law;
 mod nozzle_way;
 mod outputs;
 mod product;

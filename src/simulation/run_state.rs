@@ -47,6 +47,8 @@ pub(super) struct RunState {
     /// farthest that the spindle has been from where it started, rad
     pub(super) farthest: f64,
     pub(super) traverse: Traverse,
+    /// whether the nozzle follows the scene's law and not its input
+    pub(super) nozzle_by_law: bool,
     /// tension that the quasi-static height is for, N
     pub(super) yardstick_tension: f64,
 }

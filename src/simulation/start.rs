@@ -271,6 +271,7 @@ impl Simulation {
             paid0: sys.state.feed.map_or(0.0, |feed| feed.paid),
             farthest: 0.0,
             traverse: Traverse::new(inputs.nozzle_position),
+            nozzle_by_law: false,
             yardstick_tension: yardstick_tension(scene, &inputs),
         };
         let mut sim = Self {
@@ -296,7 +297,10 @@ impl Simulation {
 
     /// Starts over with other inputs; only before the first step.
     pub fn set_start(&mut self, inputs: Inputs) -> Result<(), SimError> {
-        *self = Self::starting_with(&self.scene, inputs)?;
+        *self = match self.run.nozzle_by_law {
+            true => Self::starting_by_law(&self.scene, inputs)?,
+            false => Self::starting_with(&self.scene, inputs)?,
+        };
         Ok(())
     }
 }

@@ -20,6 +20,7 @@ macro_rules! row {
             max: None,
             nominal: None,
             choices: &[],
+            fmu_start: None,
             native_only: false,
             description: $description,
             access: $access,
@@ -194,11 +195,6 @@ macro_rules! native {
     ($($cell:tt)*) => { Variable { native_only: true, ..fixed!($($cell)*) } };
 }
 
-/// Parameter of type String that only the native command reads.
-macro_rules! native_text {
-    ($($cell:tt)*) => { Variable { native_only: true, ..text!($($cell)*) } };
-}
-
 /// Parameter of type Boolean.
 macro_rules! switch {
     ($reference:literal, $name:literal, $section:ident . $field:ident, $description:literal) => {
@@ -222,6 +218,11 @@ macro_rules! text {
             ..row!($reference, $name, String, Parameter, Fixed, leaf!(String, $($path)*), $description)
         }
     };
+}
+
+/// Parameter of type String whose start value in the FMU is not the scene's.
+macro_rules! fmu_text {
+    ($start:literal, $($cell:tt)*) => { Variable { fmu_start: Some($start), ..text!($($cell)*) } };
 }
 
 macro_rules! table {
@@ -330,18 +331,18 @@ table! {
     native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "turns over which the speed rises, at constant acceleration");
     native(1502, "spindle.turns", spindle.turns, "1", "", 0.0, 1e5, 1.0, "turns of the spindle until the native programme ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle");
 
-    native(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per turn of the native programme; the sign is its direction along y");
-    native(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
-    native_text(1602, "traverse.mode", (traverse.mode), ["by-angle", "orthocyclic", "helical", "table"], "nozzle travel: even with the core's angle; layers with a straight part and a step in each turn; layers of even travel; from a table");
-    native(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the step to the next turn");
-    native(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: turns that the nozzle stands at the end of a layer");
-    native_text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file");
-    native(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
+    fixed(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per turn; the sign is its direction along y");
+    fixed(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
+    fmu_text("by-input", 1602, "traverse.mode", (traverse.mode), ["by-input", "by-angle", "orthocyclic", "helical", "table"], "nozzle travel: as nozzle_position says; even with the core's angle, as without inputs too; layers with a straight part and a step in each turn; layers of even travel; from a table");
+    fixed(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the step to the next turn");
+    fixed(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: turns that the nozzle stands at the end of a layer");
+    text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file, set in the FMU relative to its resources or as given");
+    fixed(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
 
-    native(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
-    native(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");
-    native_text(1652, "winding.direction", (winding.direction), ["+y", "-y"], "layered traverse modes: direction of the first layer");
-    native(1653, "winding.pitch", winding.pitch, "m", "mm", 0.0, 1.0, 1e-3, "layered traverse modes: distance of neighbouring turns; 0: fills the window, or the wire's diameter without flanges");
+    fixed(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
+    fixed(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");
+    text(1652, "winding.direction", (winding.direction), ["+y", "-y"], "layered traverse modes: direction of the first layer");
+    fixed(1653, "winding.pitch", winding.pitch, "m", "mm", 0.0, 1.0, 1e-3, "layered traverse modes: distance of neighbouring turns; 0: fills the window, or the wire's diameter without flanges");
 
     fixed(1700, "contact.stiffness", contact.stiffness, "N/m2", "", 1e6, 1e13, 1e10, "line load per depth");
     fixed(1701, "contact.restitution", contact.restitution, "1", "", 0.0, 1.0, 1.0, "rebound over impact speed");
