@@ -172,7 +172,7 @@ CELLS = {
     "name": lambda v: f"`{v['name']}`",
     "type": lambda v: v["type"],
     "unit": lambda v: unit(v),
-    "start": lambda v: shown_start(v),
+    "start": lambda v: shown_start(v | {"start": v["fmuStart"] or v["start"]}),
     "range": lambda v: allowed(v),
     "causality, variability": lambda v: f"{v['causality']}, {v['variability']}",
     "meaning": lambda v: v["description"],

@@ -35,6 +35,7 @@ fn inputs(simulation: &Simulation) -> (Inputs, Inputs) {
         // not looked at
         nozzle_position: 1.0,
         tension_setpoint: scene.tensioner.tension,
+        ..Inputs::HELD
     };
     let rates = Inputs {
         spindle_speed: if rises { top / RAMP } else { 0.0 },

@@ -301,30 +301,19 @@ fn inputs_beyond_their_range_are_held() {
     instance.begin_call();
     instance.set(&names, [15.0, 0.0]).expect("allowed");
     assert!(!instance.has_warned());
-    // a derivative that leads beyond the range
-    for (step, rate, end) in [(1e-3, -1e6, 0.0), (0.3e-3, 1e9, 1e4), (0.7e-3, 1e7, 1e4)] {
-        set(&mut instance, "tension_setpoint", 15.0 + end / 7.0);
+    // derivatives that lead beyond the range
+    for (step, rate, end) in [(1e-3, -1e6, 0.0), (0.3e-3, 1e9, 1e4), (0.7e-3, 1e8, 1e4)] {
+        let (mut instance, _) = started(0.0, |i| set(i, "tension_setpoint", 15.3));
         instance
             .set_input_derivatives(&names, &[1, 1], &[rate, 0.0])
             .expect("finite");
-        let run = instance.start().expect("a run");
-        assert_eq!(run.hold_inputs(step).len(), 1);
-        let reached = run.inputs.after(&run.rates, step).tension_setpoint;
-        assert!(
-            (reached - end).abs() < 1e-9 && (0.0..=1e4).contains(&reached),
-            "{reached:e}"
-        );
+        instance.begin_call();
+        instance.do_step(0.0, step).expect("the tension is held");
+        assert!(instance.has_warned());
+        let reached = real(&mut instance, "tension_setpoint");
+        let within = (reached - end).abs() < 1e-9 && (0.0..=1e4).contains(&reached);
+        assert!(within, "{reached:e} for {end}");
     }
-    instance.begin_call();
-    instance
-        .set_input_derivatives(&names, &[1, 1], &[-1e6, 0.0])
-        .expect("finite");
-    set(&mut instance, "tension_setpoint", 15.0);
-    instance
-        .do_step(0.0, 1e-3)
-        .expect("the tension is held at 0");
-    assert!(instance.has_warned());
-    assert_eq!(real(&mut instance, "tension_setpoint"), 0.0);
 }
 
 /// Parameters stay refused: a wire of another diameter than the one asked for is no help.
@@ -363,7 +352,8 @@ fn the_tolerance_of_the_experiment_scales_that_of_the_solver() {
     assert_eq!(solver(Some(DEFAULT_TOLERANCE), &none), (2e-6, 0));
     let (tolerance, told) = solver(Some(5e-4), &none);
     assert!((tolerance - 1e-5).abs() < 1e-18 && told == 1, "{tolerance}");
-    assert_eq!(solver(Some(1e9), &none), (1e-3, 1));
+    // a tenth of the wire's diameter at most
+    assert_eq!(solver(Some(1e9), &none), (0.1 * 0.7e-3, 1));
     // whichever is set first, a parameter overrules the experiment
     let explicit = |i: &mut Instance| set(i, "solver.tolerance", 4e-6);
     assert_eq!(solver(Some(1e-3), &explicit), (4e-6, 0));
@@ -391,10 +381,9 @@ fn the_nozzle_follows_a_law_where_the_importer_asks_for_one() {
         let mode = instance
             .get::<String>(&[reference("traverse.mode")])
             .expect("a mode");
-        let scene = &instance.run.as_ref().expect("a run").simulation;
         (
             mode[0].clone(),
-            scene.inputs().nozzle_position,
+            real(&mut instance, "nozzle_y"),
             warnings(&messages).len(),
         )
     };
@@ -403,7 +392,7 @@ fn the_nozzle_follows_a_law_where_the_importer_asks_for_one() {
     let (mode, at, _) = wound(Some("orthocyclic"));
     assert!(mode == "orthocyclic" && at > -6.3e-3, "{mode} {at}");
     let (_, helical, told) = wound(Some("helical"));
-    assert!(helical > at && told == 1, "{helical} {told}");
+    assert!(helical > at && told >= 1, "{helical} {told}");
 }
 
 #[test]
@@ -420,6 +409,5 @@ fn where_the_nozzle_follows_a_law_nothing_follows_its_input() {
     set(&mut instance, "nozzle_position", 5.0);
     instance.do_step(0.0, 1e-2).expect("a step");
     assert_eq!(slopes(&mut instance), [0.0; 2]);
-    let run = instance.run.as_ref().expect("a run");
-    assert!(run.simulation.inputs().nozzle_position.abs() < 1e-3);
+    assert!(real(&mut instance, "nozzle_y").abs() < 1e-3);
 }

@@ -22,6 +22,9 @@ const TRAVERSE_MODE: &str = "traverse.mode";
 /// Name of the parameter that the experiment's tolerance scales.
 const SOLVER_TOLERANCE: &str = "solver.tolerance";
 
+/// Largest tolerance of the solver in wire diameters; a scene with more is refused.
+const COARSEST: f64 = 0.1;
+
 /// What a saved state holds of parameters: `scene.file`, the scene that it held, and what was set
 /// explicitly, by value reference, and the tolerance of the experiment.
 pub(crate) type SavedParameters = (String, SceneSettings, BTreeMap<u32, Value>, Option<f64>);
@@ -280,10 +283,6 @@ fn laid_over(
     resources: Option<&Path>,
 ) -> Result<SceneSettings, Error> {
     let mut settings = base.clone();
-    if let (Some(tolerance), Some(row)) = (tolerance, by_name(SOLVER_TOLERANCE)) {
-        let scaled = settings.solver.tolerance * (tolerance / DEFAULT_TOLERANCE);
-        settings.solver.tolerance = row.nearest(scaled);
-    }
     for (reference, value) in explicit {
         let reference = *reference;
         let variable = by_reference(reference).ok_or(Error::UnknownReference { reference })?;
@@ -297,6 +296,13 @@ fn laid_over(
             value => value.clone(),
         };
         settings.set(variable.name, value)?;
+    }
+    if let (Some(tolerance), Some(row)) = (tolerance, by_name(SOLVER_TOLERANCE))
+        && !explicit.contains_key(&row.reference)
+    {
+        let scaled = settings.solver.tolerance * (tolerance / DEFAULT_TOLERANCE);
+        let most = COARSEST * settings.wire.diameter;
+        settings.solver.tolerance = row.nearest(scaled.min(most));
     }
     Ok(settings)
 }

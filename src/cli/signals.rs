@@ -264,6 +264,7 @@ mod tests {
         spindle_speed: 0.0,
         nozzle_position: 0.25,
         tension_setpoint: 15.0,
+        ..Inputs::HELD
     };
 
     fn parse(text: &str) -> Signals {

@@ -163,6 +163,7 @@ impl SceneSettings {
             spindle_speed: 0.0,
             nozzle_position: self.nozzle.y_start + self.traverse.lead,
             tension_setpoint: self.tensioner.tension,
+            ..Inputs::HELD
         }
     }
 

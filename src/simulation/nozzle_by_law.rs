@@ -43,16 +43,11 @@ impl Simulation {
         parts.iter().try_for_each(|part| self.follow(part))
     }
 
-    /// Where the nozzle has to be at the end of a step, m, if its input is there at `input`.
-    pub(super) fn nozzle_at_end(&self, input: f64) -> f64 {
-        if !self.run.nozzle_by_law {
-            return input;
-        }
+    /// Where the law has the nozzle along the core axis now, m; where it is, as long as that is as good.
+    pub(super) fn nozzle_by_law(&self) -> f64 {
         let angle = self.sys.state.spindle.angle - self.run.angle0;
-        let (law, is) = (
-            self.scene.nozzle_law.position(angle.abs()),
-            self.sys.state.support[1].point.y,
-        );
+        let law = self.scene.nozzle_law.position(angle.abs());
+        let is = self.sys.state.support[1].point.y;
         let near = AS_GOOD_AS_THERE * self.scene.wire.diameter;
         if (law - is).abs() <= near { is } else { law }
     }
@@ -131,6 +126,7 @@ mod tests {
             speed,
             acceleration,
             nozzle: NozzleDrive::Even(0.0),
+            aside: [0.0; 2],
             tension: 15.0,
             tension_rate: 100.0,
         }

@@ -27,6 +27,12 @@ pub struct Product {
 }
 
 impl Simulation {
+    /// Resistance of so much unstretched wire, m, at 20 degC, as annealed copper of its unstretched section, ohm.
+    pub(super) fn resistance_of(&self, length: f64) -> f64 {
+        let d = self.scene.wire.diameter;
+        COPPER_20_DEGC * length / (0.25 * PI * d * d)
+    }
+
     /// The coil as a product.
     pub fn product(&self) -> Product {
         let d = self.scene.wire.diameter;
@@ -37,7 +43,7 @@ impl Simulation {
             layers: self.coil.stations().map(|s| s.layer).max().unwrap_or(0),
             wire_diameter_m: d,
             wire_length_m: length,
-            resistance_ohm: COPPER_20_DEGC * length / (0.25 * PI * d * d),
+            resistance_ohm: self.resistance_of(length),
             fill: self.coil.fill_factor(),
         }
     }

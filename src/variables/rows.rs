@@ -235,6 +235,8 @@ table! {
     input(0, spindle_speed, "rad/s", "rpm", -2000.0, 2000.0, 100.0, "angular velocity of the core about +y");
     input(1, nozzle_position, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis, y");
     input(2, tension_setpoint, "N", "", 0.0, 1e4, 10.0, "pull of the tensioner");
+    input(3, nozzle_offset_x, "m", "mm", -10.0, 10.0, 1e-2, "nozzle farther from the core axis than nozzle.distance, along x");
+    input(4, nozzle_offset_z, "m", "mm", -10.0, 10.0, 1e-2, "nozzle beside where the scene has it, along z");
 
     output(100, wire_tension, "N", "", -1e4, 1e5, 10.0, "tension in the free span at the nozzle exit");
     output(101, wire_tension_min, "N", "", -1e4, 1e5, 10.0, "smallest wire_tension since the last communication point");
@@ -278,6 +280,16 @@ table! {
     output(138, tensioner_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire at the tensioner");
     output(139, nozzle_angle, "rad", "deg", -1.6, 1.6, 0.1, "angle at the nozzle between the free span and the plane across the axis; positive towards larger y");
     output(140, wire_length, "m", "", 0.0, 1e6, 1.0, "wire from the clamp to where it meets the coil, unstretched");
+
+    output(141, nozzle_y, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis: that of nozzle_position, or of the law of traverse.mode");
+    output(142, layon_x, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along x; the frame does not turn, the nozzle is on +x");
+    output(143, layon_z, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along z of the same frame; layon_position is along y");
+    output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns laid in the layer that is being wound");
+    output(145, flange_clearance, "m", "mm", -10.0, 10.0, 1e-3, "from the surface of the wire where it meets the coil to the nearer flange, along y; without flanges to the nearer end of the core");
+    output(146, wire_resistance, "ohm", "mohm", 0.0, 1e9, 0.1, "resistance of wire_length at 20 degC, as annealed copper of unstretched section");
+    output(147, coil_inertia, "kg.m2", "g.mm2", 0.0, 1e3, 1e-6, "moment of inertia of the settled wire about the core axis, without the core's");
+    output(148, spindle_torque_total, "N.m", "N.mm", -1e6, 1e6, 0.1, "spindle_torque less coil_inertia times the mean acceleration of the last step; the core's own inertia is the drive's");
+    output(149, break_position, "m", "", 0.0, 1e6, 1.0, "unstretched wire from the clamp to where it broke; 0: it is whole");
 
     local(200, solver_steps, "1", "", 0.0, 1e18, 1e5, "time steps taken");
     local(201, solver_rejects, "1", "", 0.0, 1e18, 1.0, "time steps rejected");

@@ -59,6 +59,7 @@ impl Run {
             spindle_speed: (after - speed) / step,
             nozzle_position: per_turn * turned / step,
             tension_setpoint: 0.0,
+            ..Inputs::HELD
         };
     }
 }
