@@ -1,21 +1,21 @@
 #!/usr/bin/env bash
 # Makes a virtual environment, unless it is there, and prints its Python.
 #
-#     scripts/venv.sh [build | importers | bench | docs]
+#     scripts/venv.sh [build | importers | bench | docs | machine]
 #
 # Without a word: target/venv with requirements.txt (tests and demonstration). build: target/venv-build
 # with requirements-build.txt (the linker of portable libraries). importers: target/venv-importers with
 # requirements-importers.txt (other people's FMU importers, which may want other versions of things).
 # bench: target/venv-bench with requirements-bench.txt (other simulators, likewise). docs: target/venv-docs
-# with requirements-docs.txt (builds the site).
+# with requirements-docs.txt (builds the site). machine: target/venv-machine with requirements-machine.txt (examples/machine).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 case ${1-} in
     '') suffix= ;;
-    build | importers | bench | docs) suffix=-$1 ;;
+    build | importers | bench | docs | machine) suffix=-$1 ;;
     *)
-        echo "venv.sh: unknown environment $1 (there are build, importers, bench and docs, or none)" >&2
+        echo "venv.sh: unknown environment $1 (there are build, importers, bench, docs and machine, or none)" >&2
         exit 2
         ;;
 esac

@@ -233,6 +233,7 @@ impl Default for SceneSettings {
                 mass: 1e-3,
                 line_length: 0.5,
                 line_damping_ratio: 0.1,
+                damping: 0.0,
             },
             start: Start { clamp_y: 0.0 },
             spindle: Spindle {

@@ -22,6 +22,8 @@ pub struct Tensioner {
     pub line_length: f64,
     /// damping ratio of mass on line
     pub line_damping_ratio: f64,
+    /// damper on the tensioner, N s/m
+    pub damping: f64,
 }
 
 /// Where the wire begins: clamped to the middle of the +x face, tangent to it, straight to the

@@ -119,6 +119,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     };
     let spec = FeedSpec {
         mass: t.mass,
+        damping: t.damping,
         line_stiffness,
         line_damping: if line_stiffness.is_finite() {
             2.0 * t.line_damping_ratio * (line_stiffness * t.mass).sqrt()

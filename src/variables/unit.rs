@@ -109,6 +109,12 @@ pub fn units() -> &'static [Unit] {
             display: &[("MPa", 1e-6, 0.0)],
         },
         Unit {
+            name: "N.s/m",
+            quantity: "Damping",
+            base: &[("kg", 1), ("s", -1)],
+            display: &[],
+        },
+        Unit {
             name: "kg.m2",
             quantity: "MomentOfInertia",
             base: &[("kg", 1), ("m", 2)],
@@ -155,6 +161,7 @@ const SUFFIXES: &[(&str, &str, Scale)] = &[
     ("g_per_cm3", "kg/m3", Scale::Tens(3)),
     ("N", "N", Scale::Tens(0)),
     ("mN", "N", Scale::Tens(-3)),
+    ("N_s_per_m", "N.s/m", Scale::Tens(0)),
     ("Nm", "N.m", Scale::Tens(0)),
     ("Nmm", "N.m", Scale::Tens(-3)),
     ("Nm2", "N.m2", Scale::Tens(0)),

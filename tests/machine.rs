@@ -1,4 +1,4 @@
-//! A nozzle that moves along x and z: it is where its inputs have it, and a machine turned about its axis winds the same.
+//! What a model of the machine sets and reads: a nozzle that moves along x and z, a damper, the coil so far.
 
 mod common;
 
@@ -103,4 +103,97 @@ fn a_nozzle_is_not_sent_into_the_core() {
     assert_eq!(run.time(), 0.0);
     let scene = fig8(&[]);
     assert!(Simulation::starting_with(&scene, into).is_err());
+}
+
+/// Two turns at a constant speed on a cylinder of 10 mm, then on with the speed raised evenly.
+fn on_a_cylinder(changes: &[(&str, &str)]) -> Simulation {
+    let mut all = vec![
+        ("core.shape", "cylinder"),
+        ("core.radius", "0.01"),
+        ("wire.elastic", "true"),
+        ("spindle.speed", "50"),
+    ];
+    all.extend(changes);
+    let mut run = Simulation::new(&fig8(&all)).expect("starts");
+    let end = run.motion_profile().end();
+    run.advance_profile(end).expect("goes on");
+    run
+}
+
+/// On a round core the wire comes evenly, so that the damper adds its share of the speed.
+#[test]
+fn a_damped_tensioner_pulls_harder_the_faster_the_wire_comes() {
+    let tension = |damping: &str| {
+        let run = on_a_cylinder(&[("tensioner.damping", damping)]);
+        let o = run.outputs();
+        (o.wire_tension, o.tensioner_speed)
+    };
+    let ((free, _), (damped, speed)) = (tension("0"), tension("4"));
+    assert!(speed > 0.4, "{speed}");
+    let expected = free + 4.0 * speed;
+    assert!(
+        (damped - expected).abs() < 0.02 * expected,
+        "{damped} {expected}"
+    );
+}
+
+/// Inertia and resistance are those of wire laid on a circle.
+#[test]
+fn the_coil_has_the_inertia_and_resistance_of_its_wire() {
+    let mut run = on_a_cylinder(&[]);
+    let o = *run.outputs();
+    let wire = run.scene().wire.clone();
+    let section = 0.25 * std::f64::consts::PI * wire.diameter * wire.diameter;
+    let resistance = o.wire_length * section.recip() / 58e6;
+    assert!((o.wire_resistance / resistance - 1.0).abs() < 1e-9);
+    let radius = 0.01 + 0.5 * wire.diameter;
+    let settled = run.product().wire_length_m;
+    let inertia = wire.density * section * settled * radius * radius;
+    assert!(settled > 0.03, "{settled}");
+    assert!(
+        (o.coil_inertia / inertia - 1.0).abs() < 0.03,
+        "{} {inertia}",
+        o.coil_inertia
+    );
+    assert!((o.layon_x.hypot(o.layon_z) / radius - 1.0).abs() < 0.01);
+    assert!((o.turn_in_layer - o.turns_wound).abs() < 1e-12);
+    let half = 0.5 * 0.06;
+    assert!(o.flange_clearance > 0.0 && o.flange_clearance < half);
+    // at a constant speed nothing speeds the coil up
+    run.advance(run.inputs(), 1e-3).expect("goes on");
+    let o = run.outputs();
+    assert_eq!(o.spindle_torque_total, o.spindle_torque);
+    // and raised evenly it takes the moment of its inertia
+    let rates = Inputs {
+        spindle_speed: 4000.0,
+        ..Inputs::HELD
+    };
+    run.advance_ramped(run.inputs(), rates, 1e-3)
+        .expect("goes on");
+    let o = run.outputs();
+    let extra = o.spindle_torque - o.spindle_torque_total;
+    assert!(
+        (extra / (4000.0 * o.coil_inertia) - 1.0).abs() < 1e-9,
+        "{extra:e}"
+    );
+}
+
+#[test]
+fn a_break_tells_where_the_wire_parted() {
+    let mut run = Simulation::new(&fig8(&[])).expect("starts");
+    assert_eq!(run.outputs().break_position, 0.0);
+    let pulled = Inputs {
+        tension_setpoint: 1e3,
+        ..run.inputs()
+    };
+    for _ in 0..20 {
+        run.advance(pulled, 1e-3).expect("goes on");
+    }
+    let o = run.outputs();
+    assert!(o.defect_break);
+    assert!(
+        o.break_position > 0.0 && o.break_position < 0.2,
+        "{}",
+        o.break_position
+    );
 }
