@@ -10,6 +10,7 @@ and the corners of the core within a turn.
 
 import argparse
 import csv
+import json
 import subprocess
 import sys
 import zipfile
@@ -114,7 +115,7 @@ BY_LIBCOSIM = """
 import json, sys
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimObserver import CosimObserver
-archive, step, count, shown = sys.argv[1], float(sys.argv[2]), int(sys.argv[3]), json.loads(sys.argv[4])
+archive, step, count, shown = sys.argv[1], int(sys.argv[2]), int(sys.argv[3]), json.loads(sys.argv[4])
 execution = CosimExecution.from_ssp_file(ssp_path=archive, step_size=step)
 observer = CosimObserver.create_last_value()
 execution.add_observer(observer)
@@ -124,24 +125,25 @@ slaves = {execution.slave_infos()[i].name.decode(): execution.slave_infos()[i].i
 values = []
 for part, name, reference in shown:
     values.append(observer.last_real_values(slaves[part], [reference])[0])
-print(json.dumps(values))
+# its log goes to the same place
+print("values:" + json.dumps(values))
 """
 
 
 def by_libcosim(archive, out):
-    """Last values of the run by libcosim's master, in the order of SHOWN; in a process of its own, as both masters load the parts."""
-    import json
-
+    """Last values of the run by libcosim's master, which counts time in ns, in the order of SHOWN. It gets a process of its own,
+    as both masters load the parts."""
     shown = []
     for part, name in SHOWN:
         source = {"coil": "CoilWinding", "spindle": "SpindleDrive", "traverse": "TraverseDrive", "dancer": "Dancer"}[part]
         description = fmpy.read_model_description(str(out / "parts/resources" / f"{source}.fmu"))
         shown.append((part, name, {v.name: v.valueReference for v in description.modelVariables}[name]))
-    arguments = [str(out / "parts"), repr(STEP), str(round(STOP / STEP)), json.dumps(shown)]
+    arguments = [str(archive), str(round(1e9 * STEP)), str(round(STOP / STEP)), json.dumps(shown)]
     ran = subprocess.run([sys.executable, "-c", BY_LIBCOSIM, *arguments], capture_output=True, text=True, check=False)
     if ran.returncode:
         sys.exit(f"run.py: libcosim did not run the system\n{ran.stderr[-2000:]}")
-    return json.loads(ran.stdout.splitlines()[-1])
+    told = next(line for line in ran.stdout.splitlines() if line.startswith("values:"))
+    return json.loads(told.removeprefix("values:"))
 
 
 def plot(rows, path):
@@ -167,7 +169,7 @@ def plot(rows, path):
         axes[row][0].set_ylabel(label)
         axes[row][0].legend(loc="best", fontsize="small")
     axes[0][0].set_title("the whole run")
-    axes[0][1].set_title("the last turn: four corners")
+    axes[0][1].set_title("the last turn")
     figure.savefig(path, dpi=120)
     plt.close(figure)
 
