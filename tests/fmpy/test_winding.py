@@ -108,7 +108,8 @@ def test_a_master_that_sends_speed_only_winds_what_a_native_run_winds(
     size, steps, driven, native = 2.0**-10, 150, tmp_path / "driven", tmp_path / "native"
     speed = [min(4.0 * (k + 0.5), 100.0) for k in range(steps)]
     slave = make_slave()
-    slave.start(scene__file=scene, traverse__mode=mode, output__directory=str(driven))
+    start = {"scene__file": scene, "traverse__mode": mode, "output__directory": str(driven)}
+    slave.start(inputs={"spindle_speed": speed[0]}, **start)
     for k in range(steps):
         slave.set(spindle_speed=speed[k])
         slave.fmu.doStep(k * size, size)

@@ -89,12 +89,13 @@ impl Run {
             }
             let from = get(&self.inputs);
             let limit = variable.nearest(wanted);
-            let slower = (limit - from) / step;
-            // rounding may lead beyond the limit
-            let beyond = from + slower * step - limit;
-            let slower = slower - 2.0 * beyond / step;
-            let within = variable.admits(&Value::Real(from + slower * step));
-            set(&mut self.rates, if within { slower } else { 0.0 });
+            let within = |rate: f64| variable.admits(&Value::Real(from + rate * step));
+            let mut slower = (limit - from) / step;
+            if !within(slower) {
+                // rounding has led beyond the limit
+                slower -= 2.0 * (from + slower * step - limit) / step;
+            }
+            set(&mut self.rates, if within(slower) { slower } else { 0.0 });
             held.push(format!(
                 "{} would be {} at the end of the step and is held at {}; allowed: {}",
                 variable.name,
