@@ -28,11 +28,13 @@ fn signals(t: f64) -> (Inputs, Inputs) {
         spindle_speed: speed,
         nozzle_position: PITCH * angle / TAU,
         tension_setpoint: 15.0,
+        ..Inputs::HELD
     };
     let rates = Inputs {
         spindle_speed: rate,
         nozzle_position: PITCH * speed / TAU,
         tension_setpoint: 0.0,
+        ..Inputs::HELD
     };
     (inputs, rates)
 }

@@ -81,6 +81,7 @@ fn main() {
                             spindle_speed: of(0),
                             nozzle_position: of(1),
                             tension_setpoint: of(2),
+                            ..Inputs::HELD
                         }
                     };
                     let off = [OFF[0] / step, OFF[1], OFF[2] * inputs.tension_setpoint][input];

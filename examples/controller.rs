@@ -62,6 +62,7 @@ fn wind(scene: &Scene, mut controller: Option<Controller>) -> Result<f64, SimErr
             spindle_speed: speed,
             nozzle_position: PITCH * angle / TAU,
             tension_setpoint: set_value + disturbance(sim.time()),
+            ..Inputs::HELD
         };
         sim.advance(inputs, STEP)?;
         if sim.time() > BEGIN {

@@ -143,6 +143,7 @@ fn inputs_after(sim: &Simulation, tension: f64) -> Inputs {
             3.0 * end - way
         },
         tension_setpoint: tension,
+        ..Inputs::HELD
     }
 }
 

@@ -74,7 +74,7 @@ For connecting the FMU: every input, output and parameter with its unit, start v
 - Every value is in the unit of its column. `modelDescription.xml` gives importers the display unit as well.
 - *fixed* parameters are set before `fmi2ExitInitializationMode`. *tunable* ones may also change at a communication point.
 - A parameter that the importer sets wins over `scene.file`, which wins over the default.
-- Keys of `[spindle]` and `[traverse]` and `output.history_interval` do not exist here: the inputs take their place.
+- Keys of `[spindle]` and `output.history_interval` do not exist here: the spindle is an input. `traverse.mode` says whether the nozzle is one.
 
 [Stepping](stepping.md) says when an input counts. [Reading defects](../guide/reading-defects.md) explains the measures.
 """
@@ -172,7 +172,7 @@ CELLS = {
     "name": lambda v: f"`{v['name']}`",
     "type": lambda v: v["type"],
     "unit": lambda v: unit(v),
-    "start": lambda v: shown_start(v),
+    "start": lambda v: shown_start(v | {"start": v["fmuStart"] or v["start"]}),
     "range": lambda v: allowed(v),
     "causality, variability": lambda v: f"{v['causality']}, {v['variability']}",
     "meaning": lambda v: v["description"],

@@ -1,22 +1,23 @@
 #!/usr/bin/env bash
 # Makes a virtual environment, unless it is there, and prints its Python.
 #
-#     scripts/venv.sh [build | importers | bench | docs | study | render]
+#     scripts/venv.sh [build | importers | bench | docs | study | render | machine]
 #
 # Without a word: target/venv with requirements.txt (tests and demonstration). build: target/venv-build
 # with requirements-build.txt (the linker of portable libraries). importers: target/venv-importers with
 # requirements-importers.txt (other people's FMU importers, which may want other versions of things).
 # bench: target/venv-bench with requirements-bench.txt (other simulators, likewise). docs: target/venv-docs
 # with requirements-docs.txt (builds the site). study: target/venv-study with requirements-study.txt (calibration, control,
-# sweeps through the FMU). render: target/venv-render with requirements-render.txt (pictures and films of a run).
+# sweeps through the FMU). render: target/venv-render with requirements-render.txt (pictures and films of a run); machine:
+# target/venv-machine with requirements-machine.txt (examples/machine).
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 case ${1-} in
     '') suffix= ;;
-    build | importers | bench | docs | study | render) suffix=-$1 ;;
+    build | importers | bench | docs | study | render | machine) suffix=-$1 ;;
     *)
-        echo "venv.sh: unknown environment $1 (there are build, importers, bench, docs, study and render, or none)" >&2
+        echo "venv.sh: unknown environment $1 (there are build, importers, bench, docs, study, render and machine, or none)" >&2
         exit 2
         ;;
 esac

@@ -40,6 +40,7 @@
 //!         spindle_speed: f64::from(step), // rad/s
 //!         nozzle_position: 0.0,           // m
 //!         tension_setpoint: 15.0,         // N
+//!         ..Inputs::HELD
 //!     };
 //!     sim.advance(inputs, 1e-3)?;
 //! }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 /// What the machine tells the simulator: its inputs at one moment.
 ///
-/// The core turns about +y of the frame of the laboratory; the nozzle stands on +x.
+/// The core turns about +y of the frame of the laboratory; the nozzle of the scene stands on +x.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Inputs {
     /// core angular velocity about +y, rad/s
@@ -13,6 +13,10 @@ pub struct Inputs {
     pub nozzle_position: f64,
     /// pull of the tensioner, N
     pub tension_setpoint: f64,
+    /// nozzle beyond its distance in the scene, along x, m
+    pub nozzle_offset_x: f64,
+    /// nozzle beside the plane of the scene's nozzle and the core axis, along z, m
+    pub nozzle_offset_z: f64,
 }
 
 impl Inputs {
@@ -21,6 +25,8 @@ impl Inputs {
         spindle_speed: 0.0,
         nozzle_position: 0.0,
         tension_setpoint: 0.0,
+        nozzle_offset_x: 0.0,
+        nozzle_offset_z: 0.0,
     };
 
     /// Where these inputs are after `dt` (s) at these rates, per s.
@@ -29,6 +35,8 @@ impl Inputs {
             spindle_speed: self.spindle_speed + rates.spindle_speed * dt,
             nozzle_position: self.nozzle_position + rates.nozzle_position * dt,
             tension_setpoint: self.tension_setpoint + rates.tension_setpoint * dt,
+            nozzle_offset_x: self.nozzle_offset_x + rates.nozzle_offset_x * dt,
+            nozzle_offset_z: self.nozzle_offset_z + rates.nozzle_offset_z * dt,
         }
     }
 }
@@ -119,6 +127,24 @@ pub struct Outputs {
     pub nozzle_angle: f64,
     /// wire from the clamp to where it meets the coil, unstretched, m
     pub wire_length: f64,
+    /// nozzle along the core axis, m
+    pub nozzle_y: f64,
+    /// where the wire's centreline meets the coil, along x of the frame at rest, m
+    pub layon_x: f64,
+    /// where the wire's centreline meets the coil, along z of the frame at rest, m
+    pub layon_z: f64,
+    /// turns laid in the layer that is being wound
+    pub turn_in_layer: f64,
+    /// from the surface of the wire where it meets the coil to the nearer flange or end of the core, along y, m
+    pub flange_clearance: f64,
+    /// resistance of the wire from the clamp to where it meets the coil, at 20 degC, ohm
+    pub wire_resistance: f64,
+    /// moment of inertia of the settled wire about the core axis, kg m2
+    pub coil_inertia: f64,
+    /// `spindle_torque` less what speeds the settled wire up, N m
+    pub spindle_torque_total: f64,
+    /// unstretched wire from the clamp to where it broke, m; 0 for whole wire
+    pub break_position: f64,
     /// time steps taken
     pub solver_steps: f64,
     /// time steps rejected
@@ -154,7 +180,7 @@ macro_rules! smooth {
 smooth! {
     wire_tension, wire_tension_min, wire_tension_max, turns_wound, spindle_angle, spindle_torque,
     feed_speed, fed_length, free_length, layon_position, layon_angle, tensioner_position,
-    tensioner_speed, nozzle_angle,
+    tensioner_speed, nozzle_angle, nozzle_y, layon_x, layon_z, spindle_torque_total,
 }
 
 /// What kind of thing happened.

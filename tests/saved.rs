@@ -25,6 +25,7 @@ impl Machine {
             spindle_speed: speed,
             nozzle_position: now.nozzle_position + 0.7e-3 * speed * self.step / TAU,
             tension_setpoint: 15.0 - 3.0 * k as f64 / self.steps as f64,
+            ..Inputs::HELD
         };
         sim.advance(inputs, self.step).expect("the run goes on");
         sim.drain_events();

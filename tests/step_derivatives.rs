@@ -19,6 +19,7 @@ fn along(input: usize, by: f64) -> Inputs {
         spindle_speed: of(0),
         nozzle_position: of(1),
         tension_setpoint: of(2),
+        ..Inputs::HELD
     }
 }
 

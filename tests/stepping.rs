@@ -31,11 +31,13 @@ fn ramp(next: impl Fn(usize) -> f64) -> Simulation {
             spindle_speed: RATE * t,
             nozzle_position: y(t),
             tension_setpoint: 15.0 - 300.0 * t,
+            ..Inputs::HELD
         };
         let rates = Inputs {
             spindle_speed: RATE,
             nozzle_position: (y(end) - y(t)) / (end - t),
             tension_setpoint: -300.0,
+            ..Inputs::HELD
         };
         sim.advance_ramped(inputs, rates, end - t).expect("goes on");
         (t, k) = (end, k + 1);
@@ -143,6 +145,7 @@ fn the_start_is_in_equilibrium() {
                 spindle_speed: 0.0,
                 nozzle_position: y,
                 tension_setpoint: tension,
+                ..Inputs::HELD
             };
             let sim = Simulation::starting_with(&scene, inputs).expect("starts");
             let o = sim.outputs();

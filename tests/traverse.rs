@@ -30,6 +30,7 @@ fn wind(sim: &mut Simulation, turns: f64, sense: f64, law: impl Fn(f64) -> f64) 
             spindle_speed: sense * speed,
             nozzle_position: PITCH * law(turned),
             tension_setpoint: 15.0,
+            ..Inputs::HELD
         };
         sim.advance(inputs, STEP).expect("the run goes on");
     }
@@ -153,6 +154,7 @@ fn wire_wound_looser_than_the_scene_has_it_bulges() {
             spindle_speed: speed,
             nozzle_position: PITCH * turned,
             tension_setpoint: 1.0,
+            ..Inputs::HELD
         };
         sim.advance(inputs, STEP).expect("the run goes on");
     }

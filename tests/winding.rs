@@ -272,6 +272,7 @@ fn same_input_same_output() {
                 spindle_speed: 2.0 * f64::from(k),
                 nozzle_position: 1e-7 * f64::from(k),
                 tension_setpoint: 15.0,
+                ..Inputs::HELD
             };
             sim.advance(inputs, 1e-5).expect("goes on");
         }

@@ -135,15 +135,11 @@ pub(crate) enum Error {
         /// End of the step, s.
         time: f64,
     },
-    /// An input would leave its range within the step.
-    #[error("{name} would be {value} at the end of the step: {allowed}; change its derivative")]
-    LeavesRange {
-        /// Name of the input.
-        name: &'static str,
-        /// The value at the end of the step, in the unit of the input.
+    /// The tolerance of the experiment is not one.
+    #[error("tolerance = {value} is not allowed: a finite number above 0")]
+    Tolerance {
+        /// The importer's tolerance.
         value: f64,
-        /// What the input allows, in words.
-        allowed: String,
     },
     /// The variable has no derivative of that order.
     #[error("derivative of order {order} of {name}: {reason}")]

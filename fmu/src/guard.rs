@@ -107,8 +107,12 @@ fn run(
         let result = body(instance);
         (result, instance.end_call())
     }));
+    let served = match instance.has_warned() {
+        true => Status::Warning,
+        false => Status::Ok,
+    };
     match outcome {
-        Ok((Ok(()), messages)) => (Status::Ok, messages),
+        Ok((Ok(()), messages)) => (served, messages),
         Ok((Err(error), mut messages)) => {
             let message = message_of(function.name(), &error);
             let status = message.status;

@@ -56,6 +56,8 @@ pub(crate) struct Instance {
     filter: Filter,
     /// Messages of the present call.
     messages: Vec<Message>,
+    /// Whether the present call was served otherwise than asked for, and the importer is to know.
+    warned: bool,
 }
 
 impl Instance {
@@ -106,6 +108,7 @@ impl Instance {
             strings: Vec::new(),
             filter: Filter::new(identity.logging_on),
             messages: Vec::new(),
+            warned: false,
             identity,
         }
     }
@@ -135,6 +138,18 @@ impl Instance {
     /// Begins a call. Strings that an earlier call handed out end their life here.
     pub(crate) fn begin_call(&mut self) {
         self.strings.clear();
+        self.warned = false;
+    }
+
+    /// Tells whether the present call returns a warning.
+    pub(crate) fn has_warned(&self) -> bool {
+        self.warned
+    }
+
+    /// Serves the present call otherwise than asked for: says how, and lets the call return a warning.
+    fn warn(&mut self, text: impl std::fmt::Display) {
+        self.messages.push(Message::warning(text));
+        self.warned = true;
     }
 
     /// Ends a call and returns those of its messages that the importer wants.
@@ -179,7 +194,14 @@ impl Instance {
                     .find_mesh(self.identity.resources.as_deref())?;
                 let (scene, warnings) = self.parameters.scene()?;
                 let inputs = self.parameters.start_inputs();
-                let run = Run::start(&scene, inputs, &self.start_inputs, &self.start_rates)?;
+                let by_law = self.parameters.settings().nozzle_follows_law();
+                let run = Run::start(
+                    &scene,
+                    by_law,
+                    inputs,
+                    &self.start_inputs,
+                    &self.start_rates,
+                )?;
                 self.messages.extend(warnings.iter().map(Message::warning));
                 Box::new(run)
             }

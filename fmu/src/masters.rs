@@ -6,7 +6,7 @@ use crate::lifecycle::State;
 use crate::message::Message;
 use coilwind::signals::Outputs;
 use coilwind::variables::by_name;
-use coilwind_model_description::{Category, DEFAULT_STOP_TIME};
+use coilwind_model_description::{Category, DEFAULT_STOP_TIME, DEFAULT_TOLERANCE};
 
 fn reference(name: &str) -> u32 {
     by_name(name).expect("a variable").reference
@@ -29,7 +29,7 @@ fn real(instance: &mut Instance, name: &str) -> f64 {
 fn started(time: f64, set_up: impl Fn(&mut Instance)) -> (Instance, Vec<Message>) {
     let mut instance = Instance::for_tests();
     set_up(&mut instance);
-    instance.setup_experiment(time, None).expect("valid");
+    instance.setup_experiment(None, time, None).expect("valid");
     instance.enter_initialization_mode().expect("enters");
     instance.exit_initialization_mode().expect("starts");
     let messages = instance.end_call();
@@ -211,7 +211,7 @@ fn outputs_with_derivatives_declare_their_dependencies() {
     let text = coilwind_model_description::model_description().expect("valid");
     let structure = &text[text.find("<Outputs>").expect("a structure")
         ..text.find("<InitialUnknowns>").expect("the next")];
-    let declared = structure.matches(r#"dependencies="1 2 3""#).count();
+    let declared = structure.matches(r#"dependencies="1 2 3 4 5""#).count();
     assert_eq!(declared, Outputs::SMOOTH.len());
     assert!(!text.contains("layers closed"));
 }
@@ -222,7 +222,7 @@ fn a_mesh_is_looked_for_among_the_resources_first() {
     instance.reset().expect("resets");
     set_text(&mut instance, "core.shape", "mesh");
     set_text(&mut instance, "core.file", "no such core.stl");
-    instance.setup_experiment(0.0, None).expect("valid");
+    instance.setup_experiment(None, 0.0, None).expect("valid");
     instance.enter_initialization_mode().expect("enters");
     let error = instance
         .exit_initialization_mode()
@@ -280,4 +280,134 @@ fn the_default_experiment_winds() {
         instance.do_step(0.0, 1e-2).expect("a step");
         assert_eq!(real(&mut instance, "spindle_angle"), 0.0);
     }
+}
+
+/// What a master asks for beyond a range is held at its end. The call returns a warning, so that the run can go on.
+#[test]
+fn inputs_beyond_their_range_are_held() {
+    let (mut instance, _) = started(0.0, |_| ());
+    let names = ["tension_setpoint", "spindle_speed"].map(reference);
+    instance.begin_call();
+    instance.set(&names, [-1.0, 1e9]).expect("held");
+    assert!(instance.has_warned());
+    let messages = instance.end_call();
+    assert_eq!(warnings(&messages).len(), 2, "{messages:?}");
+    assert!(
+        messages[0]
+            .text
+            .contains("tension_setpoint = -1 is held at 0")
+    );
+    assert_eq!(instance.get::<f64>(&names).expect("inputs"), [0.0, 2000.0]);
+    instance.begin_call();
+    instance.set(&names, [15.0, 0.0]).expect("allowed");
+    assert!(!instance.has_warned());
+    // derivatives that lead beyond the range
+    for (step, rate, end) in [(1e-3, -1e6, 0.0), (0.3e-3, 1e9, 1e4), (0.7e-3, 1e8, 1e4)] {
+        let (mut instance, _) = started(0.0, |i| set(i, "tension_setpoint", 15.3));
+        instance
+            .set_input_derivatives(&names, &[1, 1], &[rate, 0.0])
+            .expect("finite");
+        instance.begin_call();
+        instance.do_step(0.0, step).expect("the tension is held");
+        assert!(instance.has_warned());
+        let reached = real(&mut instance, "tension_setpoint");
+        let within = (reached - end).abs() < 1e-9 && (0.0..=1e4).contains(&reached);
+        assert!(within, "{reached:e} for {end}");
+    }
+}
+
+/// Parameters stay refused: a wire of another diameter than the one asked for is no help.
+#[test]
+fn parameters_beyond_their_range_are_refused() {
+    let mut instance = Instance::for_tests();
+    let both = ["tension_setpoint", "wire.diameter"].map(reference);
+    instance.begin_call();
+    let error = instance.set(&both, [-1.0, -1.0]).expect_err("no diameter");
+    assert!(matches!(
+        error,
+        Error::NotAllowed {
+            name: "wire.diameter",
+            ..
+        }
+    ));
+    assert!(!instance.has_warned() && instance.end_call().is_empty());
+}
+
+/// The tolerance that importers pass by default changes nothing, another one scales the solver's and is told.
+#[test]
+fn the_tolerance_of_the_experiment_scales_that_of_the_solver() {
+    let solver = |tolerance: Option<f64>, set_up: &dyn Fn(&mut Instance)| {
+        let mut instance = Instance::for_tests();
+        instance
+            .setup_experiment(tolerance, 0.0, None)
+            .expect("a tolerance");
+        set_up(&mut instance);
+        instance.enter_initialization_mode().expect("enters");
+        instance.exit_initialization_mode().expect("starts");
+        let told = warnings(&instance.end_call()).len();
+        (real(&mut instance, "solver.tolerance"), told)
+    };
+    let none = |_: &mut Instance| ();
+    assert_eq!(solver(None, &none), (2e-6, 0));
+    assert_eq!(solver(Some(DEFAULT_TOLERANCE), &none), (2e-6, 0));
+    let (tolerance, told) = solver(Some(5e-4), &none);
+    assert!((tolerance - 1e-5).abs() < 1e-18 && told == 1, "{tolerance}");
+    // a tenth of the wire's diameter at most
+    assert_eq!(solver(Some(1e9), &none), (0.1 * 0.7e-3, 1));
+    // whichever is set first, a parameter overrules the experiment
+    let explicit = |i: &mut Instance| set(i, "solver.tolerance", 4e-6);
+    assert_eq!(solver(Some(1e-3), &explicit), (4e-6, 0));
+    for wrong in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let refused = Instance::for_tests().setup_experiment(Some(wrong), 0.0, None);
+        assert!(matches!(refused, Err(Error::Tolerance { .. })));
+    }
+}
+
+/// A scene's own traverse is for its own motion: only a mode that the importer sets moves the nozzle by a law.
+#[test]
+fn the_nozzle_follows_a_law_where_the_importer_asks_for_one() {
+    let wound = |mode: Option<&str>| {
+        let (mut instance, messages) = started(0.0, |i| {
+            set_text(i, "scene.file", "bobbin");
+            if let Some(mode) = mode {
+                set_text(i, "traverse.mode", mode);
+            }
+        });
+        for k in 0..40 {
+            let time = f64::from(k) * 2e-3;
+            set(&mut instance, "spindle_speed", 100.0);
+            instance.do_step(time, 2e-3).expect("a step");
+        }
+        let mode = instance
+            .get::<String>(&[reference("traverse.mode")])
+            .expect("a mode");
+        (
+            mode[0].clone(),
+            real(&mut instance, "nozzle_y"),
+            warnings(&messages).len(),
+        )
+    };
+    assert_eq!(wound(None), ("by-input".to_owned(), -6.9e-3, 0));
+    assert_eq!(wound(Some("by-input")), ("by-input".to_owned(), -6.9e-3, 0));
+    let (mode, at, _) = wound(Some("orthocyclic"));
+    assert!(mode == "orthocyclic" && at > -6.3e-3, "{mode} {at}");
+    let (_, helical, told) = wound(Some("helical"));
+    assert!(helical > at && told >= 1, "{helical} {told}");
+}
+
+#[test]
+fn where_the_nozzle_follows_a_law_nothing_follows_its_input() {
+    let (mut instance, _) = started(0.0, |i| set_text(i, "traverse.mode", "by-angle"));
+    let [angle, layon] = ["spindle_angle", "layon_position"].map(reference);
+    let nozzle = [reference("nozzle_position"); 2];
+    let slopes = |i: &mut Instance| {
+        i.directional_derivative(&[angle, layon], &nozzle, &[1.0, 1.0])
+            .expect("derivatives")
+    };
+    assert_eq!(slopes(&mut instance), [0.0; 2]);
+    set(&mut instance, "spindle_speed", 100.0);
+    set(&mut instance, "nozzle_position", 5.0);
+    instance.do_step(0.0, 1e-2).expect("a step");
+    assert_eq!(slopes(&mut instance), [0.0; 2]);
+    assert!(real(&mut instance, "nozzle_y").abs() < 1e-3);
 }

@@ -4,9 +4,10 @@ use crate::error::Error;
 use crate::resources;
 use coilwind::measure::DefectLimits;
 use coilwind::scene::{Scene, Warning};
-use coilwind::settings::{Friction, Origin, SceneSettings};
+use coilwind::settings::{BY_INPUT, Friction, Origin, SceneSettings};
 use coilwind::signals::Inputs;
-use coilwind::variables::{Access, Value, Variable, by_reference};
+use coilwind::variables::{Access, Value, Variable, by_name, by_reference};
+use coilwind_model_description::DEFAULT_TOLERANCE;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -14,10 +15,19 @@ use std::path::Path;
 const SCENE_FILE: &str = "scene.file";
 /// Name of the parameter that names the surface of a core.
 const MESH_FILE: &str = "core.file";
+/// Name of the parameter that names the table of the nozzle's way.
+const TRAVERSE_FILE: &str = "traverse.file";
+/// Name of the parameter that says what the nozzle follows.
+const TRAVERSE_MODE: &str = "traverse.mode";
+/// Name of the parameter that the experiment's tolerance scales.
+const SOLVER_TOLERANCE: &str = "solver.tolerance";
+
+/// Largest tolerance of the solver in wire diameters; a scene with more is refused.
+const COARSEST: f64 = 0.1;
 
 /// What a saved state holds of parameters: `scene.file`, the scene that it held, and what was set
-/// explicitly, by value reference.
-pub(crate) type SavedParameters = (String, SceneSettings, BTreeMap<u32, Value>);
+/// explicitly, by value reference, and the tolerance of the experiment.
+pub(crate) type SavedParameters = (String, SceneSettings, BTreeMap<u32, Value>, Option<f64>);
 
 /// The parameters with their precedence.
 ///
@@ -31,6 +41,8 @@ pub(crate) struct Parameters {
     base: SceneSettings,
     /// What was set explicitly, by value reference, so that the order of calls cannot matter.
     explicit: BTreeMap<u32, Value>,
+    /// Tolerance of the experiment, if the importer gave one.
+    tolerance: Option<f64>,
     /// `base` with `explicit` laid over it.
     settings: SceneSettings,
 }
@@ -38,7 +50,12 @@ pub(crate) struct Parameters {
 impl Parameters {
     /// Returns what a saved state holds. [`Self::restored`] is the inverse.
     pub(crate) fn saved(&self) -> SavedParameters {
-        (self.file.clone(), self.base.clone(), self.explicit.clone())
+        (
+            self.file.clone(),
+            self.base.clone(),
+            self.explicit.clone(),
+            self.tolerance,
+        )
     }
 
     /// Returns the parameters of a saved state, for an FMU that is unpacked with its `resources` there. The scene is
@@ -51,12 +68,13 @@ impl Parameters {
         saved: SavedParameters,
         resources: Option<&Path>,
     ) -> Result<Self, Error> {
-        let (file, base, explicit) = saved;
-        let settings = laid_over(&base, &explicit, resources)?;
+        let (file, base, explicit, tolerance) = saved;
+        let settings = laid_over(&base, &explicit, tolerance, resources)?;
         Ok(Self {
             file,
             base,
             explicit,
+            tolerance,
             settings,
         })
     }
@@ -67,6 +85,7 @@ impl Parameters {
             file: String::new(),
             base: SceneSettings::default(),
             explicit: BTreeMap::new(),
+            tolerance: None,
             settings: SceneSettings::default(),
         }
     }
@@ -96,8 +115,46 @@ impl Parameters {
         } else if next.file != self.file {
             next.base = SceneSettings::load(&resources::scene(&next.file, resources))?;
         }
-        next.settings = laid_over(&next.base, &next.explicit, resources)?;
+        next.settings = laid_over(&next.base, &next.explicit, next.tolerance, resources)?;
         Ok(next)
+    }
+
+    /// Returns these parameters for an experiment with this relative tolerance, if it has one.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Tolerance`] if it is not a finite number above 0.
+    pub(crate) fn for_tolerance(
+        &self,
+        tolerance: Option<f64>,
+        resources: Option<&Path>,
+    ) -> Result<Self, Error> {
+        if let Some(value) = tolerance.filter(|x| !(x.is_finite() && *x > 0.0)) {
+            return Err(Error::Tolerance { value });
+        }
+        let settings = laid_over(&self.base, &self.explicit, tolerance, resources)?;
+        Ok(Self {
+            tolerance,
+            settings,
+            ..self.clone()
+        })
+    }
+
+    /// Returns a text if the tolerance of the experiment makes the solver's another one.
+    pub(crate) fn effect_of_tolerance(&self) -> Option<String> {
+        let row = by_name(SOLVER_TOLERANCE)?;
+        let tolerance = self.tolerance?;
+        let (is, scene) = (self.settings.solver.tolerance, self.base.solver.tolerance);
+        (is != scene && !self.explicit.contains_key(&row.reference)).then(|| {
+            format!(
+                "the experiment's tolerance {} makes {SOLVER_TOLERANCE} {} m; the scene has {} m, which {} stands for; \
+                 set {SOLVER_TOLERANCE} to overrule the experiment",
+                Value::Real(tolerance),
+                Value::Real(is),
+                Value::Real(scene),
+                Value::Real(DEFAULT_TOLERANCE),
+            )
+        })
     }
 
     /// Returns the value of a parameter, or `None` for inputs and results.
@@ -108,7 +165,10 @@ impl Parameters {
             }
             Access::Parameter { get, .. } => match self.explicit.get(&variable.reference) {
                 Some(value) => Some(value.clone()),
-                None => Some(get(&self.settings)),
+                None => Some(match variable.fmu_start {
+                    Some(start) => Value::String(start.to_owned()),
+                    None => get(&self.settings),
+                }),
             },
             Access::Input { .. } | Access::Output(_) => None,
         }
@@ -150,7 +210,7 @@ impl Parameters {
             };
             let scene = get(&self.base);
             let (name, unit) = (variable.name, unit_of(variable));
-            (scene != *value).then(|| {
+            (scene != *value && !leaves_to_input(variable, value)).then(|| {
                 format!(
                     "{name} = {value}{unit} was set and holds; scene.file {file} has {scene}{unit}"
                 )
@@ -214,25 +274,43 @@ impl Parameters {
     }
 }
 
-/// Returns `base` with what was set explicitly. A mesh is taken from the FMU's resources where they have it.
+/// Returns `base` with what was set explicitly, and solved for with the `tolerance` of the experiment. Files are taken from
+/// the FMU's resources where they have them.
 fn laid_over(
     base: &SceneSettings,
     explicit: &BTreeMap<u32, Value>,
+    tolerance: Option<f64>,
     resources: Option<&Path>,
 ) -> Result<SceneSettings, Error> {
     let mut settings = base.clone();
     for (reference, value) in explicit {
         let reference = *reference;
         let variable = by_reference(reference).ok_or(Error::UnknownReference { reference })?;
+        if leaves_to_input(variable, value) {
+            continue;
+        }
         let value = match value {
-            Value::String(file) if variable.name == MESH_FILE => {
-                Value::String(resources::mesh(file, resources))
+            Value::String(file) if [MESH_FILE, TRAVERSE_FILE].contains(&variable.name) => {
+                Value::String(resources::file(file, resources))
             }
             value => value.clone(),
         };
         settings.set(variable.name, value)?;
     }
+    if let (Some(tolerance), Some(row)) = (tolerance, by_name(SOLVER_TOLERANCE))
+        && !explicit.contains_key(&row.reference)
+    {
+        let scaled = settings.solver.tolerance * (tolerance / DEFAULT_TOLERANCE);
+        let most = COARSEST * settings.wire.diameter;
+        settings.solver.tolerance = row.nearest(scaled.min(most));
+    }
     Ok(settings)
+}
+
+/// Tells whether a value leaves the nozzle to its input. The scene then keeps the mode of its own motion, whose layers say
+/// what is wound.
+fn leaves_to_input(variable: &Variable, value: &Value) -> bool {
+    variable.name == TRAVERSE_MODE && *value == Value::String(BY_INPUT.to_owned())
 }
 
 /// Returns the unit of a variable with a space before it, or nothing where it has none.

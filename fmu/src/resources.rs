@@ -56,9 +56,9 @@ pub(crate) fn scene(name: &str, resources: Option<&Path>) -> String {
         .to_owned()
 }
 
-/// Returns what to load for a `core.file` of that name: the file of that name in `resources` if there is one, else the
+/// Returns what to load for a `core.file` or `traverse.file` of that name: the file of that name in `resources` if there is one, else the
 /// name itself.
-pub(crate) fn mesh(name: &str, resources: Option<&Path>) -> String {
+pub(crate) fn file(name: &str, resources: Option<&Path>) -> String {
     resources
         .map(|resources| resources.join(name))
         .filter(|path| !name.is_empty() && path.is_file())

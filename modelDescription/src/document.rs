@@ -92,7 +92,7 @@ fn section(
     );
     for variable in rows {
         let start = variable
-            .start(settings)
+            .start_in_fmu(settings)
             .map_or(String::new(), |value| value.to_string());
         let tunable = match (variable.causality, variable.variability) {
             (Causality::Parameter, Variability::Tunable) => ". Tunable",

@@ -36,4 +36,4 @@ pub use error::{DescriptionError, LicenseError, PackError};
 pub use licenses::third_party;
 pub use pack::{Contents, pack};
 pub use variables::variables;
-pub use xml::DEFAULT_STOP_TIME;
+pub use xml::{DEFAULT_STOP_TIME, DEFAULT_TOLERANCE};

@@ -1,4 +1,5 @@
-//! `UnitDefinitions`: every unit of the table with its SI exponents and display units.
+//! `UnitDefinitions` and `TypeDefinitions`: every unit of the table with its SI exponents and display units, and what it
+//! measures.
 
 use crate::format::number;
 use coilwind::variables::{Unit, units};
@@ -16,6 +17,34 @@ pub(crate) fn write(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
             Ok(())
         })?;
     Ok(())
+}
+
+/// Writes the element `TypeDefinitions`: a type for each unit, named after the quantity that it measures.
+pub(crate) fn write_types(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
+    writer
+        .create_element("TypeDefinitions")
+        .write_inner_content(|writer| {
+            for unit in units() {
+                writer
+                    .create_element("SimpleType")
+                    .with_attribute(("name", unit.quantity))
+                    .write_inner_content(|writer| {
+                        writer
+                            .create_element("Real")
+                            .with_attributes([("quantity", unit.quantity), ("unit", unit.name)])
+                            .write_empty()?;
+                        Ok(())
+                    })?;
+            }
+            Ok(())
+        })?;
+    Ok(())
+}
+
+/// The quantity that a unit of the table measures, and the name of its type.
+pub(crate) fn quantity(unit: &str) -> Option<&'static str> {
+    let unit = units().iter().find(|known| known.name == unit)?;
+    Some(unit.quantity)
 }
 
 fn write_unit(writer: &mut Writer<Vec<u8>>, unit: &Unit) -> io::Result<()> {

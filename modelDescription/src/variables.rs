@@ -4,7 +4,7 @@ use coilwind::variables::{Variable, table};
 
 /// Returns the variables that importers see, in the order of the table.
 ///
-/// The motion profile of `coilwind run` is not among them: speed and traverse are inputs here.
+/// The spindle's motion profile of `coilwind run` is not among them: speed is an input here.
 pub fn variables() -> impl Iterator<Item = &'static Variable> {
     table().iter().filter(|variable| !variable.native_only)
 }

@@ -19,6 +19,9 @@ pub(crate) const MODEL_IDENTIFIER: &str = "CoilWinding";
 /// End of the default experiment, s: an importer that only simulates sees the demonstration to its end.
 pub const DEFAULT_STOP_TIME: f64 = 0.2;
 
+/// Tolerance of the default experiment, the one that most importers have: with it the solver keeps `solver.tolerance`.
+pub const DEFAULT_TOLERANCE: f64 = 1e-4;
+
 /// What the FMU can do, as attributes of `CoSimulation`.
 ///
 /// They announce what the C boundary does. A flag becomes true in the same commit as the code
@@ -71,14 +74,16 @@ pub(crate) fn render(guid: &str) -> Result<String, DescriptionError> {
                 .with_attributes(CAPABILITIES)
                 .write_empty()?;
             units::write(writer)?;
+            units::write_types(writer)?;
             write_categories(writer)?;
             // A millisecond is at most 0.1 rad of the demonstration.
-            let stop = number(DEFAULT_STOP_TIME);
+            let (stop, tolerance) = (number(DEFAULT_STOP_TIME), number(DEFAULT_TOLERANCE));
             writer
                 .create_element("DefaultExperiment")
                 .with_attributes([
                     ("startTime", "0"),
                     ("stopTime", stop.as_str()),
+                    ("tolerance", tolerance.as_str()),
                     ("stepSize", "0.001"),
                 ])
                 .write_empty()?;
@@ -118,10 +123,11 @@ fn write_variable(
     settings: &SceneSettings,
 ) -> io::Result<()> {
     let reference = variable.reference.to_string();
+    let description = described(variable);
     let mut element = writer.create_element("ScalarVariable").with_attributes([
         ("name", variable.name),
         ("valueReference", reference.as_str()),
-        ("description", variable.description),
+        ("description", description.as_str()),
         ("causality", variable.causality.as_str()),
         ("variability", variable.variability.as_str()),
     ]);
@@ -137,6 +143,14 @@ fn write_variable(
     Ok(())
 }
 
+/// What a variable means, with its choices: importers that read no enumerations show them too.
+fn described(variable: &Variable) -> String {
+    match variable.choices {
+        [] => variable.description.to_owned(),
+        choices => format!("{} (one of {})", variable.description, choices.join(", ")),
+    }
+}
+
 fn write_type(
     writer: &mut Writer<Vec<u8>>,
     variable: &Variable,
@@ -144,6 +158,10 @@ fn write_type(
 ) -> io::Result<()> {
     let mut attributes: Vec<(&str, String)> = Vec::new();
     if variable.kind == Kind::Real {
+        if let Some(quantity) = units::quantity(variable.unit) {
+            attributes.push(("declaredType", quantity.to_owned()));
+            attributes.push(("quantity", quantity.to_owned()));
+        }
         for (key, unit) in [
             ("unit", variable.unit),
             ("displayUnit", variable.display_unit),
@@ -161,7 +179,11 @@ fn write_type(
     if variable.kind == Kind::Real {
         attributes.extend(variable.nominal.map(|nominal| ("nominal", number(nominal))));
     }
-    attributes.extend(variable.start(settings).map(|value| ("start", text(value))));
+    attributes.extend(
+        variable
+            .start_in_fmu(settings)
+            .map(|value| ("start", text(value))),
+    );
     writer
         .create_element(variable.kind.as_str())
         .with_attributes(attributes.iter().map(|(key, value)| (*key, value.as_str())))
@@ -181,6 +203,17 @@ mod tests {
                 assert_eq!(start.kind(), variable.kind, "{}", variable.name);
             }
         }
+    }
+
+    /// FMI asks for names of types that are no names of variables, and for each of them once.
+    #[test]
+    fn types_have_names_of_their_own() {
+        let quantities: std::collections::BTreeSet<_> = coilwind::variables::units()
+            .iter()
+            .map(|unit| unit.quantity)
+            .collect();
+        assert_eq!(quantities.len(), coilwind::variables::units().len());
+        assert!(variables().all(|variable| !quantities.contains(variable.name)));
     }
 
     #[test]

@@ -65,6 +65,9 @@ impl Drive {
             });
         };
         let signals = Signals::read(path)?;
+        if simulation.nozzle_follows_law() && signals.has("nozzle_position") {
+            return Err(twice(path));
+        }
         let end = motion.stop_time.unwrap_or(signals.end());
         if end <= 0.0 {
             return Err(no_duration(path));
@@ -147,6 +150,15 @@ impl Drive {
                 Some(simulation.advance(inputs, length).map(|()| end))
             }
         }
+    }
+}
+
+fn twice(path: &Path) -> Failure {
+    Failure::Signals {
+        file: path.display().to_string(),
+        reason: "column nozzle_position, while traverse.mode was set to a law of the core's angle; leave out one of them, \
+                 or set traverse.mode = by-input"
+            .to_owned(),
     }
 }
 

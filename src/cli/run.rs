@@ -230,11 +230,16 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
         scene: name.to_owned(),
         reason,
     };
-    let mut simulation = Simulation::new(&scene).map_err(start_failure)?;
     let motion = Motion {
         inputs: args.inputs.clone().zip(args.step),
         stop_time: args.stop_time,
     };
+    let by_law = motion.inputs.is_some() && settings.nozzle_follows_law();
+    let simulation = match by_law {
+        true => Simulation::starting_by_law(&scene, settings.start_inputs()),
+        false => Simulation::new(&scene),
+    };
+    let mut simulation = simulation.map_err(start_failure)?;
     let drive = Drive::new(&motion, &scene, &simulation)?;
     if let Drive::Signals { held, .. } = &drive {
         simulation.set_start(*held).map_err(start_failure)?;

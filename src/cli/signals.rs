@@ -12,6 +12,7 @@ use std::path::Path;
 /// A column of samples.
 #[derive(Debug)]
 struct Column {
+    name: &'static str,
     set: fn(&mut Inputs, f64),
     values: Vec<f64>,
 }
@@ -84,8 +85,10 @@ impl Signals {
             columns: Vec::new(),
         };
         for (row, values) in rows.into_iter().zip(samples) {
-            match row.map(|v| v.access) {
-                Some(Access::Input { set, .. }) => signals.columns.push(Column { set, values }),
+            match row.map(|v| (v.name, v.access)) {
+                Some((name, Access::Input { set, .. })) => {
+                    signals.columns.push(Column { name, set, values });
+                }
                 _ => signals.time = values,
             }
         }
@@ -93,6 +96,11 @@ impl Signals {
             return Err(whole("no samples; one row or more is needed".to_owned()));
         }
         Ok(signals)
+    }
+
+    /// Whether there are samples of an input.
+    pub(super) fn has(&self, input: &str) -> bool {
+        self.columns.iter().any(|column| column.name == input)
     }
 
     /// Time of the last sample, s.
@@ -256,6 +264,7 @@ mod tests {
         spindle_speed: 0.0,
         nozzle_position: 0.25,
         tension_setpoint: 15.0,
+        ..Inputs::HELD
     };
 
     fn parse(text: &str) -> Signals {

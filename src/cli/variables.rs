@@ -69,6 +69,7 @@ fn as_json(v: &Variable, defaults: &SceneSettings) -> serde_json::Value {
         "start": start,
         "choices": v.choices,
         "keySuffixes": unit_suffixes(v),
+        "fmuStart": v.fmu_start,
         "nativeOnly": v.native_only,
         "description": v.description,
     })

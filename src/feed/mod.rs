@@ -7,7 +7,7 @@
 //! last edge is much stiffer than the dashpot's share, and an explicit law would cut the step.
 //!
 //! ```text
-//! m s_t'' = T_line - T_set          T_line = k (s - s_t) + c (s' - s_t'),  never below zero
+//! m s_t'' = T_line - T_set - c_t s_t'     T_line = k (s - s_t) + c (s' - s_t'),  never below zero
 //! T_nozzle = T_line exp(mu_exit beta)   beta: deflection at the exit, paying out
 //! ```
 //!
@@ -24,6 +24,8 @@ use serde::{Deserialize, Serialize};
 pub struct FeedSpec {
     /// equivalent mass, kg (0: the set force acts at the nozzle)
     pub mass: f64,
+    /// damper of the tensioner, N s/m
+    pub damping: f64,
     /// line stiffness, N/m (infinite: the tensioner's mass sits at the nozzle)
     pub line_stiffness: f64,
     /// line dashpot, N s/m
@@ -88,13 +90,15 @@ impl Feed {
         let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
         let line = |grown: f64| -> (f64, f64) {
             // line tension and its slope with the wire grown in this step
+            let drag = spec.damping / dt;
             if spec.mass == 0.0 {
-                return (set, 0.0);
+                return (set + drag * grown, drag);
             }
             if !elastic_line {
-                // mass at the nozzle: m s'' = T - T_set, backward Euler
+                // mass at the nozzle, backward Euler
                 let slope = spec.mass / (dt * dt);
-                return (set + slope * (grown - self.rate * dt), slope);
+                let inertia = slope * (grown - self.rate * dt);
+                return (set + inertia + drag * grown, slope + drag);
             }
             // the tensioner moves by its momentum in this step
             let paid = self.paid + dt * self.paid_rate;
@@ -129,6 +133,7 @@ impl Feed {
         if elastic_line {
             self.paid += dt * self.paid_rate;
             self.paid_rate += dt * (tension - set) / spec.mass;
+            self.paid_rate /= 1.0 + dt * spec.damping / spec.mass;
         } else {
             self.paid = self.fed;
             self.paid_rate = self.rate;
@@ -149,6 +154,7 @@ mod tests {
         let (m, k) = (1e-3, 97_800.0_f64);
         FeedSpec {
             mass: m,
+            damping: 0.0,
             line_stiffness: k,
             line_damping: 0.2 * (k * m).sqrt(),
             exit_friction: 0.0,
@@ -182,6 +188,22 @@ mod tests {
         let (feed, seen) = pull(&spec(), |_| 2.0, 0.05, 1e-6);
         assert!((seen.last().expect("steps were taken") - 15.0).abs() < 0.05);
         assert!((feed.rate - 2.0 / (1.0 + 15.0 / 48900.0)).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_damper_adds_its_share_of_the_speed() {
+        for (mass, line_stiffness) in [(0.0, 97_800.0), (1e-3, 97_800.0), (1e-3, f64::INFINITY)] {
+            let s = FeedSpec {
+                mass,
+                damping: 2.0,
+                line_stiffness,
+                ..spec()
+            };
+            let (feed, seen) = pull(&s, |_| 2.0, 0.05, 1e-6);
+            let last = seen.last().expect("steps were taken");
+            let expected = 15.0 + s.damping * feed.rate;
+            assert!((last - expected).abs() < 0.05, "{last} {expected}");
+        }
     }
 
     #[test]

@@ -82,6 +82,8 @@ pub(crate) struct Node {
     pub(crate) y_min: f64,
     pub(crate) y_max: f64,
     pub(crate) height_max: f64,
+    /// square of the distance from the axis, summed over the wire up to here, m3
+    second_moment: f64,
     stations_before: usize,
 }
 
@@ -270,10 +272,14 @@ impl Coil {
         let angle = from_angle + self.spec.direction * wrap_to_pi(polar - from_polar);
         let (mut y_min, mut y_max) = (settled.position.y, settled.position.y);
         let mut height_max = settled.height;
+        let mut second_moment = 0.0;
         if let Some(last) = self.nodes.last() {
             y_min = y_min.min(last.y_min);
             y_max = y_max.max(last.y_max);
             height_max = height_max.max(last.height_max);
+            let [square, before] = [settled, last.settled].map(|n| n.position.xz().norm_squared());
+            second_moment =
+                last.second_moment + 0.5 * (settled.arc - last.settled.arc) * (square + before);
         }
         self.nodes.push(Node {
             settled,
@@ -283,11 +289,22 @@ impl Coil {
             y_min,
             y_max,
             height_max,
+            second_moment,
             stations_before: self.records.len(),
         });
         while self.records.len() as f64 * STATION_STEP <= angle + HAIR {
             self.add_station();
         }
+    }
+
+    /// Square of the distance from the axis over the length of the settled wire, m3.
+    pub fn second_moment(&self) -> f64 {
+        self.nodes.last().map_or(0.0, |node| node.second_moment)
+    }
+
+    /// Winding angle at which the pass of the wire at this winding angle begins, rad.
+    pub fn pass_begins(&self, angle: f64) -> f64 {
+        self.passes.at(angle).1.from.max(0.0)
     }
 
     /// The part of this coil that a saved state holds; everything else is computed from it.

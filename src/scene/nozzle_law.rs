@@ -1,4 +1,4 @@
-//! Where the nozzle stands along the core axis at every angle of the spindle, in a native run: straight pieces over the angle.
+//! Where the nozzle stands along the core axis at every angle of the spindle, as straight pieces over the angle.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -86,6 +86,21 @@ impl NozzleLaw {
     fn piece_at(&self, angle: f64) -> Piece {
         let next = self.pieces.partition_point(|piece| piece.from <= angle);
         self.pieces[next.max(1) - 1]
+    }
+
+    /// Travel per angle, m/rad, from this angle on outwards (1) or back (-1), and the angle up to which it holds, rad.
+    pub(crate) fn towards(&self, angle: f64, outward: f64) -> (f64, f64) {
+        if outward > 0.0 {
+            let next = self.pieces.partition_point(|piece| piece.from <= angle);
+            let end = self
+                .pieces
+                .get(next)
+                .map_or(f64::INFINITY, |next| next.from);
+            return (self.pieces[next.max(1) - 1].travel, end);
+        }
+        let next = self.pieces.partition_point(|piece| piece.from < angle);
+        let piece = self.pieces[next.max(1) - 1];
+        (piece.travel, piece.from.min(angle))
     }
 
     /// Position before the spindle turns, m.

@@ -62,6 +62,7 @@ impl SceneSettings {
             "table" => problems.note(self.law_of_table())?,
             "orthocyclic" => self.orthocyclic(&self.layers(diameter, extent, problems)?),
             "helical" => self.helical(&self.layers(diameter, extent, problems)?),
+            // without inputs the nozzle goes with the core's angle
             _ => {
                 let travel = t.per_turn / TAU * self.spindle.speed.signum();
                 let turns = match self.spindle.turns {

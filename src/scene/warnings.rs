@@ -56,7 +56,7 @@ const KEYS_OF_CHOICES: [KeysOf; 10] = [
         ],
     ),
     keys_of(SHAPE, &["mesh"], &["core.file", "core.unit"]),
-    keys_of(MODE, &["by-angle"], &["traverse.per_turn"]),
+    keys_of(MODE, &["by-input", "by-angle"], &["traverse.per_turn"]),
     keys_of(MODE, &["orthocyclic"], &["traverse.crossover"]),
     keys_of(MODE, &["helical"], &["traverse.dwell_turns"]),
     keys_of(MODE, &["table"], &["traverse.file"]),

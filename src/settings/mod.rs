@@ -14,6 +14,9 @@ use crate::rod::{ENAMEL_DENSITY, Material};
 use crate::signals::Inputs;
 use std::collections::BTreeMap;
 
+/// Choice of `traverse.mode` in which the nozzle follows its input.
+pub const BY_INPUT: &str = "by-input";
+
 /// The leaves of a scene, in SI units. A rigidity, limit or length of 0 is derived when the
 /// [`Scene`](crate::scene::Scene) is built; `description` in the variable table says from what.
 ///
@@ -195,7 +198,14 @@ impl SceneSettings {
             spindle_speed: 0.0,
             nozzle_position: self.nozzle.y_start + self.traverse.lead,
             tension_setpoint: self.tensioner.tension,
+            ..Inputs::HELD
         }
+    }
+
+    /// Whether the nozzle of a run that is driven by inputs follows the law of `traverse.mode`: where that was set by
+    /// name. A scene file's mode is for runs of its own motion.
+    pub fn nozzle_follows_law(&self) -> bool {
+        self.traverse.mode != BY_INPUT && self.origin("traverse.mode") == Origin::Set
     }
 
     /// Where the value of a leaf came from, by the name of its variable.
@@ -265,6 +275,7 @@ impl Default for SceneSettings {
                 mass: 1e-3,
                 line_length: 0.5,
                 line_damping_ratio: 0.1,
+                damping: 0.0,
             },
             start: Start { clamp_y: 0.0 },
             spindle: Spindle {

@@ -22,6 +22,8 @@ pub struct Tensioner {
     pub line_length: f64,
     /// damping ratio of mass on line
     pub line_damping_ratio: f64,
+    /// damper on the tensioner, N s/m
+    pub damping: f64,
 }
 
 /// Where the wire begins: clamped to the middle of the +x face, tangent to it, straight to the
@@ -69,10 +71,10 @@ pub struct FlangeSettings {
     pub insulation: f64,
 }
 
-/// Traverse motion profile of a native run: nozzle y over the core angle.
+/// Law of the traverse: nozzle y over the core angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Traverse {
-    /// how the nozzle moves (one of `by-angle`, `orthocyclic`, `helical`, `table`)
+    /// how the nozzle moves (one of `by-input`, `by-angle`, `orthocyclic`, `helical`, `table`)
     pub mode: String,
     /// by-angle: nozzle travel per turn of the spindle, m (sign: direction along y)
     pub per_turn: f64,

@@ -18,9 +18,12 @@ impl Simulation {
     /// Outputs of parted wire: it neither pulls nor moves on, and measures stay those of the moment it broke.
     pub(super) fn update_broken(&mut self) {
         self.raise_flags();
+        let torque = -self.torque_of_inertia();
         let o = &mut self.run.outputs;
         o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
         (o.wire_tension, o.spindle_torque, o.feed_speed) = (0.0, 0.0, 0.0);
         o.tensioner_speed = 0.0;
+        o.nozzle_y = self.sys.state.support[1].point.y;
+        o.spindle_torque_total = torque;
     }
 }

@@ -1,5 +1,6 @@
 //! The way in: inputs for a communication step, or the scene's own motion profile.
 
+use super::nozzle_place::nozzle_of;
 use super::{SimError, Simulation, WORTH_A_STEP};
 use crate::integrate::SolverStatistics;
 use crate::signals::{EventKind, Inputs, Outputs};
@@ -27,7 +28,8 @@ impl Simulation {
 
     /// Advances by `dt`, s, with inputs that start at `inputs` and change evenly, at `rates` per s.
     ///
-    /// The nozzle moves evenly from where it is to where its input is at the end. Steps below a nanosecond only
+    /// The nozzle moves evenly from where it is to where its input is at the end, or with the core by the scene's law
+    /// ([`Self::starting_by_law`]). Steps below a nanosecond only
     /// add up until they are worth solving for. After an error see [`Self::advance`].
     pub fn advance_ramped(
         &mut self,
@@ -51,6 +53,7 @@ impl Simulation {
         if let Source::Inputs { inputs, rates } = &source {
             check_finite(inputs, self.run.time)?;
             check_finite(&inputs.after(rates, dt), self.run.time)?;
+            self.check_nozzle(&inputs.after(rates, dt))?;
         }
         let span = self.run.owed + dt;
         if span < WORTH_A_STEP {
@@ -61,6 +64,7 @@ impl Simulation {
         let owed = std::mem::take(&mut self.run.owed);
         self.run.last_span = span;
         let before = self.run.outputs;
+        let speed_before = self.sys.state.spindle.speed;
         if self.is_moved_by(&source, dt) {
             self.run.quiet = 0.0;
         }
@@ -69,7 +73,10 @@ impl Simulation {
         let gone = match &source {
             Source::Inputs { inputs, rates } => {
                 let drive = self.drive_of(*inputs, rates, [dt, span], owed);
-                self.follow(&drive)
+                match self.run.nozzle_by_law {
+                    true => self.follow_by_law(&drive),
+                    false => self.follow(&drive),
+                }
             }
             Source::Profile => {
                 let start = self.run.time - owed;
@@ -89,8 +96,9 @@ impl Simulation {
             let end = inputs.after(rates, dt);
             self.sys.state.spindle.speed = end.spindle_speed;
             self.sys.state.set_tension = end.tension_setpoint;
-            self.sys.state.support[1].point.y = end.nozzle_position;
+            self.sys.state.support[1].point = self.nozzle_at_end(&end);
         }
+        self.run.acceleration = (self.sys.state.spindle.speed - speed_before) / span;
         self.pass_time(dt);
         self.finish();
         self.update_rates(&before, span);
@@ -98,7 +106,7 @@ impl Simulation {
     }
 
     /// Goes through the interval of one drive.
-    fn follow(&mut self, drive: &Drive) -> Result<(), SimError> {
+    pub(super) fn follow(&mut self, drive: &Drive) -> Result<(), SimError> {
         self.sys.begin_drive(drive);
         self.through(drive)
     }
@@ -112,12 +120,13 @@ impl Simulation {
         } else {
             inputs
         };
-        let travel = end.nozzle_position - self.sys.state.support[1].point.y;
+        let way = nozzle_of(&self.scene, &end) - self.sys.state.support[1].point;
         Drive {
             duration: span,
             speed: start.spindle_speed,
             acceleration: rates.spindle_speed,
-            nozzle: NozzleDrive::Even(travel / span),
+            nozzle: NozzleDrive::Even(way.y / span),
+            aside: [way.x / span, way.z / span],
             tension: start.tension_setpoint,
             tension_rate: rates.tension_setpoint,
         }
@@ -130,7 +139,7 @@ impl Simulation {
                 let end = inputs.after(rates, dt);
                 *rates != Inputs::HELD
                     || inputs.spindle_speed != 0.0
-                    || end.nozzle_position - self.sys.state.support[1].point.y != 0.0
+                    || self.nozzle_at_end(&end) != self.sys.state.support[1].point
                     || inputs.tension_setpoint != self.sys.state.set_tension
             }
             Source::Profile => true,
@@ -195,6 +204,8 @@ pub(super) fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {
         ("spindle_speed", inputs.spindle_speed),
         ("nozzle_position", inputs.nozzle_position),
         ("tension_setpoint", inputs.tension_setpoint),
+        ("nozzle_offset_x", inputs.nozzle_offset_x),
+        ("nozzle_offset_z", inputs.nozzle_offset_z),
     ] {
         if !value.is_finite() {
             return Err(SimError {

@@ -48,6 +48,8 @@ impl Simulation {
     /// The wire has parted at a live node; from now on it stays as it is.
     pub(super) fn note_break(&mut self, node: usize, text: String) {
         self.run.broken = true;
+        let before: f64 = self.sys.state.rod.rest[..node].iter().sum();
+        self.run.outputs.break_position = self.sys.state.arc0 + before;
         self.note_fault(DefectKind::Break, node);
         self.report(EventKind::Break, text);
     }

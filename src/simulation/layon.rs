@@ -1,7 +1,7 @@
 //! Where the wire meets the coil, as a place that moves evenly along the wire.
 
 use super::Simulation;
-use crate::math::{Spin, polar_angle, scaled, wrap_to_pi};
+use crate::math::{Spin, V3, polar_angle, scaled, wrap_to_pi};
 
 /// Clearance up to which wire lies on the core, m, for wire of 0.7 mm.
 ///
@@ -14,8 +14,8 @@ const LIES: f64 = 2e-6;
 pub(super) struct LayOn {
     /// angle along the wire from the clamp, rad
     pub(super) angle: f64,
-    /// along y, m
-    pub(super) position: f64,
+    /// of the wire's centreline, in the frame at rest, m
+    pub(super) point: V3,
     /// length of wire from there to the nozzle, m
     pub(super) free_length: f64,
     /// unstretched length of wire from the clamp to there, m
@@ -66,7 +66,7 @@ impl Simulation {
         LayOn {
             arc: self.sys.state.arc0 + laid + share * rest[node],
             angle: angle + share * self.coil.spec().direction * wrap_to_pi(ahead - polar),
-            position: x[node].y + share * edge.y,
+            point: x[node] + share * edge,
             free_length: after + (1.0 - share) * length(node),
         }
     }

@@ -12,7 +12,10 @@ mod freezing;
 mod io;
 mod judgement;
 mod layon;
+mod machine;
 mod motion_profile;
+mod nozzle_by_law;
+mod nozzle_place;
 mod nozzle_way;
 mod outputs;
 mod product;
@@ -74,6 +77,8 @@ pub struct Simulation {
     run: RunState,
     /// polar angle from each laid node to lift-off, at the last look, rad
     behind: Vec<f64>,
+    /// between which wire can be wound along y, m
+    ends: [f64; 2],
     /// how much [`RunState::work`] may become; the caller's
     most_work: u64,
     /// ends a step of the run early where it is up; the caller's
@@ -87,6 +92,8 @@ impl Simulation {
             spindle_speed: self.sys.state.spindle.speed,
             nozzle_position: self.sys.state.support[1].point.y,
             tension_setpoint: self.sys.state.set_tension,
+            nozzle_offset_x: self.sys.state.support[1].point.x - self.scene.nozzle.distance,
+            nozzle_offset_z: self.sys.state.support[1].point.z,
         }
     }
 

@@ -106,6 +106,7 @@ impl MotionProfile {
                     speed: self.speed,
                     acceleration: 0.0,
                     nozzle: NozzleDrive::WithSpindle(piece.travel * self.speed.signum()),
+                    aside: [0.0; 2],
                     tension,
                     tension_rate: 0.0,
                 };

@@ -133,6 +133,7 @@ impl Simulation {
         let breaks = self.faults_of(DefectKind::Break);
         let slacks = self.faults_of(DefectKind::Slack);
         let nozzle_angle = self.nozzle_angle();
+        let machine = self.for_the_machine(&layon);
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
         o.wire_tension = tension;
@@ -163,12 +164,14 @@ impl Simulation {
         o.feed_speed = feed.rate;
         o.fed_length = feed.fed;
         o.free_length = layon.free_length;
-        o.layon_position = layon.position;
+        o.layon_position = layon.point.y;
         o.layon_angle = layon.angle;
         o.tensioner_position = feed.paid - self.run.paid0;
         o.tensioner_speed = feed.paid_rate;
         o.nozzle_angle = nozzle_angle;
         o.wire_length = layon.arc;
+        o.nozzle_y = self.sys.state.support[1].point.y;
+        machine.write(o);
         o.coil_width = self.coil.coil_width();
         o.mean_pitch = self.coil.mean_pitch();
         o.fill_factor = self.coil.fill_factor();

@@ -55,6 +55,11 @@ pub struct Fill {
 }
 
 impl Simulation {
+    /// Resistance of so much unstretched wire, m, at 20 degC, of its unstretched section, ohm.
+    pub(super) fn resistance_of(&self, length: f64) -> f64 {
+        self.scene.resistivity * length / self.scene.wire.bare_area()
+    }
+
     /// The coil as a product.
     pub fn product(&self) -> Product {
         let wire = &self.scene.wire;
@@ -83,7 +88,7 @@ impl Simulation {
             wire_length_m: length,
             wire_mass_kg: wire.mass_per_length() * length,
             resistivity_ohm_m: self.scene.resistivity,
-            resistance_ohm: self.scene.resistivity * length / wire.bare_area(),
+            resistance_ohm: self.resistance_of(length),
             fill: self.coil.fill_factor(),
             // the limit line is as high in the middle as it is on average
             window: limit.and_then(|Window { width, height, .. }| Some(fill(width?, height))),

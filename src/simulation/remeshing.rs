@@ -379,7 +379,7 @@ impl Simulation {
         let node = self.lift_off();
         let x = self.sys.state.rod.x[node];
         let reach = libm::hypot(x.x, x.z) + self.scene.wire.radius();
-        let distance = self.scene.nozzle.distance;
+        let distance = self.nozzle_distance();
         if node == 0 || node + 1 == self.sys.state.rod.nodes() || reach < distance {
             return Ok(());
         }
@@ -463,7 +463,7 @@ impl Simulation {
         let rod = &self.sys.state.rod;
         let way = (self.sys.state.support[1].point - rod.x[0]).norm();
         // a core cannot be larger than the nozzle's circle
-        let most = way + (self.run.farthest + TAU) * self.scene.nozzle.distance;
+        let most = way + (self.run.farthest + TAU) * self.nozzle_distance();
         if feed.fed <= RUNAWAY * most {
             return Ok(());
         }

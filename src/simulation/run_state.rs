@@ -15,6 +15,8 @@ pub(super) struct RunState {
     pub(super) angle0: f64,
     /// length of the last step of the method, s
     pub(super) last_step: f64,
+    /// mean acceleration of the spindle over the last communication step, rad/s2
+    pub(super) acceleration: f64,
     /// length of the last communication step, s; 0: none yet
     pub(super) last_span: f64,
     /// elapsed time, s
@@ -47,6 +49,8 @@ pub(super) struct RunState {
     /// farthest that the spindle has been from where it started, rad
     pub(super) farthest: f64,
     pub(super) traverse: Traverse,
+    /// whether the nozzle follows the scene's law and not its input
+    pub(super) nozzle_by_law: bool,
     /// tension that the quasi-static height is for, N
     pub(super) yardstick_tension: f64,
 }

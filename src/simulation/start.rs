@@ -3,6 +3,7 @@
 use super::core_model::{core_flanges, core_shape, core_surface};
 use super::door::check_finite;
 use super::freezing::{FreezePolicy, Watch};
+use super::nozzle_place::nozzle_of;
 use super::nozzle_way::Traverse;
 use super::run_state::RunState;
 use super::{MotionProfile, SimError, Simulation};
@@ -70,17 +71,20 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     }
     let radius = section.radius();
     let half = half_width(scene, &surface)?;
-    if surface.radius_max() + radius >= scene.nozzle.distance {
+    let nozzle = nozzle_of(scene, inputs);
+    let distance = libm::hypot(nozzle.x, nozzle.z);
+    if surface.radius_max() + radius >= distance {
         return Err(SimError::setup(format!(
             "nozzle.distance = {} m lies inside the circle of radius {} m that the core sweeps; allowed: more than that radius",
-            scene.nozzle.distance,
+            distance,
             surface.radius_max() + radius
         )));
     }
-    let angle0 = crate::settings::Start::core_angle(half, radius, scene.nozzle.distance);
+    // the core begins turned towards the nozzle
+    let aside = libm::atan2(-nozzle.z, nozzle.x);
+    let angle0 = crate::settings::Start::core_angle(half, radius, distance) + aside;
     let clamp_core = V3::new(half + radius, scene.start.clamp_y, 0.0);
     let clamp = Spin::new(angle0).to_lab(clamp_core);
-    let nozzle = V3::new(scene.nozzle.distance, inputs.nozzle_position, 0.0);
     let points = line_of_nodes(scene, &surface, clamp, nozzle, angle0);
     let tension = inputs.tension_setpoint;
     let plastic = stretch_at(&section, tension);
@@ -116,6 +120,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     };
     let spec = FeedSpec {
         mass: t.mass,
+        damping: t.damping,
         line_stiffness,
         line_damping: if line_stiffness.is_finite() {
             2.0 * t.line_damping_ratio * (line_stiffness * t.mass).sqrt()
@@ -225,6 +230,7 @@ impl Simulation {
             spindle_speed: 0.0,
             nozzle_position: scene.nozzle_law.start(),
             tension_setpoint: scene.tensioner.tension,
+            ..Inputs::HELD
         };
         Self::starting_with(scene, inputs)
     }
@@ -254,6 +260,7 @@ impl Simulation {
             policy,
             angle0,
             last_step,
+            acceleration: 0.0,
             last_span: 0.0,
             time: 0.0,
             time_lost: 0.0,
@@ -272,8 +279,10 @@ impl Simulation {
             paid0: sys.state.feed.map_or(0.0, |feed| feed.paid),
             farthest: 0.0,
             traverse: Traverse::new(inputs.nozzle_position),
+            nozzle_by_law: false,
             yardstick_tension: yardstick_tension(scene, &inputs),
         };
+        let ends = winding_ends(scene, &sys);
         let mut sim = Self {
             scene: scene.clone(),
             motion_profile: MotionProfile::new(scene),
@@ -282,6 +291,7 @@ impl Simulation {
             stepper,
             run,
             behind: Vec::new(),
+            ends,
             most_work: u64::MAX,
             stop: None,
         };
@@ -297,8 +307,23 @@ impl Simulation {
 
     /// Starts over with other inputs; only before the first step.
     pub fn set_start(&mut self, inputs: Inputs) -> Result<(), SimError> {
-        *self = Self::starting_with(&self.scene, inputs)?;
+        *self = match self.run.nozzle_by_law {
+            true => Self::starting_by_law(&self.scene, inputs)?,
+            false => Self::starting_with(&self.scene, inputs)?,
+        };
         Ok(())
+    }
+}
+
+/// Where wire can be wound along y, m: between the flanges that the scene gives, or up to the ends of the core.
+fn winding_ends(scene: &Scene, sys: &System) -> [f64; 2] {
+    match (scene.core.flange(), &sys.model.core) {
+        (Some(flange), _) => [-0.5 * flange.inner_distance, 0.5 * flange.inner_distance],
+        (None, Some(surface)) => {
+            let (low, high) = surface.bounds();
+            [low.y, high.y]
+        }
+        (None, None) => [f64::MIN, f64::MAX],
     }
 }
 

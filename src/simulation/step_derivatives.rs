@@ -92,6 +92,8 @@ fn reach(scene: &Scene, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
     let most = [
         (along.spindle_speed, turn.min(share)),
         (along.nozzle_position, scaled(WAY, diameter)),
+        (along.nozzle_offset_x, scaled(WAY, diameter)),
+        (along.nozzle_offset_z, scaled(WAY, diameter)),
         (
             along.tension_setpoint,
             (PULL * inputs.tension_setpoint).max(least),

@@ -3,7 +3,7 @@
 use super::System;
 use crate::math::V3;
 
-/// Motion of the nozzle along +y over an interval.
+/// Motion of the nozzle along +y over an interval, the direction of the traverse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum NozzleDrive {
     /// Constant velocity, m/s. It may differ from that of the interval before.
@@ -21,8 +21,10 @@ pub struct Drive {
     pub speed: f64,
     /// acceleration of the spindle, rad/s^2
     pub acceleration: f64,
-    /// motion of the nozzle
+    /// motion of the nozzle along the core axis
     pub nozzle: NozzleDrive,
+    /// velocity of the nozzle along x and z, m/s
+    pub aside: [f64; 2],
     /// set pull of the tensioner at the start, N
     pub tension: f64,
     /// rate of the set pull, N/s
@@ -38,9 +40,17 @@ pub(crate) struct NozzleCourse {
     position: f64,
     /// core angle at the start of the interval, rad
     angle: f64,
+    /// velocity along x and z, m/s
+    aside: [f64; 2],
 }
 
 impl Drive {
+    /// Velocity of a nozzle that goes at this one along the core axis, m/s.
+    fn velocity(&self, along: f64) -> V3 {
+        let [x, z] = self.aside;
+        V3::new(x, along, z)
+    }
+
     /// Travel of the nozzle per core angle, m/rad; `None` where it moves on its own or not at all.
     fn travel(&self) -> Option<f64> {
         match self.nozzle {
@@ -61,10 +71,10 @@ impl System {
             NozzleDrive::Even(velocity) => {
                 // speeds may jump here: held nodes take theirs over before the nozzle sets off
                 self.place_supports();
-                self.state.support[1].velocity = V3::new(0.0, velocity, 0.0);
+                self.state.support[1].velocity = drive.velocity(velocity);
             }
             // nobody steers it: it stands, whatever it did in the interval before
-            NozzleDrive::WithSpindle(0.0) => self.state.support[1].velocity = V3::zeros(),
+            NozzleDrive::WithSpindle(0.0) => self.state.support[1].velocity = drive.velocity(0.0),
             NozzleDrive::WithSpindle(_) => {}
         }
     }
@@ -80,7 +90,7 @@ impl System {
         if let Some(travel) = drive.travel() {
             let spindle = self.state.spindle;
             let rate = (spindle.after(step).angle - spindle.angle) / step;
-            self.state.support[1].velocity = V3::new(0.0, travel * rate, 0.0);
+            self.state.support[1].velocity = drive.velocity(travel * rate);
         }
     }
 
@@ -90,6 +100,7 @@ impl System {
             travel,
             position: self.state.support[1].point.y,
             angle: self.state.spindle.angle,
+            aside: drive.aside,
         })
     }
 }
@@ -102,7 +113,8 @@ impl NozzleCourse {
     pub(crate) fn steer(&self, sys: &mut System, step: f64) {
         let next = self.position + self.travel * (sys.state.spindle.after(step).angle - self.angle);
         let nozzle = &mut sys.state.support[1];
-        nozzle.velocity = V3::new(0.0, (next - nozzle.point.y) / step, 0.0);
+        let [x, z] = self.aside;
+        nozzle.velocity = V3::new(x, (next - nozzle.point.y) / step, z);
     }
 
     /// Puts the nozzle where the spindle's present angle wants it.

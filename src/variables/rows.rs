@@ -20,6 +20,7 @@ macro_rules! row {
             max: None,
             nominal: None,
             choices: &[],
+            fmu_start: None,
             native_only: false,
             description: $description,
             access: $access,
@@ -194,11 +195,6 @@ macro_rules! native {
     ($($cell:tt)*) => { Variable { native_only: true, ..fixed!($($cell)*) } };
 }
 
-/// Parameter of type String that only the native command reads.
-macro_rules! native_text {
-    ($($cell:tt)*) => { Variable { native_only: true, ..text!($($cell)*) } };
-}
-
 /// Parameter of type Boolean.
 macro_rules! switch {
     ($reference:literal, $name:literal, $section:ident . $field:ident, $description:literal) => {
@@ -224,6 +220,11 @@ macro_rules! text {
     };
 }
 
+/// Parameter of type String whose start value in the FMU is not the scene's.
+macro_rules! fmu_text {
+    ($start:literal, $($cell:tt)*) => { Variable { fmu_start: Some($start), ..text!($($cell)*) } };
+}
+
 macro_rules! table {
     ($($row:ident ( $($cell:tt)* ) ;)*) => {
         pub(super) static TABLE: &[Variable] = &[$($row!($($cell)*)),*];
@@ -234,6 +235,8 @@ table! {
     input(0, spindle_speed, "rad/s", "rpm", -2000.0, 2000.0, 100.0, "angular velocity of the core about +y");
     input(1, nozzle_position, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis, y");
     input(2, tension_setpoint, "N", "", 0.0, 1e4, 10.0, "pull of the tensioner");
+    input(3, nozzle_offset_x, "m", "mm", -10.0, 10.0, 1e-2, "nozzle farther from the core axis than nozzle.distance, along x");
+    input(4, nozzle_offset_z, "m", "mm", -10.0, 10.0, 1e-2, "nozzle beside where the scene has it, along z");
 
     output(100, wire_tension, "N", "", -1e4, 1e5, 10.0, "tension in the free span at the nozzle exit");
     output(101, wire_tension_min, "N", "", -1e4, 1e5, 10.0, "smallest wire_tension since the last communication point");
@@ -277,6 +280,16 @@ table! {
     output(138, tensioner_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire at the tensioner");
     output(139, nozzle_angle, "rad", "deg", -1.6, 1.6, 0.1, "angle at the nozzle between the free span and the plane across the axis; positive towards larger y");
     output(140, wire_length, "m", "", 0.0, 1e6, 1.0, "wire from the clamp to where it meets the coil, unstretched");
+
+    output(141, nozzle_y, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis: that of nozzle_position, or of the law of traverse.mode");
+    output(142, layon_x, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along x; the frame does not turn, the nozzle is on +x");
+    output(143, layon_z, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along z of the same frame; layon_position is along y");
+    output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns laid in the layer that is being wound");
+    output(145, flange_clearance, "m", "mm", -10.0, 10.0, 1e-3, "from the surface of the wire where it meets the coil to the nearer flange, along y; without flanges to the nearer end of the core");
+    output(146, wire_resistance, "ohm", "mohm", 0.0, 1e9, 0.1, "resistance of wire_length at 20 degC, as annealed copper of unstretched section");
+    output(147, coil_inertia, "kg.m2", "g.mm2", 0.0, 1e3, 1e-6, "moment of inertia of the settled wire about the core axis, without the core's");
+    output(148, spindle_torque_total, "N.m", "N.mm", -1e6, 1e6, 0.1, "spindle_torque less coil_inertia times the mean acceleration of the last step; the core's own inertia is the drive's");
+    output(149, break_position, "m", "", 0.0, 1e6, 1.0, "unstretched wire from the clamp to where it broke; 0: it is whole");
 
     local(200, solver_steps, "1", "", 0.0, 1e18, 1e5, "time steps taken");
     local(201, solver_rejects, "1", "", 0.0, 1e18, 1.0, "time steps rejected");
@@ -331,6 +344,7 @@ table! {
     fixed(1301, "tensioner.mass", tensioner.mass, "kg", "g", 0.0, 100.0, 1e-3, "equivalent mass of the tensioner; 0: constant pull at the nozzle");
     fixed(1302, "tensioner.line_length", tensioner.line_length, "m", "", 0.0, 100.0, 1.0, "wire between tensioner and nozzle");
     fixed(1303, "tensioner.line_damping_ratio", tensioner.line_damping_ratio, "1", "", 0.0, 10.0, 0.1, "damping ratio of the mass on the line");
+    fixed(1304, "tensioner.damping", tensioner.damping, "N.s/m", "", 0.0, 1e4, 1.0, "damper on the tensioner: pull per speed of the wire that it lets go");
 
     fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face");
 
@@ -338,18 +352,18 @@ table! {
     native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "turns over which the speed rises, at constant acceleration");
     native(1502, "spindle.turns", spindle.turns, "1", "", 0.0, 1e5, 1.0, "turns of the spindle until the native programme ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle");
 
-    native(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per turn of the native programme; the sign is its direction along y");
-    native(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
-    native_text(1602, "traverse.mode", (traverse.mode), ["by-angle", "orthocyclic", "helical", "table"], "nozzle travel: even with the core's angle; layers with a straight part and a step in each turn; layers of even travel; from a table");
-    native(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the step to the next turn");
-    native(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: turns that the nozzle stands at the end of a layer");
-    native_text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file");
-    native(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
+    fixed(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per turn; the sign is its direction along y");
+    fixed(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
+    fmu_text("by-input", 1602, "traverse.mode", (traverse.mode), ["by-input", "by-angle", "orthocyclic", "helical", "table"], "nozzle travel: as nozzle_position says; even with the core's angle, as without inputs too; layers with a straight part and a step in each turn; layers of even travel; from a table");
+    fixed(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the step to the next turn");
+    fixed(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: turns that the nozzle stands at the end of a layer");
+    text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file, set in the FMU relative to its resources or as given");
+    fixed(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
 
-    native(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
-    native(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");
-    native_text(1652, "winding.direction", (winding.direction), ["+y", "-y"], "layered traverse modes: direction of the first layer");
-    native(1653, "winding.pitch", winding.pitch, "m", "mm", 0.0, 1.0, 1e-3, "layered traverse modes: distance of neighbouring turns; 0: fills the window, or the wire's outer diameter without flanges");
+    fixed(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
+    fixed(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");
+    text(1652, "winding.direction", (winding.direction), ["+y", "-y"], "layered traverse modes: direction of the first layer");
+    fixed(1653, "winding.pitch", winding.pitch, "m", "mm", 0.0, 1.0, 1e-3, "layered traverse modes: distance of neighbouring turns; 0: fills the window, or the wire's outer diameter without flanges");
 
     fixed(1700, "contact.stiffness", contact.stiffness, "N/m2", "", 1e6, 1e13, 1e10, "line load per depth");
     fixed(1701, "contact.restitution", contact.restitution, "1", "", 0.0, 1.0, 1.0, "rebound over impact speed");

@@ -7,6 +7,8 @@ use std::f64::consts::PI;
 pub struct Unit {
     /// FMI unit name
     pub name: &'static str,
+    /// what it measures, the name of its FMI type
+    pub quantity: &'static str,
     /// exponents of the SI base units `kg`, `m`, `s`, `A`, `rad`; the factor is 1 throughout
     pub base: &'static [(&'static str, i32)],
     /// units shown to people: name, factor, offset, with `shown = factor * value + offset`
@@ -18,83 +20,116 @@ pub fn units() -> &'static [Unit] {
     &[
         Unit {
             name: "1",
+            quantity: "Number",
             base: &[],
             display: &[],
         },
         Unit {
             name: "m",
+            quantity: "Length",
             base: &[("m", 1)],
             display: &[("mm", 1e3, 0.0), ("um", 1e6, 0.0)],
         },
         Unit {
             name: "m/s",
+            quantity: "Velocity",
             base: &[("m", 1), ("s", -1)],
             display: &[("mm/s", 1e3, 0.0)],
         },
         Unit {
             name: "m/rad",
+            quantity: "LengthPerAngle",
             base: &[("m", 1), ("rad", -1)],
             display: &[("um/rad", 1e6, 0.0)],
         },
         Unit {
             name: "rad",
+            quantity: "Angle",
             base: &[("rad", 1)],
             display: &[("deg", 180.0 / PI, 0.0)],
         },
         Unit {
             name: "rad/s",
+            quantity: "AngularVelocity",
             base: &[("rad", 1), ("s", -1)],
             display: &[("rpm", 30.0 / PI, 0.0)],
         },
         Unit {
             name: "s",
+            quantity: "Time",
             base: &[("s", 1)],
             display: &[("ms", 1e3, 0.0), ("us", 1e6, 0.0)],
         },
         Unit {
             name: "kg",
+            quantity: "Mass",
             base: &[("kg", 1)],
             display: &[("g", 1e3, 0.0)],
         },
         Unit {
             name: "kg/m3",
+            quantity: "Density",
             base: &[("kg", 1), ("m", -3)],
             display: &[],
         },
         Unit {
             name: "N",
+            quantity: "Force",
             base: &[("kg", 1), ("m", 1), ("s", -2)],
             display: &[],
         },
         Unit {
             name: "N.m",
+            quantity: "Torque",
             base: &[("kg", 1), ("m", 2), ("s", -2)],
             display: &[("N.mm", 1e3, 0.0)],
         },
         Unit {
             name: "J",
+            quantity: "Energy",
             base: &[("kg", 1), ("m", 2), ("s", -2)],
             display: &[],
         },
         Unit {
             name: "N.m2",
+            quantity: "Rigidity",
             base: &[("kg", 1), ("m", 3), ("s", -2)],
             display: &[],
         },
         Unit {
             name: "N/m2",
+            quantity: "LineLoadPerDepth",
             base: &[("kg", 1), ("m", -1), ("s", -2)],
             display: &[],
         },
         Unit {
             name: "Pa",
+            quantity: "Stress",
             base: &[("kg", 1), ("m", -1), ("s", -2)],
             display: &[("MPa", 1e-6, 0.0)],
         },
         Unit {
             name: "Ohm.m",
+            quantity: "Resistivity",
             base: &[("kg", 1), ("m", 3), ("s", -3), ("A", -2)],
             display: &[],
+        },
+            name: "N.s/m",
+            quantity: "Damping",
+            base: &[("kg", 1), ("s", -1)],
+            display: &[],
+        },
+        Unit {
+            name: "kg.m2",
+            quantity: "MomentOfInertia",
+            base: &[("kg", 1), ("m", 2)],
+            display: &[("g.mm2", 1e9, 0.0)],
+        },
+        Unit {
+            name: "ohm",
+            quantity: "Resistance",
+            base: &[("kg", 1), ("m", 2), ("s", -3), ("A", -2)],
+            display: &[("mohm", 1e3, 0.0)],
         },
     ]
 }
@@ -131,6 +166,7 @@ const SUFFIXES: &[(&str, &str, Scale)] = &[
     ("g_per_cm3", "kg/m3", Scale::Tens(3)),
     ("N", "N", Scale::Tens(0)),
     ("mN", "N", Scale::Tens(-3)),
+    ("N_s_per_m", "N.s/m", Scale::Tens(0)),
     ("Nm", "N.m", Scale::Tens(0)),
     ("Nmm", "N.m", Scale::Tens(-3)),
     ("Nm2", "N.m2", Scale::Tens(0)),

@@ -168,6 +168,8 @@ pub struct Variable {
     pub nominal: Option<f64>,
     /// the texts allowed; empty: any
     pub choices: &'static [&'static str],
+    /// start value in the FMU where that is not the scene's
+    pub fmu_start: Option<&'static str>,
     /// serves `coilwind run` only; the FMU has inputs or the importer instead
     pub native_only: bool,
     /// what it means
@@ -187,6 +189,15 @@ impl Variable {
         }
     }
 
+    /// The value this parameter or input of the FMU has before the importer sets it; `None` for what the simulator
+    /// computes.
+    pub fn start_in_fmu(&self, settings: &SceneSettings) -> Option<Value> {
+        match self.fmu_start {
+            Some(text) => Some(Value::String(text.to_owned())),
+            None => self.start(settings),
+        }
+    }
+
     /// Whether a value is of the row's kind, finite and inside its range or among its choices.
     pub fn admits(&self, value: &Value) -> bool {
         match value {
@@ -199,6 +210,12 @@ impl Variable {
             Value::Integer(_) | Value::Boolean(_) => true,
             Value::String(s) => self.choices.is_empty() || self.choices.contains(&s.as_str()),
         }
+    }
+
+    /// The number in the row's range that is nearest to `x`.
+    pub fn nearest(&self, x: f64) -> f64 {
+        let low = self.min.unwrap_or(f64::NEG_INFINITY);
+        x.clamp(low, self.max.unwrap_or(f64::INFINITY))
     }
 
     /// What the row allows, in words: `0.00002 to 0.005 m`.

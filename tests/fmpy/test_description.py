@@ -27,6 +27,17 @@ def test_reals_carry_units_and_parameters_start_values(description):
             assert variable.start is not None, variable.name
 
 
+def test_reals_have_a_type_that_names_their_quantity(description):
+    types = {t.name: t for t in description.typeDefinitions}
+    for variable in description.modelVariables:
+        if variable.type == "Real":
+            declared = variable.declaredType
+            assert types[declared.name].unit == variable.unit, variable.name
+            assert declared.quantity == declared.name
+    shape = next(v for v in description.modelVariables if v.name == "core.shape")
+    assert shape.description.endswith("(one of rounded-box, cylinder, mesh)")
+
+
 def test_every_output_is_in_the_structure(description):
     outputs = [v.name for v in description.modelVariables if v.causality == "output"]
     assert [u.variable.name for u in description.outputs] == outputs

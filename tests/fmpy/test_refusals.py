@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from conftest import DISCARD, ERROR
+from conftest import DISCARD, ERROR, WARNING
 from fmpy.fmi1 import FMICallException
 
 STEP = 2e-5
@@ -66,6 +66,38 @@ def test_inputs_that_are_no_numbers(slave, value):
     assert "spindle_speed" in reason
     assert slave.get("spindle_speed") == before
     still_steps(slave)
+
+
+def test_inputs_out_of_range_are_held_and_the_run_goes_on(slave):
+    slave.start()
+    told = len(slave.log)
+    slave.set(tension_setpoint=-5.0, spindle_speed=1e6)
+    assert (slave.get("tension_setpoint"), slave.get("spindle_speed")) == (0.0, 2000.0)
+    held = slave.log[told:]
+    assert [entry[1:3] for entry in held] == [(WARNING, "logStatusWarning")] * 2
+    assert "held at 0" in held[0][3]
+    slave.set(tension_setpoint=15.0, spindle_speed=0.0)
+    tension = slave.references(["tension_setpoint"])
+    slave.fmu.setRealInputDerivatives(tension, [1], [-1e9])
+    slave.fmu.doStep(0.0, STEP)
+    assert slave.log[-1][1] == WARNING
+    assert slave.get("tension_setpoint") == pytest.approx(0.0, abs=1e-9)
+    still_steps(slave, STEP)
+
+
+def test_the_tolerance_of_the_experiment(make_slave, description):
+    assert float(description.defaultExperiment.tolerance) == 1e-4
+    solved = []
+    for tolerance in (None, 1e-4, 5e-4):
+        slave = make_slave()
+        slave.fmu.setupExperiment(tolerance=tolerance)
+        slave.fmu.enterInitializationMode()
+        slave.fmu.exitInitializationMode()
+        told = [entry for entry in slave.log if "tolerance" in entry[3]]
+        solved.append((slave.get("solver.tolerance"), len(told)))
+    assert solved == [(2e-6, 0), (2e-6, 0), (pytest.approx(1e-5), 1)]
+    slave = make_slave()
+    assert "above 0" in refused(slave, slave.fmu.setupExperiment, tolerance=-1.0)
 
 
 def test_calls_out_of_order(slave):

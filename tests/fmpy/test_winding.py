@@ -101,6 +101,35 @@ def test_native_run_gives_the_same_numbers_to_the_bit(
     assert timeless_summary(driven)["status"] == "done"
 
 
+@pytest.mark.parametrize("scene, mode", ((SCENE, "by-angle"), ("bobbin", "orthocyclic"), ("bobbin", "helical")))
+def test_a_master_that_sends_speed_only_winds_what_a_native_run_winds(
+    command, make_slave, tmp_path, scene, mode
+):
+    size, steps, driven, native = 2.0**-10, 150, tmp_path / "driven", tmp_path / "native"
+    speed = [min(4.0 * (k + 0.5), 100.0) for k in range(steps)]
+    slave = make_slave()
+    start = {"scene__file": scene, "traverse__mode": mode, "output__directory": str(driven)}
+    slave.start(inputs={"spindle_speed": speed[0]}, **start)
+    for k in range(steps):
+        slave.set(spindle_speed=speed[k])
+        slave.fmu.doStep(k * size, size)
+    at, off = slave.get("nozzle_y"), slave.get("nozzle_position") - slave.get("nozzle_y")
+    slave.fmu.terminate()
+    assert abs(off) > 1e-4, "the nozzle was moved by no input"
+
+    inputs = tmp_path / "inputs.csv"
+    samples = [f"{k * size!r},{x!r}" for k, x in enumerate(speed)]
+    # a sample more at each step keeps the speed from being interpolated
+    jumps = [f"{(k + 1) * size!r},{x!r}" for k, x in enumerate(speed)]
+    rows = [row for pair in zip(samples, jumps) for row in pair]
+    inputs.write_text("time,spindle_speed\n" + "\n".join(rows) + "\n", encoding="utf-8")
+    arguments = ["run", scene, "--set", f"traverse.mode={mode}", "--inputs", inputs, "--step", repr(size)]
+    subprocess.run([command, *arguments, "--out", native, "--quiet", "--no-geometry"], check=True)
+    assert (driven / "history.csv").read_bytes() == (native / "history.csv").read_bytes()
+    with open(native / "history.csv", newline="", encoding="utf-8") as file:
+        assert float(list(csv.DictReader(file))[-1]["nozzle_y"]) == at
+
+
 def timeless_summary(directory):
     """summary.json without how long it took."""
     summary = json.loads((directory / "summary.json").read_text())

@@ -76,12 +76,12 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: fmi2Component) {
 
 /// `fmi2SetupExperiment`: sets the start time and, if defined, the stop time, in s.
 ///
-/// The tolerance is not used, since `solver.tolerance` sets the error of the solver.
+/// The tolerance is relative to the default experiment's: with that one the solver keeps the scene's `solver.tolerance`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetupExperiment(
     c: fmi2Component,
-    _toleranceDefined: fmi2Boolean,
-    _tolerance: fmi2Real,
+    toleranceDefined: fmi2Boolean,
+    tolerance: fmi2Real,
     startTime: fmi2Real,
     stopTimeDefined: fmi2Boolean,
     stopTime: fmi2Real,
@@ -89,7 +89,11 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
     // SAFETY: only the component is a pointer.
     unsafe {
         guard::call(c, Function::SetupExperiment, |instance| {
-            instance.setup_experiment(startTime, (stopTimeDefined != 0).then_some(stopTime))
+            instance.setup_experiment(
+                (toleranceDefined != 0).then_some(tolerance),
+                startTime,
+                (stopTimeDefined != 0).then_some(stopTime),
+            )
         })
     }
 }

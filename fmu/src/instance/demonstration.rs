@@ -22,7 +22,7 @@ impl Instance {
         let default = SceneSettings::default();
         let starts_so = |reference: u32, given: &Value| {
             by_reference(reference)
-                .and_then(|row| row.start(&default))
+                .and_then(|row| row.start_in_fmu(&default))
                 .as_ref()
                 == Some(given)
         };
@@ -59,6 +59,7 @@ impl Run {
             spindle_speed: (after - speed) / step,
             nozzle_position: per_turn * turned / step,
             tension_setpoint: 0.0,
+            ..Inputs::HELD
         };
     }
 }

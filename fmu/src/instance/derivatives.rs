@@ -114,6 +114,9 @@ impl Instance {
             let sum = get(&direction) + change;
             write_input(&mut direction, *reference, sum);
         }
+        if self.start()?.simulation.nozzle_follows_law() {
+            direction.nozzle_position = 0.0;
+        }
         let mut asked = Vec::with_capacity(unknowns.len());
         for reference in unknowns {
             let variable = find::<f64>(*reference)?;

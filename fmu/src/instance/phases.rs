@@ -9,14 +9,24 @@ use coilwind::output::Ending;
 use coilwind::variables::by_reference;
 
 impl Instance {
-    /// `fmi2SetupExperiment`, times in s. A step controls its own error, so that the importer's
-    /// tolerance is not used.
+    /// `fmi2SetupExperiment`, times in s. The tolerance scales that of the solver.
     ///
     /// # Errors
     ///
-    /// [`Error::Time`] if a time is not finite or the stop time is not after the start time.
-    pub(crate) fn setup_experiment(&mut self, start: f64, stop: Option<f64>) -> Result<(), Error> {
-        self.clock = Clock::new(start, stop)?;
+    /// [`Error::Time`] if a time is not finite or the stop time is not after the start time, [`Error::Tolerance`] if
+    /// that is not one.
+    pub(crate) fn setup_experiment(
+        &mut self,
+        tolerance: Option<f64>,
+        start: f64,
+        stop: Option<f64>,
+    ) -> Result<(), Error> {
+        let clock = Clock::new(start, stop)?;
+        self.parameters = self
+            .parameters
+            .for_tolerance(tolerance, self.identity.resources.as_deref())?;
+        self.clock = clock;
+        self.run = None;
         Ok(())
     }
 
@@ -44,6 +54,7 @@ impl Instance {
     /// Tells the importer where what it set is not what the scene says.
     fn warn_of_contradictions(&mut self) {
         let mut texts = self.parameters.contradictions();
+        texts.extend(self.parameters.effect_of_tolerance());
         for (reference, value) in &self.start_inputs {
             let input = by_reference(*reference);
             let text = input.and_then(|row| self.parameters.contradiction_of_input(row, *value));

@@ -41,13 +41,14 @@ pub(super) struct Run {
 
 impl Run {
     /// Starts a scene with `inputs`, where the importer's `values` replace them and `rates` are
-    /// their derivatives in the first step.
+    /// their derivatives in the first step. The nozzle follows its input or, `by_law`, the scene's law.
     ///
     /// # Errors
     ///
     /// [`Error::Start`] if the scene has no valid start.
     pub(super) fn start(
         scene: &Scene,
+        by_law: bool,
         mut inputs: Inputs,
         values: &InputValues,
         rates: &InputValues,
@@ -55,7 +56,11 @@ impl Run {
         for (reference, value) in values {
             write_input(&mut inputs, *reference, *value);
         }
-        let simulation = Simulation::starting_with(scene, inputs).map_err(Error::Start)?;
+        let simulation = match by_law {
+            true => Simulation::starting_by_law(scene, inputs),
+            false => Simulation::starting_with(scene, inputs),
+        };
+        let simulation = simulation.map_err(Error::Start)?;
         let mut slopes = Inputs::HELD;
         for (reference, rate) in rates {
             write_input(&mut slopes, *reference, *rate);
@@ -69,28 +74,37 @@ impl Run {
         })
     }
 
-    /// Checks that the inputs stay in their ranges over a step of `step` s. They change evenly, so
-    /// that both ends tell.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::LeavesRange`] for the first input that does not.
-    pub(super) fn check_inputs(&self, step: f64) -> Result<(), Error> {
+    /// Holds inputs at the ends of their ranges that their derivatives would lead beyond within a step of `step` s, and
+    /// says which. Inputs change evenly, so that the end of the step tells.
+    pub(super) fn hold_inputs(&mut self, step: f64) -> Vec<String> {
+        let mut held = Vec::new();
         let end = self.inputs.after(&self.rates, step);
         for variable in coilwind_model_description::variables() {
-            let Access::Input { get, .. } = variable.access else {
+            let Access::Input { get, set } = variable.access else {
                 continue;
             };
-            let value = get(&end);
-            if get(&self.rates) != 0.0 && !variable.admits(&Value::Real(value)) {
-                return Err(Error::LeavesRange {
-                    name: variable.name,
-                    value,
-                    allowed: variable.allowed(),
-                });
+            let (rate, wanted) = (get(&self.rates), get(&end));
+            if rate == 0.0 || variable.admits(&Value::Real(wanted)) {
+                continue;
             }
+            let from = get(&self.inputs);
+            let limit = variable.nearest(wanted);
+            let within = |rate: f64| variable.admits(&Value::Real(from + rate * step));
+            let mut slower = (limit - from) / step;
+            if !within(slower) {
+                // rounding has led beyond the limit
+                slower -= 2.0 * (from + slower * step - limit) / step;
+            }
+            set(&mut self.rates, if within(slower) { slower } else { 0.0 });
+            held.push(format!(
+                "{} would be {} at the end of the step and is held at {}; allowed: {}",
+                variable.name,
+                Value::Real(wanted),
+                Value::Real(limit),
+                variable.allowed()
+            ));
         }
-        Ok(())
+        held
     }
 }
 

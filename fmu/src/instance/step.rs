@@ -18,14 +18,16 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// [`Error::Time`] and [`Error::LeavesRange`] change nothing. [`Error::StepFailed`] and
+    /// [`Error::Time`] and [`Error::Scene`] change nothing. [`Error::StepFailed`] and
     /// [`Error::NotANumber`] leave the instance in the step-failed state.
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<(), Error> {
         let end = self.clock.end_of(point, step)?;
         let offset = self.clock.experiment_time(0.0);
         let demonstrates = self.demonstrates;
-        self.start()?.check_inputs(step)?;
         self.retune()?;
+        for text in self.start()?.hold_inputs(step) {
+            self.warn(text);
+        }
         let run = self.start()?;
         if demonstrates {
             run.demonstrate(step);

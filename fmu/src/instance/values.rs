@@ -45,18 +45,21 @@ impl Instance {
     /// # Errors
     ///
     /// If a reference is unknown or of another type, a variable may not be set now, or a value is
-    /// not allowed.
+    /// not allowed. An input beyond its range is held at the end of the range, with a warning.
     pub(crate) fn set<T: Scalar>(
         &mut self,
         references: &[u32],
         values: impl IntoIterator<Item = T>,
     ) -> Result<(), Error> {
+        let mut held_texts = Vec::new();
         let changes = references
             .iter()
             .zip(values)
             .map(|(reference, value)| {
                 let variable = find::<T>(*reference)?;
                 let value = value.into_value();
+                let (value, text) = held(variable, value);
+                held_texts.extend(text);
                 self.check(variable, &value)?;
                 Ok((variable, value))
             })
@@ -68,6 +71,9 @@ impl Instance {
             self.set_parameters(&parameters)?;
         }
         self.set_inputs(&inputs);
+        for text in held_texts {
+            self.warn(text);
+        }
         Ok(())
     }
 
@@ -157,5 +163,26 @@ impl Instance {
                 }
             }
         }
+    }
+}
+
+/// Returns the value that a variable takes for `value`: an input that is a number beyond its range stays at the end of the
+/// range, and a text says so.
+fn held(variable: &Variable, value: Value) -> (Value, Option<String>) {
+    match value {
+        Value::Real(x)
+            if variable.causality == Causality::Input
+                && x.is_finite()
+                && variable.nearest(x) != x =>
+        {
+            let nearest = Value::Real(variable.nearest(x));
+            let text = format!(
+                "{} = {value} is held at {nearest}; allowed: {}",
+                variable.name,
+                variable.allowed()
+            );
+            (nearest, Some(text))
+        }
+        value => (value, None),
     }
 }

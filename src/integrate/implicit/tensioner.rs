@@ -217,25 +217,32 @@ fn line_over_fed(
     step: &StepFormula,
     pull: f64,
 ) -> (f64, f64) {
-    if spec.mass == 0.0 {
-        return (pull, 0.0);
-    }
     let g = step.gamma;
     let fed = step.blend(feed.fed, past.fed[0]);
+    // T = pull + c_t (fed - fed*) / g where the damper moves as the wire does
+    let drag = spec.damping / g;
+    if spec.mass == 0.0 {
+        return (pull - drag * fed, drag);
+    }
     let rate = step.blend(feed.paid_rate, past.paid_rate);
     if !spec.line_stiffness.is_finite() {
-        // the mass sits at the nozzle: u = (fed - fed*) / g, m (u - u*) / g = T - pull
+        // the mass sits at the nozzle: u = (fed - fed*) / g, m (u - u*) / g = T - pull - c_t u
         let slope = spec.mass / (g * g);
-        return (pull - slope * (fed + g * rate), slope);
+        return (pull - slope * (fed + g * rate) - drag * fed, slope + drag);
     }
     let paid = step.blend(feed.paid, past.paid);
     let (k, c) = (spec.line_stiffness, spec.line_damping);
-    // T = k (fed - s) + c (fed' - u) with s = s* + g u, u = u* + g (T - pull) / m
-    let brake = k * g + c;
+    // T = k (fed - s) + c (fed' - u) with s = s* + g u, u damped = u* + g (T - pull) / m
+    let brake = (k * g + c) / damped(spec, g);
     let soft = 1.0 + brake * g / spec.mass;
     let slope = (k + c / g) / soft;
     let t0 = (-k * paid - c * fed / g - brake * (rate - g * pull / spec.mass)) / soft;
     (t0, slope)
+}
+
+/// By how much the damper of a tensioner with mass lowers its speed in a step with this gamma, s.
+fn damped(spec: &FeedSpec, gamma: f64) -> f64 {
+    1.0 + gamma * spec.damping / spec.mass
 }
 
 /// The feed after a step that let the edge grow by `grown` under the line tension `line`.
@@ -251,7 +258,8 @@ pub(super) fn advance(
     let rate = (fed - step.blend(feed.fed, past.fed[0])) / g;
     let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
     let (paid, paid_rate) = if elastic_line {
-        let u = step.blend(feed.paid_rate, past.paid_rate) + g * (line - pull) / spec.mass;
+        let undamped = step.blend(feed.paid_rate, past.paid_rate) + g * (line - pull) / spec.mass;
+        let u = undamped / damped(spec, g);
         (step.blend(feed.paid, past.paid) + g * u, u)
     } else {
         (fed, rate)
@@ -273,6 +281,7 @@ mod tests {
     fn setting() -> (FeedSpec, Feed, Past, StepFormula) {
         let spec = FeedSpec {
             mass: 1e-3,
+            damping: 0.4,
             line_stiffness: 97_800.0,
             line_damping: 2.0,
             exit_friction: 0.0,
@@ -314,6 +323,11 @@ mod tests {
         let law = spec.line_stiffness * (next.fed - next.paid)
             + spec.line_damping * (next.rate - next.paid_rate);
         assert!((law - line).abs() < 1e-6, "{law} {line}");
+        // the tensioner's own
+        let began = step.blend(feed.paid_rate, past.paid_rate);
+        let inertia = spec.mass * (next.paid_rate - began) / step.gamma;
+        let force = line - 15.0 - spec.damping * next.paid_rate;
+        assert!((inertia - force).abs() < 1e-9, "{inertia} {force}");
         let h = 1e-9;
         let d =
             (edge.stretched(length + h).tension - edge.stretched(length - h).tension) / (2.0 * h);

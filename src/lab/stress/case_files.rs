@@ -91,6 +91,7 @@ pub fn read(scene: &Path) -> Result<Case, String> {
         spindle_speed: row[1],
         nozzle_position: row[2],
         tension_setpoint: row[3],
+        ..Inputs::HELD
     });
     Ok(Case {
         seed: 0,

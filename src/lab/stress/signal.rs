@@ -55,6 +55,7 @@ pub(super) fn draw(
             spindle_speed: speed.clamp(-2000.0, 2000.0),
             nozzle_position: nozzle,
             tension_setpoint: tension.max(0.0),
+            ..Inputs::HELD
         });
         angle += speed * step;
         turned += (speed * step).abs();

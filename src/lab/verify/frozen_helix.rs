@@ -41,6 +41,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             spindle_speed: speed,
             nozzle_position: scene.traverse.lead + pitch * angle / TAU,
             tension_setpoint: scene.tensioner.tension,
+            ..Inputs::HELD
         };
         sim.advance(inputs, SAMPLE / speed).map_err(fail)?;
         fed.push(sim.outputs().fed_length);

@@ -241,6 +241,7 @@ impl<'a> Wound<'a> {
         }
         let spec = FeedSpec {
             mass: 0.0,
+            damping: 0.0,
             line_stiffness: f64::INFINITY,
             line_damping: 0.0,
             exit_friction: 0.0,

@@ -152,6 +152,7 @@ fn wind(scene: &Scene) -> Result<Vec<Sample>, VerifyError> {
             spindle_speed: speed,
             nozzle_position: scene.traverse.lead + scene.traverse.per_turn * angle / TAU,
             tension_setpoint: scene.tensioner.tension,
+            ..Inputs::HELD
         };
         sim.advance(inputs, SAMPLE / speed).map_err(fail)?;
     }

@@ -30,6 +30,7 @@ pub(super) fn wound_with(turns: f64, change: impl FnOnce(&mut SceneSettings)) ->
             spindle_speed: speed,
             nozzle_position: start + 0.55e-3 * angle / std::f64::consts::TAU,
             tension_setpoint: s.tensioner.tension,
+            ..Inputs::HELD
         };
         sim.advance(inputs, step).unwrap();
     }

@@ -1,0 +1,54 @@
+//! What a model of the machine needs: torque with inertia, and where the wire is laid.
+
+use super::Simulation;
+use super::layon::LayOn;
+use crate::signals::Outputs;
+use std::f64::consts::{PI, TAU};
+
+/// Outputs for a model of the machine.
+pub(super) struct Machine {
+    layon: [f64; 2],
+    turn_in_layer: f64,
+    clearance: f64,
+    resistance: f64,
+    inertia: f64,
+    torque: f64,
+}
+
+impl Machine {
+    pub(super) fn write(self, o: &mut Outputs) {
+        [o.layon_x, o.layon_z] = self.layon;
+        o.turn_in_layer = self.turn_in_layer;
+        o.flange_clearance = self.clearance;
+        o.wire_resistance = self.resistance;
+        o.coil_inertia = self.inertia;
+        o.spindle_torque_total = self.torque;
+    }
+}
+
+impl Simulation {
+    /// What a model of the machine needs of wire that is laid at `layon`.
+    pub(super) fn for_the_machine(&self, layon: &LayOn) -> Machine {
+        let [low, high] = self.ends;
+        let y = layon.point.y;
+        Machine {
+            layon: [layon.point.x, layon.point.z],
+            turn_in_layer: (layon.angle - self.coil.pass_begins(layon.angle)) / TAU,
+            clearance: (y - low).min(high - y) - self.scene.wire.radius(),
+            resistance: self.resistance_of(layon.arc),
+            inertia: self.coil_inertia(),
+            torque: self.sys.state.torque_on_core - self.torque_of_inertia(),
+        }
+    }
+
+    /// Moment of inertia of the settled wire about the axis, kg m2.
+    fn coil_inertia(&self) -> f64 {
+        let wire = &self.scene.wire;
+        0.25 * PI * wire.diameter * wire.diameter * wire.density * self.coil.second_moment()
+    }
+
+    /// Moment that speeds up the settled wire, over the last communication step, N m.
+    pub(super) fn torque_of_inertia(&self) -> f64 {
+        self.coil_inertia() * self.run.acceleration
+    }
+}

@@ -1,0 +1,199 @@
+//! What a model of the machine sets and reads: a nozzle that moves along x and z, a damper, the coil so far.
+
+mod common;
+
+use coilwind::signals::Inputs;
+use coilwind::simulation::Simulation;
+use common::fig8;
+
+/// Winds for `steps` milliseconds with a nozzle on the circle of the scene's, `turned` (rad) round the core from +x.
+fn wound(turned: f64, steps: u32) -> Simulation {
+    let scene = fig8(&[]);
+    let distance = scene.nozzle.distance;
+    let at_rest = Inputs {
+        tension_setpoint: scene.tensioner.tension,
+        nozzle_position: scene.nozzle_law.start(),
+        nozzle_offset_x: distance * turned.cos() - distance,
+        nozzle_offset_z: -distance * turned.sin(),
+        ..Inputs::HELD
+    };
+    let mut run = Simulation::starting_with(&scene, at_rest).expect("starts");
+    for k in 0..steps {
+        let now = Inputs {
+            spindle_speed: (4.0 * f64::from(k)).min(100.0),
+            ..at_rest
+        };
+        run.advance(now, 1e-3).expect("goes on");
+    }
+    run
+}
+
+#[test]
+fn a_nozzle_elsewhere_on_its_circle_winds_the_same_coil() {
+    let [here, there] = [0.0, 0.8].map(|turned| wound(turned, 60));
+    let (a, b) = (here.outputs(), there.outputs());
+    assert!(a.turns_wound > 0.5, "{}", a.turns_wound);
+    for (name, a, b, close) in [
+        ("spindle_angle", a.spindle_angle, b.spindle_angle, 1e-12),
+        ("wire_tension", a.wire_tension, b.wire_tension, 1e-3),
+        ("free_length", a.free_length, b.free_length, 1e-5),
+        ("layon_angle", a.layon_angle, b.layon_angle, 1e-3),
+        ("turns_wound", a.turns_wound, b.turns_wound, 1e-4),
+    ] {
+        assert!((a - b).abs() < close, "{name}: {a} and {b}");
+    }
+    // the wire meets the coil at a place that is turned as the nozzle is
+    let radius = |o: &coilwind::signals::Outputs| o.layon_x.hypot(o.layon_z);
+    assert!((radius(a) - radius(b)).abs() < 1e-5);
+    let turned = (-b.layon_z).atan2(b.layon_x) - (-a.layon_z).atan2(a.layon_x);
+    assert!((turned - 0.8).abs() < 1e-3, "{turned}");
+}
+
+/// A nozzle that backs off draws wire out: as much as the free span becomes longer.
+#[test]
+fn a_nozzle_that_backs_off_draws_wire() {
+    let mut run = wound(0.0, 0);
+    let start = run.inputs();
+    let before = *run.outputs();
+    let rates = Inputs {
+        nozzle_offset_x: 0.1,
+        nozzle_offset_z: 0.05,
+        ..Inputs::HELD
+    };
+    let mut now = start;
+    for _ in 0..50 {
+        run.advance_ramped(now, rates, 1e-3).expect("goes on");
+        now = now.after(&rates, 1e-3);
+    }
+    for _ in 0..100 {
+        run.advance(now, 1e-3).expect("goes on");
+    }
+    let is = run.inputs();
+    assert!((is.nozzle_offset_x - start.nozzle_offset_x - 5e-3).abs() < 1e-12);
+    assert!((is.nozzle_offset_z - start.nozzle_offset_z - 2.5e-3).abs() < 1e-12);
+    let o = run.outputs();
+    let (drawn, longer) = (
+        o.fed_length,
+        o.free_length + o.wire_length - before.free_length - before.wire_length,
+    );
+    assert!(
+        drawn > 3e-3 && (drawn - longer).abs() < 0.05 * drawn,
+        "{drawn} {longer}"
+    );
+    let scene = run.scene();
+    assert!(
+        (o.wire_tension - scene.tensioner.tension).abs() < 0.1,
+        "{}",
+        o.wire_tension
+    );
+}
+
+#[test]
+fn a_nozzle_is_not_sent_into_the_core() {
+    let mut run = wound(0.0, 0);
+    let into = Inputs {
+        nozzle_offset_x: -run.scene().nozzle.distance,
+        ..run.inputs()
+    };
+    let error = run
+        .advance(into, 1e-3)
+        .expect_err("there is the core")
+        .to_string();
+    assert!(error.contains("nozzle_offset_x"), "{error}");
+    assert_eq!(run.time(), 0.0);
+    let scene = fig8(&[]);
+    assert!(Simulation::starting_with(&scene, into).is_err());
+}
+
+/// Two turns at a constant speed on a cylinder of 10 mm, then on with the speed raised evenly.
+fn on_a_cylinder(changes: &[(&str, &str)]) -> Simulation {
+    let mut all = vec![
+        ("core.shape", "cylinder"),
+        ("core.radius", "0.01"),
+        ("wire.elastic", "true"),
+        ("spindle.speed", "50"),
+    ];
+    all.extend(changes);
+    let mut run = Simulation::new(&fig8(&all)).expect("starts");
+    let end = run.motion_profile().end();
+    run.advance_profile(end).expect("goes on");
+    run
+}
+
+/// On a round core the wire comes evenly, so that the damper adds its share of the speed.
+#[test]
+fn a_damped_tensioner_pulls_harder_the_faster_the_wire_comes() {
+    let tension = |damping: &str| {
+        let run = on_a_cylinder(&[("tensioner.damping", damping)]);
+        let o = run.outputs();
+        (o.wire_tension, o.tensioner_speed)
+    };
+    let ((free, _), (damped, speed)) = (tension("0"), tension("4"));
+    assert!(speed > 0.4, "{speed}");
+    let expected = free + 4.0 * speed;
+    assert!(
+        (damped - expected).abs() < 0.02 * expected,
+        "{damped} {expected}"
+    );
+}
+
+/// Inertia and resistance are those of wire laid on a circle.
+#[test]
+fn the_coil_has_the_inertia_and_resistance_of_its_wire() {
+    let mut run = on_a_cylinder(&[]);
+    let o = *run.outputs();
+    let wire = run.scene().wire.clone();
+    let section = 0.25 * std::f64::consts::PI * wire.diameter * wire.diameter;
+    let resistance = o.wire_length * section.recip() / 58e6;
+    assert!((o.wire_resistance / resistance - 1.0).abs() < 1e-9);
+    let radius = 0.01 + 0.5 * wire.diameter;
+    let settled = run.product().wire_length_m;
+    let inertia = wire.density * section * settled * radius * radius;
+    assert!(settled > 0.03, "{settled}");
+    assert!(
+        (o.coil_inertia / inertia - 1.0).abs() < 0.03,
+        "{} {inertia}",
+        o.coil_inertia
+    );
+    assert!((o.layon_x.hypot(o.layon_z) / radius - 1.0).abs() < 0.01);
+    assert!((o.turn_in_layer - o.turns_wound).abs() < 1e-12);
+    let half = 0.5 * 0.06;
+    assert!(o.flange_clearance > 0.0 && o.flange_clearance < half);
+    // at a constant speed nothing speeds the coil up
+    run.advance(run.inputs(), 1e-3).expect("goes on");
+    let o = run.outputs();
+    assert_eq!(o.spindle_torque_total, o.spindle_torque);
+    // and raised evenly it takes the moment of its inertia
+    let rates = Inputs {
+        spindle_speed: 4000.0,
+        ..Inputs::HELD
+    };
+    run.advance_ramped(run.inputs(), rates, 1e-3)
+        .expect("goes on");
+    let o = run.outputs();
+    let extra = o.spindle_torque - o.spindle_torque_total;
+    assert!(
+        (extra / (4000.0 * o.coil_inertia) - 1.0).abs() < 1e-9,
+        "{extra:e}"
+    );
+}
+
+#[test]
+fn a_break_tells_where_the_wire_parted() {
+    let mut run = Simulation::new(&fig8(&[])).expect("starts");
+    assert_eq!(run.outputs().break_position, 0.0);
+    let pulled = Inputs {
+        tension_setpoint: 1e3,
+        ..run.inputs()
+    };
+    for _ in 0..20 {
+        run.advance(pulled, 1e-3).expect("goes on");
+    }
+    let o = run.outputs();
+    assert!(o.defect_break);
+    assert!(
+        o.break_position > 0.0 && o.break_position < 0.2,
+        "{}",
+        o.break_position
+    );
+}
