@@ -114,6 +114,7 @@ pub fn units() -> &'static [Unit] {
             base: &[("kg", 1), ("m", 3), ("s", -3), ("A", -2)],
             display: &[],
         },
+        Unit {
             name: "N.s/m",
             quantity: "Damping",
             base: &[("kg", 1), ("s", -1)],
@@ -126,10 +127,10 @@ pub fn units() -> &'static [Unit] {
             display: &[("g.mm2", 1e9, 0.0)],
         },
         Unit {
-            name: "ohm",
+            name: "Ohm",
             quantity: "Resistance",
             base: &[("kg", 1), ("m", 2), ("s", -3), ("A", -2)],
-            display: &[("mohm", 1e3, 0.0)],
+            display: &[("mOhm", 1e3, 0.0)],
         },
     ]
 }
