@@ -239,6 +239,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     if let Drive::Signals { held, .. } = &drive {
         simulation.set_start(*held).map_err(start_failure)?;
     }
+    simulation.look_ahead(scene.solver.features.look_ahead);
     let directory = args.directory(&settings);
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
     folder::prepare(&directory, args.force)?;
@@ -267,8 +268,9 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let plan = checkpoint.plan;
     plan.check_inputs()?;
     let (scene, _): (Scene, _) = plan.settings.build_with_warnings()?;
-    let simulation = Simulation::from_bytes(&scene, &checkpoint.state)
+    let mut simulation = Simulation::from_bytes(&scene, &checkpoint.state)
         .map_err(|error| refuse(format!("{error}; begin again with --force")))?;
+    simulation.look_ahead(scene.solver.features.look_ahead);
     let mut drive = Drive::new(&plan.motion, &scene, &simulation)?;
     if !drive.go_on(checkpoint.place) {
         return Err(refuse(
@@ -401,6 +403,7 @@ impl Record {
                 return Ok(Ending::Interrupted);
             }
             let Some(advanced) = drive.advance(simulation) else {
+                simulation.settle().map_err(Stop::Solver)?;
                 return Ok(Ending::Done);
             };
             self.progress.tell(&simulation.drain_events());

@@ -180,6 +180,8 @@ pub struct Features {
     pub inertia: bool,
     /// settled wire behind lift-off gets a coarser spacing
     pub coarse_settled: bool,
+    /// steps may reach beyond communication points
+    pub look_ahead: bool,
 }
 
 /// Since when live wire is looked for near live wire.

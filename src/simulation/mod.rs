@@ -3,9 +3,12 @@
 //! A step reads as a list of stages: move, feed, forces ([`crate::integrate`]), then remeshing
 //! (insert wire at the nozzle, refine near the core, let settled wire go), then measure.
 
+mod ahead;
 mod broken;
 mod coarsen;
+mod communication;
 mod core_model;
+mod course;
 mod door;
 mod faults;
 mod freezing;
@@ -15,6 +18,7 @@ mod layon;
 mod motion_profile;
 mod nozzle_way;
 mod outputs;
+mod pool;
 mod product;
 mod quasi_static;
 mod rates;
@@ -26,6 +30,7 @@ mod step_derivatives;
 mod stepping;
 mod summary;
 mod traverse;
+mod winding;
 
 pub use crate::geometry::{Surface, TriMesh};
 pub use crate::integrate::SolverStatistics;
@@ -36,13 +41,16 @@ pub use motion_profile::MotionProfile;
 pub use product::Product;
 pub use saved::RestoreError;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
+pub use winding::Winding;
 
-use crate::integrate::Stepper;
-use crate::measure::Coil;
 use crate::scene::Scene;
-use crate::signals::{Event, EventKind, Inputs, Outputs};
+use crate::signals::{Event, Inputs, Outputs};
+#[cfg(feature = "lab")]
 use crate::system::System;
-use run_state::RunState;
+use ahead::Ahead;
+use communication::Communication;
+use pool::Pool;
+use std::ops::Deref;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -63,31 +71,76 @@ const WORTH_A_STEP: f64 = 1e-9;
 /// Steps between looks for edges to refine and values that are not finite.
 const REMESH_STEPS: u64 = 32;
 
-/// A winding run.
+/// A winding run, from one communication point to the next. A copy shares what neither has changed since.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    scene: Scene,
-    motion_profile: MotionProfile,
-    sys: System,
-    coil: Coil,
-    stepper: Stepper,
-    run: RunState,
-    /// polar angle from each laid node to lift-off, at the last look, rad
-    behind: Vec<f64>,
-    /// how much [`RunState::work`] may become; the caller's
-    most_work: u64,
-    /// ends a step of the run early where it is up; the caller's
-    stop: Option<Arc<AtomicBool>>,
+    now: Arc<Winding>,
+    ahead: Option<Ahead>,
+    talk: Communication,
+    pool: Pool,
+    looks_ahead: bool,
+}
+
+/// A run is read as its winding is; what a communication point has of its own, time, inputs and outputs, comes first.
+impl Deref for Simulation {
+    type Target = Winding;
+
+    fn deref(&self) -> &Winding {
+        &self.now
+    }
+}
+
+impl From<Winding> for Simulation {
+    fn from(mut winding: Winding) -> Self {
+        let mut talk = Communication::default();
+        talk.events.append(&mut winding.run.events);
+        Self {
+            now: Arc::new(winding),
+            ahead: None,
+            talk,
+            pool: Pool::default(),
+            looks_ahead: false,
+        }
+    }
 }
 
 impl Simulation {
-    /// Input values at this moment.
-    pub fn inputs(&self) -> Inputs {
-        Inputs {
-            spindle_speed: self.sys.state.spindle.speed,
-            nozzle_position: self.sys.state.support[1].point.y,
-            tension_setpoint: self.sys.state.set_tension,
-        }
+    /// Wire clamped to the core and straight to the nozzle at the set tension, everything at rest.
+    ///
+    /// # Errors
+    ///
+    /// If the scene has no valid start.
+    pub fn new(scene: &Scene) -> Result<Self, SimError> {
+        Winding::new(scene).map(Self::from)
+    }
+
+    /// The same with these inputs at the start.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::new`].
+    pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
+        Winding::starting_with(scene, inputs).map(Self::from)
+    }
+
+    /// Starts over with other inputs; only before the first step.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::new`].
+    pub fn set_start(&mut self, inputs: Inputs) -> Result<(), SimError> {
+        let run = Self::starting_with(self.scene(), inputs)?;
+        *self = Self {
+            looks_ahead: self.looks_ahead,
+            ..run
+        };
+        Ok(())
+    }
+
+    /// Lets steps of the implicit method reach beyond the communication point, as long as inputs go on as they did. Then a fine
+    /// communication step costs little, and the coil may be a step of the method behind; see [`Self::settle`].
+    pub fn look_ahead(&mut self, on: bool) {
+        self.looks_ahead = on;
     }
 
     /// Bounds the work of the run: beyond `most`, [`Self::advance`] returns an error.
@@ -95,93 +148,59 @@ impl Simulation {
     /// The work is the number of steps tried since the start, each times its number of nodes.
     /// Rejected steps count too. The bound does not depend on the clock.
     pub fn limit_work(&mut self, most: u64) {
-        self.most_work = most;
+        Arc::make_mut(&mut self.now).most_work = most;
     }
 
     /// Lets a step of the run end early, with an error, once `flag` is up, however long the step is. The run then stands at the
     /// last good step of the method.
     pub fn stop_on(&mut self, flag: Arc<AtomicBool>) {
-        self.stop = Some(flag);
+        Arc::make_mut(&mut self.now).stop = Some(flag);
     }
 
-    /// What [`Self::limit_work`] counts.
-    pub fn work(&self) -> u64 {
-        self.run.work
-    }
-
-    /// Elapsed time, s.
+    /// Time of the communication point, s.
     pub fn time(&self) -> f64 {
-        self.run.time
+        let served = self.talk.served.as_ref();
+        served.map_or(self.now.run.time, |served| served.time)
     }
 
-    /// The scene this run was made from.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
+    /// Input values at the communication point.
+    pub fn inputs(&self) -> Inputs {
+        let served = self.talk.served.as_ref();
+        served.map_or_else(|| self.now.inputs(), |served| served.inputs)
     }
 
-    /// Outputs at the last communication point.
+    /// Outputs at the communication point.
     pub fn outputs(&self) -> &Outputs {
-        &self.run.outputs
+        let served = self.talk.served.as_ref();
+        served.map_or(&self.now.run.outputs, |served| &served.outputs)
     }
 
-    /// Settled wire and its measures.
-    pub fn coil(&self) -> &Coil {
-        &self.coil
-    }
-
-    /// The motion profile of the scene.
-    pub fn motion_profile(&self) -> &MotionProfile {
-        &self.motion_profile
+    /// Wire, coil and method at the end of the last step that does not reach beyond the communication point.
+    pub fn winding(&self) -> &Winding {
+        &self.now
     }
 
     /// What happened since the last call.
     pub fn drain_events(&mut self) -> Vec<Event> {
-        std::mem::take(&mut self.run.events)
-    }
-
-    pub(super) fn report(&mut self, kind: EventKind, text: String) {
-        let turn = self.run.outputs.turns_wound;
-        self.run.events.push(Event {
-            time: self.sys.state.time,
-            turn,
-            angle: self.sys.state.spindle.angle - self.run.angle0,
-            kind,
-            text,
-        });
+        std::mem::take(&mut self.talk.events)
     }
 
     /// Takes over the tunable parameters of another version of the scene.
-    pub fn retune(&mut self, scene: &Scene) {
-        if self.scene.friction != scene.friction {
-            // What holds at rest with one friction may slide with another.
-            self.run.quiet = 0.0;
-        }
-        self.scene.defects = scene.defects;
-        self.scene.friction = scene.friction;
-        self.coil.set_limits(scene.defects);
-        if let Some(law) = self.sys.model.contact.law_mut() {
-            law.mu_static = scene.friction.static_;
-            law.mu_kinetic = scene.friction.kinetic;
-            law.slip_speed = scene.friction.slip_speed;
-        }
+    ///
+    /// # Errors
+    ///
+    /// If the method gives up on the way to the communication point, from which on they hold.
+    pub fn retune(&mut self, scene: &Scene) -> Result<(), SimError> {
+        self.settle()?;
+        Arc::make_mut(&mut self.now).retune(scene);
+        self.pool = Pool::default();
+        Ok(())
     }
 
-    /// What the implicit method took so far; nothing for an explicit one.
-    pub fn statistics(&self) -> SolverStatistics {
-        self.stepper.statistics()
-    }
-
-    /// The mechanical system, for verification and tests.
-    #[cfg(feature = "lab")]
-    #[doc(hidden)]
-    pub fn system(&self) -> &System {
-        &self.sys
-    }
-
-    /// The same, to put loads on it that no scene has (verification only).
+    /// The mechanical system, to put loads on it that no scene has (verification only).
     #[cfg(feature = "lab")]
     #[doc(hidden)]
     pub fn system_mut(&mut self) -> &mut System {
-        &mut self.sys
+        &mut Arc::make_mut(&mut self.now).sys
     }
 }

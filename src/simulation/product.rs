@@ -1,6 +1,6 @@
 //! The coil as a product: what a drawing or a bill of material says of it.
 
-use super::Simulation;
+use super::Winding;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -26,7 +26,7 @@ pub struct Product {
     pub fill: f64,
 }
 
-impl Simulation {
+impl Winding {
     /// The coil as a product.
     pub fn product(&self) -> Product {
         let d = self.scene.wire.diameter;

@@ -55,7 +55,8 @@ impl Run {
         for (reference, value) in values {
             write_input(&mut inputs, *reference, *value);
         }
-        let simulation = Simulation::starting_with(scene, inputs).map_err(Error::Start)?;
+        let mut simulation = Simulation::starting_with(scene, inputs).map_err(Error::Start)?;
+        simulation.look_ahead(scene.solver.features.look_ahead);
         let mut slopes = Inputs::HELD;
         for (reference, rate) in rates {
             write_input(&mut slopes, *reference, *rate);

@@ -25,7 +25,7 @@ impl Instance {
         let offset = self.clock.experiment_time(0.0);
         let demonstrates = self.demonstrates;
         self.start()?.check_inputs(step)?;
-        self.retune()?;
+        let retuned = self.retune()?;
         let run = self.start()?;
         if demonstrates {
             run.demonstrate(step);
@@ -38,7 +38,8 @@ impl Instance {
         };
         run.last = None;
         let began = Instant::now();
-        let result = run.simulation.advance_ramped(run.inputs, run.rates, step);
+        let result =
+            retuned.and_then(|()| run.simulation.advance_ramped(run.inputs, run.rates, step));
         if let Some(recording) = &mut run.recording {
             recording.computed(began.elapsed());
         }
