@@ -160,7 +160,7 @@ impl Snapshot {
                 let (scene, _) = parameters.scene()?;
                 let restored = |bytes: &[u8]| -> Result<Simulation, Error> {
                     let mut simulation = Simulation::from_bytes(&scene, bytes)?;
-                    simulation.look_ahead(scene.solver.features.look_ahead);
+                    simulation.step_beyond(scene.solver.features.steps_beyond);
                     Ok(simulation)
                 };
                 let last = match run.last {

@@ -239,7 +239,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     if let Drive::Signals { held, .. } = &drive {
         simulation.set_start(*held).map_err(start_failure)?;
     }
-    simulation.look_ahead(scene.solver.features.look_ahead);
+    simulation.step_beyond(scene.solver.features.steps_beyond);
     let directory = args.directory(&settings);
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
     folder::prepare(&directory, args.force)?;
@@ -270,7 +270,7 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let (scene, _): (Scene, _) = plan.settings.build_with_warnings()?;
     let mut simulation = Simulation::from_bytes(&scene, &checkpoint.state)
         .map_err(|error| refuse(format!("{error}; begin again with --force")))?;
-    simulation.look_ahead(scene.solver.features.look_ahead);
+    simulation.step_beyond(scene.solver.features.steps_beyond);
     let mut drive = Drive::new(&plan.motion, &scene, &simulation)?;
     if !drive.go_on(checkpoint.place) {
         return Err(refuse(

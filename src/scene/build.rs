@@ -268,7 +268,7 @@ impl SceneSettings {
                 live_contact: LiveContact::Always,
                 inertia: true,
                 coarse_settled: false,
-                look_ahead: false,
+                steps_beyond: false,
             },
         }
     }

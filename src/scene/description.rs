@@ -181,7 +181,7 @@ pub struct Features {
     /// settled wire behind lift-off gets a coarser spacing
     pub coarse_settled: bool,
     /// steps may reach beyond communication points
-    pub look_ahead: bool,
+    pub steps_beyond: bool,
 }
 
 /// Since when live wire is looked for near live wire.

@@ -151,7 +151,7 @@ pub struct SolverSettings {
     /// coarser spacing of settled live wire; auto: with the implicit method (one of `auto`, `on`, `off`)
     pub coarse_settled: String,
     /// steps that reach beyond a communication point while inputs go on as they did; auto: where the method finds its own steps (one of `auto`, `on`, `off`)
-    pub look_ahead: String,
+    pub steps_beyond: String,
 }
 
 impl SceneSettings {
@@ -271,7 +271,7 @@ impl Default for SceneSettings {
                 inertia: "auto".to_owned(),
                 coarse_span: "auto".to_owned(),
                 coarse_settled: "auto".to_owned(),
-                look_ahead: "auto".to_owned(),
+                steps_beyond: "auto".to_owned(),
             },
             freeze: Freeze {
                 enabled: true,

@@ -5,15 +5,15 @@
 //! last step that lies behind the communication point ([`Simulation::winding`]); the step beyond it is kept apart. Inputs that go
 //! on otherwise drop that step, and the time that has passed since the winding's is gone through with the inputs as they were.
 
-use super::ahead::{Ahead, between};
+use super::ahead::Ahead;
 use super::course::{Course, Given, Likeness};
 use super::door::check_finite;
 use super::motion_profile::ROUNDING;
-use super::outputs::{keep_told, raise_as};
+use super::outputs::keep_told;
 use super::rates::rates_of;
+use super::talk::{LONGEST_WAIT, Served};
 use super::{SimError, Simulation, Winding};
-use crate::signals::{Event, Inputs, Outputs};
-use serde::{Deserialize, Serialize};
+use crate::signals::Inputs;
 
 /// Share of the tolerance by which the wire may come out otherwise for inputs that count as gone on: what rounding does to
 /// the inputs of a master is far less, and what a person changes far more.
@@ -21,41 +21,6 @@ const ALIKE: f64 = 1e-6;
 /// The same for the place of the nozzle. Its way in a ramp is told in straight pieces, which part from the curve by less, and a
 /// thousandth of an error moves no wire.
 const NOZZLE: f64 = 1e-3;
-/// Communication steps with inputs that go on, after which at the latest a step ahead is tried again.
-const LONGEST_WAIT: u32 = 64;
-
-/// What has been said at communication points, and what the inputs are taken to go on as.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub(super) struct Communication {
-    /// what the inputs are taken to go on as
-    course: Option<Course>,
-    /// mean velocity of the nozzle over the last communication step, m/s, and its length, s
-    travel: Option<(f64, f64)>,
-    /// whether the winding has taken a step along the course, and none since by another way
-    underway: bool,
-    /// communication steps to go on as before, until a step ahead is tried
-    wait: u32,
-    /// how many there were to wait for after the last step ahead that was dropped
-    waited: u32,
-    /// what the master reads, where the winding is not at the communication point
-    pub(super) served: Option<Served>,
-    /// what happened since events were last taken
-    pub(super) events: Vec<Event>,
-}
-
-/// A communication point.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Served {
-    /// s
-    pub(super) time: f64,
-    /// what adding up steps has lost of `time`, s
-    time_lost: f64,
-    pub(super) inputs: Inputs,
-    pub(super) outputs: Outputs,
-    /// per s
-    pub(super) rates: Outputs,
-}
-
 impl Simulation {
     /// Advances by `dt`, s, with the inputs held.
     ///
@@ -84,7 +49,7 @@ impl Simulation {
         rates: Inputs,
         dt: f64,
     ) -> Result<(), SimError> {
-        if !self.may_look_ahead() || dt.is_nan() || dt <= 0.0 {
+        if !self.may_step_beyond() || dt.is_nan() || dt <= 0.0 {
             return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
         }
         check_finite(&inputs, self.time())?;
@@ -162,9 +127,12 @@ impl Simulation {
     }
 
     /// Whether a step may reach beyond the communication point at all.
-    fn may_look_ahead(&self) -> bool {
+    fn may_step_beyond(&self) -> bool {
         let method = &self.now.stepper;
-        self.looks_ahead && method.is_implicit() && method.fixed().is_none() && !self.now.run.broken
+        self.steps_beyond
+            && method.is_implicit()
+            && method.fixed().is_none()
+            && !self.now.run.broken
     }
 
     /// Whether a communication step goes on as the inputs were taken to.
@@ -272,75 +240,6 @@ impl Simulation {
                 Err(error)
             }
         }
-    }
-}
-
-impl Communication {
-    /// Whether it goes with a winding, and with a step ahead of it or none; bytes from elsewhere may say anything.
-    pub(super) fn is_sound(&self, winding: &Winding, ahead: bool) -> bool {
-        let served = match &self.served {
-            Some(served) => {
-                let inputs = check_finite(&served.inputs, 0.0).is_ok();
-                inputs
-                    && served.time.is_finite()
-                    && served.time >= winding.run.time * (1.0 - ROUNDING)
-            }
-            None => !ahead,
-        };
-        let course = self.course.as_ref().map_or(!ahead, Course::is_sound);
-        served && course && self.wait <= LONGEST_WAIT && self.waited <= LONGEST_WAIT
-    }
-}
-
-impl Served {
-    /// The communication point at which the winding stands.
-    fn at(winding: &Winding) -> Self {
-        Self {
-            time: winding.run.time,
-            time_lost: winding.run.time_lost,
-            inputs: winding.inputs(),
-            outputs: winding.run.outputs,
-            rates: winding.run.rates,
-        }
-    }
-
-    /// Begins a communication step of `dt`, s: extremes and flags are those of now.
-    fn begin(&mut self, dt: f64, now: &Winding) {
-        let step = dt - self.time_lost;
-        let next = self.time + step;
-        self.time_lost = (next - self.time) - step;
-        self.time = next;
-        let o = &mut self.outputs;
-        (o.wire_tension_min, o.wire_tension_max) = (o.wire_tension, o.wire_tension);
-        now.lower_flags(o);
-    }
-
-    /// Takes note of the end of a step within the communication step.
-    fn pass(&mut self, winding: &Winding) {
-        self.meet(winding.run.outputs.wire_tension);
-        raise_as(&mut self.outputs, &winding.run.outputs, winding.run.broken);
-    }
-
-    fn meet(&mut self, tension: f64) {
-        let o = &mut self.outputs;
-        o.wire_tension_min = o.wire_tension_min.min(tension);
-        o.wire_tension_max = o.wire_tension_max.max(tension);
-    }
-
-    /// Reads the outputs between the winding and the `end` of the step ahead of it.
-    fn read(&mut self, now: &Winding, end: Option<&Winding>, course: &Course, inputs: Inputs) {
-        let start = &now.run.outputs;
-        let mut outputs = match end {
-            Some(end) => {
-                let share = (self.time - now.run.time) / (end.run.time - now.run.time);
-                between(start, &end.run.outputs, share)
-            }
-            None => *start,
-        };
-        outputs.spindle_angle = start.spindle_angle + course.turned(now.run.time, self.time);
-        self.meet(outputs.wire_tension);
-        keep_told(&mut outputs, &self.outputs);
-        (self.outputs, self.inputs) = (outputs, inputs);
     }
 }
 

@@ -5,10 +5,10 @@
 //! Search trees and measures of settled wire are rebuilt from the state to the bit.
 
 use super::ahead::Ahead;
-use super::communication::Communication;
 use super::course::Course;
 use super::pool::Pool;
 use super::run_state::RunState;
+use super::talk::Talk;
 use super::{Simulation, Winding};
 use crate::integrate::{SolverStatistics, Stepper};
 use crate::measure::SavedCoil;
@@ -66,7 +66,7 @@ struct Saved<'a> {
 #[derive(Debug, Serialize, Deserialize)]
 struct SavedRun<'a> {
     winding: Saved<'a>,
-    talk: Cow<'a, Communication>,
+    talk: Cow<'a, Talk>,
     /// of a step ahead: its course, and whether it is the first along it
     ahead: Option<(Course, bool)>,
 }
@@ -129,7 +129,7 @@ impl Simulation {
             ahead,
             talk,
             pool: Pool::default(),
-            looks_ahead: false,
+            steps_beyond: false,
         })
     }
 }

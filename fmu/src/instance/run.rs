@@ -56,7 +56,7 @@ impl Run {
             write_input(&mut inputs, *reference, *value);
         }
         let mut simulation = Simulation::starting_with(scene, inputs).map_err(Error::Start)?;
-        simulation.look_ahead(scene.solver.features.look_ahead);
+        simulation.step_beyond(scene.solver.features.steps_beyond);
         let mut slopes = Inputs::HELD;
         for (reference, rate) in rates {
             write_input(&mut slopes, *reference, *rate);
