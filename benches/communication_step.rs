@@ -1,5 +1,5 @@
-//! Cost and effect of the communication step: the same wind, half a turn at 300 rad/s with a ramp, in
-//! communication steps of one length. `cargo bench --bench communication_step`
+//! Cost and effect of the communication step: the same wind, half a turn at 300 rad/s with a ramp, in communication steps of
+//! one length, and `fig8` at four speeds against free steps. `cargo bench --bench communication_step`
 
 use coilwind::settings::SceneSettings;
 use coilwind::signals::Inputs;
@@ -39,44 +39,106 @@ fn signals(t: f64) -> (Inputs, Inputs) {
     (inputs, rates)
 }
 
+/// What a wind took, and where it ended.
+struct Wound {
+    sim: Simulation,
+    cpu: f64,
+}
+
+/// The wind above in communication steps of `step`, s.
+fn wound(start: &Simulation, step: f64, beyond: bool) -> Result<Wound, Box<dyn Error>> {
+    let mut sim = start.clone();
+    sim.step_beyond(beyond);
+    let began = ThreadTime::now();
+    for k in 0..(END / step).round() as usize {
+        let t = k as f64 * step;
+        let (inputs, mut rates) = signals(t);
+        // the nozzle arrives where its signal does, though that is no straight line in the ramp
+        let target = signals(t + step).0.nozzle_position;
+        rates.nozzle_position = (target - inputs.nozzle_position) / step;
+        sim.advance_ramped(inputs, rates, step)?;
+    }
+    let cpu = began.elapsed().as_secs_f64();
+    sim.settle()?;
+    Ok(Wound { sim, cpu })
+}
+
+/// CPU time of `fig8` in fine communication steps over that in free steps, with the speed and the nozzle of the scene's own
+/// motion and their derivatives.
+fn against_free_steps() -> Result<(), Box<dyn Error>> {
+    println!(
+        "rad/s  free: CPU s, steps   over free (steps), by communication step and whether steps reach beyond it"
+    );
+    for speed in ["30", "100", "300", "500"] {
+        let mut settings = SceneSettings::load("fig8")?;
+        settings.set_text("spindle.speed", speed)?;
+        let start = Simulation::new(&settings.build()?)?;
+        let profile = start.motion_profile().clone();
+        let mut free = start.clone();
+        let began = ThreadTime::now();
+        free.advance_profile(profile.end())?;
+        let cpu = began.elapsed().as_secs_f64();
+        print!("{speed:5}  {cpu:.3}, {}", free.statistics().steps);
+        for step in [2e-5, 1e-4, 1e-3] {
+            for beyond in [true, false] {
+                let mut sim = start.clone();
+                sim.step_beyond(beyond);
+                let mut last = None;
+                let began = ThreadTime::now();
+                for k in 0..(profile.end() / step) as usize {
+                    let (from, to) = (k as f64 * step, (k + 1) as f64 * step);
+                    let inputs = Inputs {
+                        spindle_speed: profile.speed(from),
+                        nozzle_position: profile.nozzle(from),
+                        tension_setpoint: 15.0,
+                        ..Inputs::HELD
+                    };
+                    let rates = Inputs {
+                        spindle_speed: (profile.speed(to) - inputs.spindle_speed) / step,
+                        nozzle_position: (profile.nozzle(to) - inputs.nozzle_position) / step,
+                        ..Inputs::HELD
+                    };
+                    // as the FMU keeps the step for derivatives
+                    last.replace(sim.clone());
+                    sim.advance_ramped(inputs, rates, step)?;
+                }
+                let over = began.elapsed().as_secs_f64() / cpu;
+                let way = if beyond { "beyond" } else { "to it" };
+                let steps = sim.statistics().steps;
+                print!("  {:.0} us {way} {over:.2} ({steps})", step * 1e6);
+            }
+        }
+        println!();
+    }
+    Ok(())
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let scene = SceneSettings::load("fig8")?.build()?;
     let start = Simulation::new(&scene)?;
-    let mut finest: Option<Simulation> = None;
+    let exact = wound(&start, 1e-6, false)?.sim;
     println!(
-        "step/s   solver steps  evaluations per step  CPU s  us per step  angle/rad  fed/um  tension/N  wire rms/um (max)"
+        "step/s   solver steps: to it, beyond  CPU s: to it, beyond  fed/um  tension/N  wire rms/um (max)"
     );
     for step in [1e-6, 1e-5, 5e-5, 1e-4, 2e-4, 1e-3, 2e-3, 4e-3] {
-        let mut sim = start.clone();
-        let began = ThreadTime::now();
-        let count = (END / step).round() as usize;
-        for k in 0..count {
-            let t = k as f64 * step;
-            let (inputs, mut rates) = signals(t);
-            // the nozzle arrives where its signal does, though that is no straight line in the ramp
-            let target = signals(t + step).0.nozzle_position;
-            rates.nozzle_position = (target - inputs.nozzle_position) / step;
-            sim.advance_ramped(inputs, rates, step)?;
-        }
-        let cpu = began.elapsed().as_secs_f64();
-        let e = sim.statistics();
-        let o = *sim.outputs();
-        let reference = finest.get_or_insert_with(|| sim.clone());
-        let r = *reference.outputs();
-        let (rms, most) = apart(&sim, reference);
+        let [to_it, beyond] = [false, true].map(|ahead| wound(&start, step, ahead));
+        let (to_it, beyond) = (to_it?, beyond?);
+        let steps = [&to_it, &beyond].map(|wound| wound.sim.statistics().steps);
+        let (o, r) = (*beyond.sim.outputs(), *exact.outputs());
+        let (rms, most) = apart(&beyond.sim, &exact);
         println!(
-            "{step:.0e}  {:12}  {:20.2}  {cpu:5.3}  {:11.1}  {:9.1e}  {:6.2}  {:9.4}  {:11.2} ({:.2})",
-            e.steps,
-            e.evaluations as f64 / e.steps as f64,
-            cpu * 1e6 / count as f64,
-            o.spindle_angle - r.spindle_angle,
+            "{step:.0e}  {:12} {:12}  {:8.3} {:8.3}  {:9.1}  {:9.2}  {:9.0} ({:.0})",
+            steps[0],
+            steps[1],
+            to_it.cpu,
+            beyond.cpu,
             (o.fed_length - r.fed_length) * 1e6,
             o.wire_tension - r.wire_tension,
             rms * 1e6,
             most * 1e6,
         );
     }
-    Ok(())
+    against_free_steps()
 }
 
 /// Distance of the wire of one run from that of another, at equal lengths from the clamp: root mean square

@@ -169,9 +169,9 @@ macro_rules! smooth {
                 [$(self.$field),*]
             }
 
-            /// Outputs with these values of [`Self::SMOOTH`]; all others are 0.
-            pub(crate) fn of_smooth([$($field),*]: [f64; Self::SMOOTH.len()]) -> Self {
-                Self { $($field,)* ..Self::default() }
+            /// These outputs with other values of [`Self::SMOOTH`].
+            pub(crate) fn with_smooth(self, [$($field),*]: [f64; Self::SMOOTH.len()]) -> Self {
+                Self { $($field,)* ..self }
             }
         }
     };

@@ -268,7 +268,7 @@ fn merged_feet_push_once() {
         layer: 1.0,
     };
     let mut line = contact(&coil, 0.0);
-    line.scratch.tube = coilwind::geometry::SplineTube::new(0.35e-3);
+    line.scratch.tube = coilwind::geometry::SplineTube::new(0.35e-3).into();
     let legs = [
         (-3.5, 9.0),
         (-1.5, 3.0),

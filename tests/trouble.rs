@@ -237,7 +237,7 @@ fn tuned_friction_moves_the_wire() {
         m.turn(0.35, 100.0);
     }
     let rough = fig8(&[("friction.static", "0.6"), ("friction.kinetic", "0.5")]);
-    tuned.sim.retune(&rough);
+    tuned.sim.retune(&rough).expect("nothing is owed");
     assert_eq!(plain.out(), tuned.out());
     for m in [&mut plain, &mut tuned] {
         m.turn(0.25, 100.0);

@@ -158,9 +158,14 @@ impl Snapshot {
         let run = match contents.run {
             Some(run) => {
                 let (scene, _) = parameters.scene()?;
+                let restored = |bytes: &[u8]| -> Result<Simulation, Error> {
+                    let mut simulation = Simulation::from_bytes(&scene, bytes)?;
+                    simulation.step_beyond(scene.solver.features.steps_beyond);
+                    Ok(simulation)
+                };
                 let last = match run.last {
                     Some((simulation, inputs, rates, step)) => Some(Arc::new(LastStep {
-                        simulation: Simulation::from_bytes(&scene, &simulation)?,
+                        simulation: restored(&simulation)?,
                         inputs,
                         rates,
                         step,
@@ -168,7 +173,7 @@ impl Snapshot {
                     None => None,
                 };
                 Some(SavedRun {
-                    simulation: Simulation::from_bytes(&scene, &run.simulation)?,
+                    simulation: restored(&run.simulation)?,
                     inputs: run.inputs,
                     rates: run.rates,
                     last,

@@ -244,6 +244,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     if let Drive::Signals { held, .. } = &drive {
         simulation.set_start(*held).map_err(start_failure)?;
     }
+    simulation.step_beyond(scene.solver.features.steps_beyond);
     let directory = args.directory(&settings);
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
     folder::prepare(&directory, args.force)?;
@@ -272,8 +273,9 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let plan = checkpoint.plan;
     plan.check_inputs()?;
     let (scene, _): (Scene, _) = plan.settings.build_with_warnings()?;
-    let simulation = Simulation::from_bytes(&scene, &checkpoint.state)
+    let mut simulation = Simulation::from_bytes(&scene, &checkpoint.state)
         .map_err(|error| refuse(format!("{error}; begin again with --force")))?;
+    simulation.step_beyond(scene.solver.features.steps_beyond);
     let mut drive = Drive::new(&plan.motion, &scene, &simulation)?;
     if !drive.go_on(checkpoint.place) {
         return Err(refuse(
@@ -406,6 +408,7 @@ impl Record {
                 return Ok(Ending::Interrupted);
             }
             let Some(advanced) = drive.advance(simulation) else {
+                simulation.settle().map_err(Stop::Solver)?;
                 return Ok(Ending::Done);
             };
             self.progress.tell(&simulation.drain_events());

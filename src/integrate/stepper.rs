@@ -29,6 +29,17 @@ impl Stepper {
         }
     }
 
+    /// Goes on as another stepper of the same method would, and keeps its own work space.
+    pub fn follow(&mut self, other: &Self) {
+        match (self, other) {
+            (Self::Implicit(to), Self::Implicit(from)) => {
+                (to.next, to.wanted) = (from.next, from.wanted);
+                to.statistics = from.statistics;
+            }
+            (to, from) => *to = from.clone(),
+        }
+    }
+
     /// Whether it is the implicit method.
     pub fn is_implicit(&self) -> bool {
         matches!(self, Self::Implicit(_))

@@ -1,5 +1,6 @@
 //! The settled wire, node by node, and what is measured on it.
 
+use super::buckets::Buckets;
 use super::defect::{BulgeLimit, DefectKind, DefectLimits};
 use super::passes::Passes;
 use super::profile::Profile;
@@ -11,7 +12,6 @@ use crate::math::PersistentVec;
 use crate::math::V3;
 use crate::math::{polar_angle, wrap_to_pi};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Fraction of a turn that a bulge or an overlap must cover before its flag rises: 8 degrees.
@@ -121,7 +121,7 @@ pub struct Coil {
     /// a turn to the chunk
     pub(crate) records: PersistentVec<Record, STATIONS_PER_TURN>,
     /// latest station by polar station and `floor(y / d)`
-    pub(crate) buckets: BTreeMap<(usize, i64), usize>,
+    pub(super) buckets: Buckets,
     passes: Passes,
 }
 
@@ -141,7 +141,7 @@ impl Coil {
             spec,
             nodes: PersistentVec::default(),
             records: PersistentVec::default(),
-            buckets: BTreeMap::new(),
+            buckets: Buckets::default(),
             passes,
         }
     }
@@ -347,9 +347,11 @@ impl Coil {
         let stations = self.records.len() - first_gone.stations_before;
         for record in self.records.split_off(stations).into_iter().rev() {
             match record.beneath {
-                Some(beneath) => self.buckets.insert(record.bucket, beneath),
-                None => self.buckets.remove(&record.bucket),
-            };
+                Some(beneath) => {
+                    self.buckets.insert(record.bucket, beneath);
+                }
+                None => self.buckets.remove(record.bucket),
+            }
         }
         self.nodes.truncate(keep);
     }

@@ -67,7 +67,7 @@ impl Coil {
             layer: 1,
         };
         for bin in bucket.1 - 1..=bucket.1 + 1 {
-            let mut next = self.buckets.get(&(bucket.0, bin)).copied();
+            let mut next = self.buckets.get((bucket.0, bin));
             while let Some(index) = next {
                 let Record {
                     station: lower,

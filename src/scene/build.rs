@@ -322,6 +322,7 @@ impl SceneSettings {
                 live_contact: LiveContact::Always,
                 inertia: true,
                 coarse_settled: false,
+                steps_beyond: false,
             },
         }
     }

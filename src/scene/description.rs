@@ -198,6 +198,8 @@ pub struct Features {
     pub inertia: bool,
     /// settled wire behind lift-off gets a coarser spacing
     pub coarse_settled: bool,
+    /// steps may reach beyond communication points
+    pub steps_beyond: bool,
 }
 
 /// Since when live wire is looked for near live wire.

@@ -183,6 +183,17 @@ impl SceneSettings {
                 "auto or off; on with solver.integrator = implicit",
             ));
         }
+        let free = scene.solver.integrator == Integrator::Implicit && self.solver.step == 0.0;
+        let beyond = decisions.decide(
+            "solver.steps_beyond",
+            switch(&self.solver.steps_beyond),
+            free,
+            [
+                "the method finds its own steps, which need not end at communication points",
+                "steps of a given length end at communication points",
+            ],
+        );
+        scene.solver.features.steps_beyond = beyond && free;
         scene.solver.features.coarse_settled = decisions.decide(
             "solver.coarse_settled",
             settled,

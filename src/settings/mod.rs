@@ -168,6 +168,8 @@ pub struct SolverSettings {
     pub coarse_span: String,
     /// coarser spacing of settled live wire; auto: with the implicit method (one of `auto`, `on`, `off`)
     pub coarse_settled: String,
+    /// steps that reach beyond a communication point while inputs go on as they did; auto: where the method finds its own steps (one of `auto`, `on`, `off`)
+    pub steps_beyond: String,
 }
 
 impl WireSettings {
@@ -322,6 +324,7 @@ impl Default for SceneSettings {
                 inertia: "auto".to_owned(),
                 coarse_span: "auto".to_owned(),
                 coarse_settled: "auto".to_owned(),
+                steps_beyond: "auto".to_owned(),
             },
             freeze: Freeze {
                 enabled: true,

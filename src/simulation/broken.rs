@@ -1,9 +1,9 @@
 //! Wire that has parted: the machine goes on, the wire stays as it was.
 
-use super::Simulation;
+use super::Winding;
 use crate::system::Drive;
 
-impl Simulation {
+impl Winding {
     /// Lets spindle and nozzle go on by `drive` for `dt`, s; all else stays as it was.
     pub(super) fn turn_on(&mut self, dt: f64, drive: &Drive) {
         if dt > 0.0 {

@@ -5,7 +5,7 @@
 //! curvature. The error indicator is a displacement over one bending length: the one that results
 //! when the node's share of the curvature is spread over its neighbours.
 
-use super::Simulation;
+use super::Winding;
 use crate::math::{Spin, V3};
 use crate::rod::turning;
 
@@ -21,7 +21,7 @@ const BEHIND: f64 = 0.6;
 /// ... and is fine again when it comes nearer than this.
 const AHEAD: f64 = 0.4;
 
-impl Simulation {
+impl Winding {
     /// First node from the clamp that is less than `share` of the keep length behind lift-off.
     fn near_lift_off(&self, share: f64) -> usize {
         let mut left = share * self.run.policy.keep_length;

@@ -1,7 +1,8 @@
-//! The way in: inputs for a communication step, or the scene's own motion profile.
+//! Steps that end at the communication point: inputs for a communication step, or the scene's own motion profile.
 
 use super::nozzle_place::nozzle_of;
-use super::{SimError, Simulation, WORTH_A_STEP};
+use super::rates::rates_of;
+use super::{SimError, WORTH_A_STEP, Winding};
 use crate::integrate::SolverStatistics;
 use crate::signals::{EventKind, Inputs, Outputs};
 use crate::system::{Drive, NozzleDrive};
@@ -15,23 +16,9 @@ enum Source {
     Profile,
 }
 
-impl Simulation {
-    /// Advances by `dt`, s, with the inputs held.
-    ///
-    /// Spindle speed and tension hold from the start of the interval. The nozzle moves evenly and
-    /// reaches its position at the end, because a jump would hit the wire.
-    ///
-    /// After an error the run stands where the last step ended that went through ([`Self::time`]).
-    pub fn advance(&mut self, inputs: Inputs, dt: f64) -> Result<(), SimError> {
-        self.advance_ramped(inputs, Inputs::HELD, dt)
-    }
-
-    /// Advances by `dt`, s, with inputs that start at `inputs` and change evenly, at `rates` per s.
-    ///
-    /// The nozzle moves evenly from where it is to where its input is at the end, or with the core by the scene's law
-    /// ([`Self::starting_by_law`]). Steps below a nanosecond only
-    /// add up until they are worth solving for. After an error see [`Self::advance`].
-    pub fn advance_ramped(
+impl Winding {
+    /// See [`super::Simulation::advance_ramped`]; steps end at the communication point.
+    pub(super) fn advance_ramped(
         &mut self,
         inputs: Inputs,
         rates: Inputs,
@@ -40,10 +27,8 @@ impl Simulation {
         self.advance_by(Source::Inputs { inputs, rates }, dt)
     }
 
-    /// Advances by `dt`, s, along the scene's own spindle ramp and traverse, which are continuous.
-    ///
-    /// The set tension stays what it is. After an error see [`Self::advance`].
-    pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
+    /// See [`super::Simulation::advance_profile`].
+    pub(super) fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
         self.advance_by(Source::Profile, dt)
     }
 
@@ -62,7 +47,6 @@ impl Simulation {
             return Ok(());
         }
         let owed = std::mem::take(&mut self.run.owed);
-        self.run.last_span = span;
         let before = self.run.outputs;
         let speed_before = self.sys.state.spindle.speed;
         if self.is_moved_by(&source, dt) {
@@ -101,7 +85,8 @@ impl Simulation {
         self.run.acceleration = (self.sys.state.spindle.speed - speed_before) / span;
         self.pass_time(dt);
         self.finish();
-        self.update_rates(&before, span);
+        let both = [&before, &self.run.outputs];
+        self.run.rates = rates_of(self, both, span, self.sys.state.spindle.speed);
         Ok(())
     }
 
@@ -170,7 +155,7 @@ impl Simulation {
 
     /// Ends a step in which the method gave up: what can be read is what was reached, or what was there before
     /// if that is no state of a wire.
-    fn stop_short(&mut self) {
+    pub(super) fn stop_short(&mut self) {
         let rod = &self.sys.state.rod;
         if rod.x.iter().chain(&rod.v).flatten().all(|x| x.is_finite()) {
             (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
@@ -182,7 +167,7 @@ impl Simulation {
     /// Reports how often since `before` the solver shortened a step because Newton's method failed.
     ///
     /// Steps shortened for their error are ordinary and are not reported.
-    fn tell_of_trouble(&mut self, before: SolverStatistics) {
+    pub(super) fn tell_of_trouble(&mut self, before: SolverStatistics) {
         let newton_failures = self.statistics().newton_failures - before.newton_failures;
         if newton_failures > 0 {
             let text = format!(

@@ -1,6 +1,6 @@
 //! Faults of the wire itself: slack and break, kept as defects with their place, and the verdict on the run.
 
-use super::{SLACK, Simulation};
+use super::{SLACK, Winding};
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
 use crate::measure::{Defect, DefectKind, DefectPlace, TurnMeasures, Verdict};
 use crate::signals::EventKind;
@@ -12,7 +12,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// lies between the corners of a core, each of which may jerk the wire again.
 const SAME_SLACK: f64 = FRAC_PI_2;
 
-impl Simulation {
+impl Winding {
     /// Keeps the extremes of the tension, and notes where the wire goes slack.
     pub(super) fn watch_tension(&mut self) {
         let t = self.wire_tension();

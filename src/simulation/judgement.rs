@@ -1,13 +1,13 @@
 //! What bulges are judged by: the height of wire at rest, or a limit of their own.
 
-use super::{Simulation, quasi_static};
+use super::{Winding, quasi_static};
 use crate::measure::BulgeLimit;
 use crate::signals::EventKind;
 
 /// Largest tension of a yardstick that a saved state may ask for, N: that of the input.
 const MOST_TENSION: f64 = 1e4;
 
-impl Simulation {
+impl Winding {
     /// Takes the quasi-static height of wire under `tension`, N, as the yardstick where it is another than that of
     /// the scene.
     pub(super) fn take_yardstick_for(&mut self, tension: f64) -> Result<(), &'static str> {

@@ -1,6 +1,6 @@
 //! Where the wire meets the coil, as a place that moves evenly along the wire.
 
-use super::Simulation;
+use super::Winding;
 use crate::math::{Spin, V3, polar_angle, scaled, wrap_to_pi};
 
 /// Clearance up to which wire lies on the core, m, for wire of 0.7 mm.
@@ -22,7 +22,7 @@ pub(super) struct LayOn {
     pub(super) arc: f64,
 }
 
-impl Simulation {
+impl Winding {
     /// Finds the last wire that touches something or lies on the core, between nodes by its clearance.
     pub(super) fn layon(&self) -> LayOn {
         let spin = Spin::new(self.sys.state.spindle.angle);

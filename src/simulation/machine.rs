@@ -1,6 +1,6 @@
 //! What a model of the machine needs: torque with inertia, and where the wire is laid.
 
-use super::Simulation;
+use super::Winding;
 use super::layon::LayOn;
 use crate::signals::Outputs;
 use std::f64::consts::{PI, TAU};
@@ -26,7 +26,7 @@ impl Machine {
     }
 }
 
-impl Simulation {
+impl Winding {
     /// What a model of the machine needs of wire that is laid at `layon`.
     pub(super) fn for_the_machine(&self, layon: &LayOn) -> Machine {
         let [low, high] = self.ends;

@@ -3,7 +3,7 @@
 //! The law is a polyline over the angle that the core has turned, whichever way round. A communication step is divided
 //! where the core passes a corner of the law or turns back, so that the nozzle goes with the core within each part.
 
-use super::{SimError, Simulation, WORTH_A_STEP};
+use super::{SimError, WORTH_A_STEP, Winding};
 use crate::scene::{NozzleLaw, Scene};
 use crate::signals::Inputs;
 use crate::system::{Drive, NozzleDrive};
@@ -12,23 +12,19 @@ use crate::system::{Drive, NozzleDrive};
 /// to in a run, and too little to be seen. Within it the motion is that of the scene's own motion profile, to the bit.
 const AS_GOOD_AS_THERE: f64 = 1e-9;
 
-impl Simulation {
-    /// Starts a run whose nozzle follows [`Scene::nozzle_law`]; `nozzle_position` is not looked at in such a run.
-    ///
-    /// # Errors
-    ///
-    /// As for [`Self::starting_with`].
-    pub fn starting_by_law(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
+impl Winding {
+    /// See [`super::Simulation::starting_by_law`].
+    pub(super) fn starting_by_law(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
         let nozzle_position = scene.nozzle_law.start();
-        let mut simulation = Self::starting_with(
+        let mut winding = Self::starting_with(
             scene,
             Inputs {
                 nozzle_position,
                 ..inputs
             },
         )?;
-        simulation.run.nozzle_by_law = true;
-        Ok(simulation)
+        winding.run.nozzle_by_law = true;
+        Ok(winding)
     }
 
     /// Whether the nozzle follows the scene's law and not its input.

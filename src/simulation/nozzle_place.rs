@@ -1,6 +1,6 @@
 //! Where the nozzle stands in a run that is driven by inputs, and that it stays clear of the core.
 
-use super::{SimError, Simulation};
+use super::{SimError, Winding};
 use crate::math::V3;
 use crate::scene::Scene;
 use crate::signals::Inputs;
@@ -14,7 +14,7 @@ pub(super) fn nozzle_of(scene: &Scene, inputs: &Inputs) -> V3 {
     )
 }
 
-impl Simulation {
+impl Winding {
     /// Where the nozzle has to be at the end of a step whose inputs end as `end`, m: along the core axis as its law says,
     /// where it follows one.
     pub(super) fn nozzle_at_end(&self, end: &Inputs) -> V3 {

@@ -1,10 +1,11 @@
 //! What can be read of a run: outputs at a communication point, the coil, the wire's centreline.
 
-use super::{Centreline, Simulation};
+use super::{Centreline, Winding};
 use crate::math::{Spin, V3, turn_about_y};
 use crate::measure::{Coil, DefectKind, SettledNode};
+use crate::signals::Outputs;
 
-impl Simulation {
+impl Winding {
     pub(super) fn wire_tension(&self) -> f64 {
         // below zero the wire hangs loose in the nozzle, which holds nothing
         self.sys
@@ -24,30 +25,24 @@ impl Simulation {
         } else {
             self.wire_tension()
         };
+        let mut outputs = self.run.outputs;
+        (outputs.wire_tension_min, outputs.wire_tension_max) = (t, t);
+        self.lower_flags(&mut outputs);
+        self.run.outputs = outputs;
+    }
+
+    /// Leaves up only those flags whose defect holds now.
+    pub(super) fn lower_flags(&self, o: &mut Outputs) {
         let flags = self.coil.flags();
-        let o = &mut self.run.outputs;
-        (o.wire_tension_min, o.wire_tension_max) = (t, t);
         (o.defect_bulge, o.defect_gap, o.defect_overlap) = (flags.bulge, flags.gap, flags.overlap);
         o.defect_slack = self.run.was_slack;
     }
 
     /// Raises the flags of what is wrong now: one that falls again within the communication step is up at its end.
     pub(super) fn raise_flags(&mut self) {
-        let flags = self.coil.flags();
-        let o = &mut self.run.outputs;
-        o.defect_bulge |= flags.bulge;
-        o.defect_gap |= flags.gap;
-        o.defect_overlap |= flags.overlap;
-        o.defect_slack |= self.run.was_slack;
-        let up = [
-            (DefectKind::Bulge, o.defect_bulge),
-            (DefectKind::Gap, o.defect_gap),
-            (DefectKind::Overlap, o.defect_overlap),
-            (DefectKind::Break, self.run.broken),
-            (DefectKind::Slack, o.defect_slack),
-        ];
-        let codes = up.iter().filter(|(_, up)| *up).map(|(kind, _)| kind.code());
-        o.defect_code = codes.sum();
+        let mut now = self.run.outputs;
+        self.lower_flags(&mut now);
+        raise_as(&mut self.run.outputs, &now, self.run.broken);
     }
 
     /// The settled wire and, taken as if it were settled, the live wire up to lift-off.
@@ -210,4 +205,29 @@ impl Simulation {
         }
         line
     }
+}
+
+/// Raises the flags that are up in `other`, and the code with them; `broken` wire has no flag before its measures are read.
+pub(super) fn raise_as(o: &mut Outputs, other: &Outputs, broken: bool) {
+    o.defect_bulge |= other.defect_bulge;
+    o.defect_gap |= other.defect_gap;
+    o.defect_overlap |= other.defect_overlap;
+    o.defect_slack |= other.defect_slack;
+    let up = [
+        (DefectKind::Bulge, o.defect_bulge),
+        (DefectKind::Gap, o.defect_gap),
+        (DefectKind::Overlap, o.defect_overlap),
+        (DefectKind::Break, broken),
+        (DefectKind::Slack, o.defect_slack),
+    ];
+    let codes = up.iter().filter(|(_, up)| *up).map(|(kind, _)| kind.code());
+    o.defect_code = codes.sum();
+}
+
+/// Gives `o` the extremes and flags that a master was told of.
+pub(super) fn keep_told(o: &mut Outputs, told: &Outputs) {
+    (o.wire_tension_min, o.wire_tension_max) = (told.wire_tension_min, told.wire_tension_max);
+    (o.defect_bulge, o.defect_gap) = (told.defect_bulge, told.defect_gap);
+    (o.defect_overlap, o.defect_slack) = (told.defect_overlap, told.defect_slack);
+    raise_as(o, told, o.defect_break);
 }

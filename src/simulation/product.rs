@@ -1,6 +1,6 @@
 //! The coil as a product: what a drawing or a bill of material says of it.
 
-use super::Simulation;
+use super::Winding;
 use crate::measure::LayerContour;
 use crate::scene::Window;
 use serde::Serialize;
@@ -54,7 +54,7 @@ pub struct Fill {
     pub fill_enamelled: f64,
 }
 
-impl Simulation {
+impl Winding {
     /// Resistance of so much unstretched wire, m, at 20 degC, of its unstretched section, ohm.
     pub(super) fn resistance_of(&self, length: f64) -> f64 {
         self.scene.resistivity * length / self.scene.wire.bare_area()

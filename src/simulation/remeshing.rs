@@ -1,6 +1,6 @@
 //! Remeshing between steps: insert, refine, freeze, and health checks of the wire.
 
-use super::{REMESH_STEPS, SimError, Simulation};
+use super::{REMESH_STEPS, SimError, Winding};
 use crate::geometry::FrozenNode;
 use crate::math::Spin;
 use crate::math::turn_about_y;
@@ -25,7 +25,7 @@ const HALF_TURN: f64 = 0.9 * PI;
 /// Wire that has passed the nozzle over what core and way can have taken up at most, from which on it runs away.
 const RUNAWAY: f64 = 2.0;
 
-impl Simulation {
+impl Winding {
     pub(super) fn remesh(&mut self, dt: f64) -> Result<(), SimError> {
         let look = self.stepper.is_implicit() || self.run.steps.is_multiple_of(REMESH_STEPS);
         if look {

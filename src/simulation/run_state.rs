@@ -17,8 +17,6 @@ pub(super) struct RunState {
     pub(super) last_step: f64,
     /// mean acceleration of the spindle over the last communication step, rad/s2
     pub(super) acceleration: f64,
-    /// length of the last communication step, s; 0: none yet
-    pub(super) last_span: f64,
     /// elapsed time, s
     pub(super) time: f64,
     /// what adding up steps has lost of `time`, s
@@ -30,7 +28,7 @@ pub(super) struct RunState {
     /// steps tried so far, each counted as often as it had nodes
     pub(super) work: u64,
     pub(super) outputs: Outputs,
-    /// per s, see [`super::Simulation::output_rates`]
+    /// per s, see [`super::Winding::output_rates`]
     pub(super) rates: Outputs,
     /// what happened since events were last taken
     pub(super) events: Vec<Event>,

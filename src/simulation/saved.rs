@@ -4,17 +4,22 @@
 //! Restoring starts a second run from the scene and then replaces its state.
 //! Search trees and measures of settled wire are rebuilt from the state to the bit.
 
-use super::Simulation;
+use super::ahead::Ahead;
+use super::course::Course;
+use super::pool::Pool;
 use super::run_state::RunState;
+use super::talk::Talk;
+use super::{Simulation, Winding};
 use crate::integrate::{SolverStatistics, Stepper};
 use crate::measure::SavedCoil;
 use crate::scene::Scene;
 use crate::system::State;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -57,10 +62,81 @@ struct Saved<'a> {
     run: Cow<'a, RunState>,
 }
 
+/// A run and what has been said of it.
+#[derive(Debug, Serialize, Deserialize)]
+struct SavedRun<'a> {
+    winding: Saved<'a>,
+    talk: Cow<'a, Talk>,
+    /// of a step ahead: its course, and whether it is the first along it
+    ahead: Option<(Course, bool)>,
+}
+
 impl Simulation {
     /// The state of this run, for [`Simulation::from_bytes`] with the same scene.
+    ///
+    /// # Errors
+    ///
+    /// If it cannot be encoded.
     pub fn to_bytes(&self) -> Result<Vec<u8>, RestoreError> {
-        let saved = Saved {
+        let saved = SavedRun {
+            winding: self.now.saved(),
+            talk: Cow::Borrowed(&self.talk),
+            ahead: self.ahead.as_ref().map(|ahead| (ahead.course, ahead.first)),
+        };
+        Ok(postcard::to_stdvec(&(VERSION, saved))?)
+    }
+
+    /// A run of `scene` that goes on, to the bit, as the one did that `bytes` were made of. A step ahead is taken again.
+    ///
+    /// The bytes need not be trusted: what they hold is checked before it is used. That they are the
+    /// ones written (a checksum) is for the caller to see to.
+    ///
+    /// # Errors
+    ///
+    /// If the bytes are no state of a run of this scene.
+    pub fn from_bytes(scene: &Scene, bytes: &[u8]) -> Result<Self, RestoreError> {
+        let (found, rest) = postcard::take_from_bytes::<u32>(bytes)?;
+        if found != VERSION {
+            return Err(RestoreError::Version { found });
+        }
+        let (saved, rest) = postcard::take_from_bytes::<SavedRun>(rest)?;
+        if !rest.is_empty() {
+            return Err(RestoreError::TooLong { left: rest.len() });
+        }
+        let mut winding = Winding::new(scene)?;
+        if saved.winding.core != winding.core_checksum() {
+            return Err(RestoreError::OtherCore);
+        }
+        winding
+            .take_over(saved.winding)
+            .map_err(RestoreError::Impossible)?;
+        let talk = saved.talk.into_owned();
+        if !talk.is_sound(&winding, saved.ahead.is_some()) {
+            return Err(RestoreError::Impossible(
+                "what was said last cannot have been",
+            ));
+        }
+        let ahead = match saved.ahead {
+            Some((course, first)) if course.is_sound() => {
+                let ahead = Ahead::of(Arc::new(winding.clone()), course, first);
+                Some(ahead.map_err(|_| RestoreError::Impossible("no step leads ahead"))?)
+            }
+            Some(_) => return Err(RestoreError::Impossible("nothing moves like that")),
+            None => None,
+        };
+        Ok(Self {
+            now: Arc::new(winding),
+            ahead,
+            talk,
+            pool: Pool::default(),
+            steps_beyond: false,
+        })
+    }
+}
+
+impl Winding {
+    fn saved(&self) -> Saved<'_> {
+        Saved {
             core: self.core_checksum(),
             sys: Cow::Borrowed(&self.sys.state),
             coil: self.coil.saved(),
@@ -71,29 +147,7 @@ impl Simulation {
                 Stepper::Explicit { .. } => None,
             },
             run: Cow::Borrowed(&self.run),
-        };
-        Ok(postcard::to_stdvec(&(VERSION, saved))?)
-    }
-
-    /// A run of `scene` that goes on, to the bit, as the one did that `bytes` were made of.
-    ///
-    /// The bytes need not be trusted: what they hold is checked before it is used. That they are the
-    /// ones written (a checksum) is for the caller to see to.
-    pub fn from_bytes(scene: &Scene, bytes: &[u8]) -> Result<Self, RestoreError> {
-        let (found, rest) = postcard::take_from_bytes::<u32>(bytes)?;
-        if found != VERSION {
-            return Err(RestoreError::Version { found });
         }
-        let (saved, rest) = postcard::take_from_bytes::<Saved>(rest)?;
-        if !rest.is_empty() {
-            return Err(RestoreError::TooLong { left: rest.len() });
-        }
-        let mut sim = Self::new(scene)?;
-        if saved.core != sim.core_checksum() {
-            return Err(RestoreError::OtherCore);
-        }
-        sim.take_over(saved).map_err(RestoreError::Impossible)?;
-        Ok(sim)
     }
 
     fn take_over(&mut self, saved: Saved) -> Result<(), &'static str> {

@@ -6,7 +6,7 @@ use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_place::nozzle_of;
 use super::nozzle_way::Traverse;
 use super::run_state::RunState;
-use super::{MotionProfile, SimError, Simulation};
+use super::{MotionProfile, SimError, Winding};
 use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec, LineWire};
 use crate::geometry::Surface;
@@ -223,9 +223,9 @@ fn line_of_nodes(scene: &Scene, surface: &Surface, clamp: V3, nozzle: V3, angle:
     points
 }
 
-impl Simulation {
+impl Winding {
     /// Wire clamped to the core and straight to the nozzle at the set tension, everything at rest.
-    pub fn new(scene: &Scene) -> Result<Self, SimError> {
+    pub(super) fn new(scene: &Scene) -> Result<Self, SimError> {
         let inputs = Inputs {
             spindle_speed: 0.0,
             nozzle_position: scene.nozzle_law.start(),
@@ -236,7 +236,7 @@ impl Simulation {
     }
 
     /// The same with these inputs at the start.
-    pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
+    pub(super) fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
         check_finite(&inputs, 0.0)?;
         let (mut sys, coil, angle0) = wire(scene, &inputs)?;
         let (stepper, last_step) = stepper_for(scene)?;
@@ -261,7 +261,6 @@ impl Simulation {
             angle0,
             last_step,
             acceleration: 0.0,
-            last_span: 0.0,
             time: 0.0,
             time_lost: 0.0,
             owed: 0.0,
@@ -303,15 +302,6 @@ impl Simulation {
             sim.report(kind, text);
         }
         Ok(sim)
-    }
-
-    /// Starts over with other inputs; only before the first step.
-    pub fn set_start(&mut self, inputs: Inputs) -> Result<(), SimError> {
-        *self = match self.run.nozzle_by_law {
-            true => Self::starting_by_law(&self.scene, inputs)?,
-            false => Self::starting_with(&self.scene, inputs)?,
-        };
-        Ok(())
     }
 }
 

@@ -43,9 +43,9 @@ impl Simulation {
         let outcome = |by: f64| {
             let mut run = self.clone();
             run.advance_ramped(inputs.after(&along, by), rates, dt)?;
-            Ok(run.run.outputs)
+            Ok(*run.outputs())
         };
-        let reach = reach(&self.scene, &inputs, &along, dt);
+        let reach = reach(self.scene(), &inputs, &along, dt);
         let mut slopes = Vec::with_capacity(SIZES.len());
         let mut refused = None;
         for size in SIZES {
@@ -56,7 +56,7 @@ impl Simulation {
         }
         match refused {
             Some(error) if slopes.is_empty() => Err(error),
-            _ => Ok(Outputs::of_smooth(middle(&slopes))),
+            _ => Ok(Outputs::default().with_smooth(middle(&slopes))),
         }
     }
 
@@ -73,10 +73,10 @@ impl Simulation {
     ) -> Result<Outputs, SimError> {
         let outcome = |by: f64| {
             let run = Self::starting_with(scene, inputs.after(&along, by))?;
-            Ok(run.run.outputs)
+            Ok(*run.outputs())
         };
         let slope = slope(&outcome, reach(scene, &inputs, &along, 1.0))?;
-        Ok(Outputs::of_smooth(slope))
+        Ok(Outputs::default().with_smooth(slope))
     }
 }
 

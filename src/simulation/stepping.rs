@@ -1,12 +1,12 @@
 //! Steps of the method through an interval of the machine's motion.
 
 use super::motion_profile::ROUNDING;
-use super::{QUIET, SimError, Simulation, WORTH_A_STEP};
+use super::{QUIET, SimError, WORTH_A_STEP, Winding};
 use crate::integrate::Stepper;
 use crate::system::Drive;
 use std::sync::atomic::Ordering::Relaxed;
 
-impl Simulation {
+impl Winding {
     /// Goes through the interval of `drive` in steps that the method finds fit.
     pub(super) fn through(&mut self, drive: &Drive) -> Result<(), SimError> {
         let dt = drive.duration;
@@ -72,7 +72,7 @@ impl Simulation {
     }
 
     /// Longest step in which wire that goes back takes no more than a quarter of the nozzle's edge, s.
-    fn longest_return(&self) -> f64 {
+    pub(super) fn longest_return(&self) -> f64 {
         match (&self.sys.state.feed, self.sys.state.rod.rest.last()) {
             (Some(f), Some(rest)) if f.rate < 0.0 => 0.25 * rest / -f.rate,
             _ => f64::INFINITY,
@@ -80,7 +80,7 @@ impl Simulation {
     }
 
     /// Takes one step of at most `most`, s, and remeshes after it; returns its length, s.
-    fn step(&mut self, most: f64) -> Result<f64, SimError> {
+    pub(super) fn step(&mut self, most: f64) -> Result<f64, SimError> {
         if self.stop.as_ref().is_some_and(|flag| flag.load(Relaxed)) {
             return Err(SimError {
                 time: self.sys.state.time,

@@ -1,6 +1,6 @@
 //! The numbers that describe a whole run.
 
-use super::Simulation;
+use super::Winding;
 use super::product::Product;
 use crate::measure::{BulgeLimit, Defect, TurnMeasures, reasons};
 use crate::scene::{Decision, Integrator, Preset};
@@ -102,7 +102,7 @@ pub struct PenetrationSummary {
     pub at_rest_over_d: f64,
 }
 
-impl Simulation {
+impl Winding {
     /// Energy balance up to now.
     pub fn energy(&self) -> EnergySummary {
         let b = self.sys.state.balance;

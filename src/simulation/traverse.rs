@@ -1,6 +1,6 @@
 //! Which way the nozzle went while wire was laid: where passes begin, and which way the core winds.
 
-use super::Simulation;
+use super::Winding;
 use super::nozzle_way::{Found, Traverse};
 use std::f64::consts::TAU;
 
@@ -12,7 +12,7 @@ const TURNED: f64 = 0.5;
 /// twentieth of a turn, less than a corner of any core takes.
 const OTHER_WAY: f64 = 0.05 * TAU;
 
-impl Simulation {
+impl Winding {
     /// Follows core and nozzle after a step: which way wire is wound, and where the nozzle turned.
     ///
     /// A pass is begun at the wire that was laid when the nozzle turned, not at the wire that has come to rest by then.

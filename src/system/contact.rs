@@ -99,6 +99,14 @@ impl ContactState {
         }
     }
 
+    /// Becomes a copy of another state, in the room that this one has.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        match (self, other) {
+            (Self::Line(to), Self::Line(from)) => to.copy_from(from),
+            (to, from) => *to = from.clone(),
+        }
+    }
+
     /// From now on live wire may touch live wire.
     pub fn watch_live_wire(&mut self) {
         match self {
@@ -107,6 +115,16 @@ impl ContactState {
                 nodal.live.get_or_insert_default();
             }
             Self::Line(line) => line.watch_live_wire(),
+        }
+    }
+}
+
+impl ContactScratch {
+    /// Serves the contact of another system from now on.
+    pub(super) fn serve(&mut self, other: &Self) {
+        match (self, other) {
+            (Self::Line(to), Self::Line(from)) => to.serve(from),
+            (to, from) => *to = from.clone(),
         }
     }
 }

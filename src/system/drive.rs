@@ -79,6 +79,20 @@ impl System {
         }
     }
 
+    /// Gives spindle, nozzle and tensioner the motion of `drive` where they are in the middle of it, with the nozzle at
+    /// `position`, m: what rounding has added up to is taken off.
+    pub(crate) fn continue_drive(&mut self, drive: &Drive, position: f64) {
+        self.state.spindle.speed = drive.speed;
+        self.state.spindle.acceleration = drive.acceleration;
+        self.state.set_tension = drive.tension;
+        self.state.set_rate = drive.tension_rate;
+        if let NozzleDrive::Even(velocity) = drive.nozzle {
+            let nozzle = &mut self.state.support[1];
+            nozzle.point.y = position;
+            nozzle.velocity = drive.velocity(velocity);
+        }
+    }
+
     /// Ends the motion of nozzle and set tension and the spindle's acceleration; the spindle keeps its speed.
     pub fn end_drive(&mut self) {
         self.state.support[1].velocity = V3::zeros();

@@ -67,6 +67,12 @@ impl System {
         }
     }
 
+    /// Takes over the state of another system of the same model, and keeps its own work space.
+    pub(crate) fn follow(&mut self, other: &Self) {
+        self.state.copy_from(&other.state);
+        self.scratch.contact.serve(&other.scratch.contact);
+    }
+
     /// Lets wire in at the last node; `feed` is the state it begins in.
     pub fn set_feed(&mut self, spec: FeedSpec, feed: Feed) {
         (self.model.feed, self.state.feed) = (Some(spec), Some(feed));

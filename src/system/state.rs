@@ -8,6 +8,7 @@ use crate::feed::{Feed, LineWire};
 use crate::geometry::Tube;
 use crate::rod::{Load, Rod};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// State of a [`super::System`].
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -22,8 +23,8 @@ pub struct State {
     pub past: Past,
     /// what contact remembers
     pub contact: ContactState,
-    /// frozen wire as fixed geometry, oldest node first
-    pub frozen: Tube,
+    /// frozen wire as fixed geometry, oldest node first; copies share it until one of them changes it
+    pub frozen: Arc<Tube>,
     /// frozen wire of the implicit method, as it is kept to let it move again
     pub(crate) frozen_history: FrozenHistory,
     /// feed at the last node, if there is one
@@ -66,7 +67,7 @@ impl State {
             spindle: Spindle::default(),
             past: Past::default(),
             contact: ContactState::None,
-            frozen: Tube::new(radius),
+            frozen: Arc::new(Tube::new(radius)),
             frozen_history: FrozenHistory::default(),
             feed: None,
             line_wire: LineWire::default(),
@@ -83,6 +84,49 @@ impl State {
             load: Load::default(),
             roll,
         }
+    }
+
+    /// Becomes a copy of another state, in the room that this one has.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let Self {
+            rod,
+            support,
+            spindle,
+            past,
+            contact,
+            frozen,
+            frozen_history,
+            feed,
+            line_wire,
+            set_tension,
+            set_rate,
+            arc0,
+            joined_away,
+            balance,
+            deepest,
+            torque_on_core,
+            turning,
+            unbalanced,
+            time,
+            load,
+            roll,
+        } = other;
+        self.rod.clone_from(rod);
+        (self.support, self.spindle) = (*support, *spindle);
+        self.past.clone_from(past);
+        self.contact.copy_from(contact);
+        self.frozen.clone_from(frozen);
+        self.frozen_history.clone_from(frozen_history);
+        self.feed = *feed;
+        self.line_wire.clone_from(line_wire);
+        (self.set_tension, self.set_rate) = (*set_tension, *set_rate);
+        (self.arc0, self.joined_away) = (*arc0, *joined_away);
+        self.balance = *balance;
+        (self.deepest, self.torque_on_core) = (*deepest, *torque_on_core);
+        (self.turning, self.unbalanced) = (*turning, *unbalanced);
+        self.time = *time;
+        self.load.clone_from(load);
+        self.roll.clone_from(roll);
     }
 
     /// Fails with what is impossible about a state, whose bytes may say anything.

@@ -7,6 +7,7 @@ use crate::contact::{
 };
 use crate::geometry::{FrozenNode, Shape};
 use crate::math::V3;
+use std::sync::Arc;
 
 impl System {
     /// Lets the wire touch along its centreline from now on.
@@ -53,16 +54,16 @@ impl System {
         if let Some(mut line) = self.line_contact() {
             line.lay(node.point, node.arc);
         }
-        self.state.frozen.push(node);
+        Arc::make_mut(&mut self.state.frozen).push(node);
     }
 
     /// Takes the last `count` frozen nodes away from what wire can touch.
     pub(crate) fn take_up_frozen(&mut self, count: usize) {
         for _ in 0..count {
             if let ContactScratch::Line(line) = &mut self.scratch.contact {
-                line.tube.pop();
+                Arc::make_mut(&mut line.tube).pop();
             }
-            self.state.frozen.pop();
+            Arc::make_mut(&mut self.state.frozen).pop();
         }
     }
 

@@ -32,10 +32,13 @@ impl Instance {
 
     /// Writes the results and closes the files, if any are open.
     pub(super) fn finish_recording(&mut self, ending: &Ending) {
-        if let Some(run) = &mut self.run
-            && let Some(recording) = run.recording.take()
-            && let Err(reason) = recording.finish(&run.simulation, ending)
-        {
+        let Some(run) = &mut self.run else { return };
+        let Some(recording) = run.recording.take() else {
+            return;
+        };
+        // The files are those of the communication point. Where no step leads there, of the last one before it.
+        let _ = run.simulation.settle();
+        if let Err(reason) = recording.finish(&run.simulation, ending) {
             self.messages.push(Message::not_written(reason));
         }
     }

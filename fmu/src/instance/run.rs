@@ -60,7 +60,8 @@ impl Run {
             true => Simulation::starting_by_law(scene, inputs),
             false => Simulation::starting_with(scene, inputs),
         };
-        let simulation = simulation.map_err(Error::Start)?;
+        let mut simulation = simulation.map_err(Error::Start)?;
+        simulation.step_beyond(scene.solver.features.steps_beyond);
         let mut slopes = Inputs::HELD;
         for (reference, rate) in rates {
             write_input(&mut slopes, *reference, *rate);

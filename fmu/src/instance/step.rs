@@ -24,7 +24,7 @@ impl Instance {
         let end = self.clock.end_of(point, step)?;
         let offset = self.clock.experiment_time(0.0);
         let demonstrates = self.demonstrates;
-        self.retune()?;
+        let retuned = self.retune()?;
         for text in self.start()?.hold_inputs(step) {
             self.warn(text);
         }
@@ -40,7 +40,8 @@ impl Instance {
         };
         run.last = None;
         let began = Instant::now();
-        let result = run.simulation.advance_ramped(run.inputs, run.rates, step);
+        let result =
+            retuned.and_then(|()| run.simulation.advance_ramped(run.inputs, run.rates, step));
         if let Some(recording) = &mut run.recording {
             recording.computed(began.elapsed());
         }

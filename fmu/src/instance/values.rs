@@ -7,6 +7,7 @@ use crate::ffi::fmi2String;
 use crate::lifecycle::State;
 use crate::logger::c_string;
 use crate::scalar::{Scalar, find, wrong_type};
+use coilwind::simulation::SimError;
 use coilwind::variables::{Access, Causality, Value, Variability, Variable};
 
 /// A variable with the value that it is to have.
@@ -133,18 +134,19 @@ impl Instance {
     ///
     /// # Errors
     ///
-    /// If the parameters contradict each other.
-    pub(super) fn retune(&mut self) -> Result<(), Error> {
+    /// If the parameters contradict each other, or if the simulation gives up on the way to the communication point, from
+    /// which on they hold.
+    pub(super) fn retune(&mut self) -> Result<Result<(), SimError>, Error> {
         let Some(run) = self.run.as_mut() else {
-            return Ok(());
+            return Ok(Ok(()));
         };
         let (friction, defects) = self.parameters.tunable();
         let scene = run.simulation.scene();
-        if scene.friction != friction || scene.defects != defects {
-            let (scene, _) = self.parameters.scene()?;
-            run.simulation.retune(&scene);
+        if scene.friction == friction && scene.defects == defects {
+            return Ok(Ok(()));
         }
-        Ok(())
+        let (scene, _) = self.parameters.scene()?;
+        Ok(run.simulation.retune(&scene))
     }
 
     fn set_inputs(&mut self, changes: &[Change]) {

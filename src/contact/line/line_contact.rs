@@ -3,7 +3,9 @@
 use super::model::LineModel;
 use super::scratch::LineScratch;
 use super::state::LineState;
+use crate::geometry::SplineTube;
 use crate::math::V3;
+use std::sync::Arc;
 
 /// Contact of the implicit method: the surfaces that the wire can touch, the law, and the state of each contact point.
 ///
@@ -24,13 +26,13 @@ impl LineContact<'_> {
     pub fn lay(&mut self, point: V3, arc: f64) {
         let distance = self.model.shape.nearness(point).distance;
         self.state.height = self.state.height.max(distance + self.model.radius);
-        self.scratch.tube.push(point, arc);
+        Arc::make_mut(&mut self.scratch.tube).push(point, arc);
     }
 
     /// Lets the spline of the frozen wire continue into the first two live nodes: their places (m) and unstretched
     /// lengths from the clamp (m), the clamp's first. With `None` it ends, and nodes can be added or taken up.
     pub fn go_on(&mut self, ahead: Option<[(V3, f64); 2]>) {
-        self.scratch.tube.go_on(ahead);
+        Arc::make_mut(&mut self.scratch.tube).go_on(ahead);
         self.state.ahead = self.scratch.tube.ahead();
         self.state.mark_seam();
     }
@@ -38,10 +40,11 @@ impl LineContact<'_> {
     /// Lays the saved frozen wire again, whose nodes have these places (m) and unstretched lengths from the clamp (m), for
     /// a state that [`LineState::check`] found possible.
     pub(crate) fn relay(&mut self, wire: impl Iterator<Item = (V3, f64)>) {
-        self.scratch.tube = crate::geometry::SplineTube::new(self.model.radius);
+        let mut tube = SplineTube::new(self.model.radius);
         for (point, arc) in wire {
-            self.scratch.tube.push(point, arc);
+            tube.push(point, arc);
         }
-        self.scratch.tube.go_on(self.state.ahead);
+        tube.go_on(self.state.ahead);
+        self.scratch.tube = Arc::new(tube);
     }
 }

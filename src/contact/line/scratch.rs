@@ -5,12 +5,13 @@ use super::point::PointState;
 use crate::contact::accepted_touch::AcceptedTouch;
 use crate::contact::self_contact::PairScratch;
 use crate::geometry::SplineTube;
+use std::sync::Arc;
 
 /// Work arrays of contact along the wire, and the search among frozen wire. None of it is saved.
 #[derive(Clone, Debug)]
 pub struct LineScratch {
-    /// the frozen wire of the state, to be searched; it grows by [`super::LineContact::lay`]
-    pub tube: SplineTube,
+    /// the frozen wire of the state, to be searched; it grows by [`super::LineContact::lay`], and copies share it until then
+    pub tube: Arc<SplineTube>,
     /// work that the energy balance ascribes to touches which ended within the step, and that they did not do, J
     pub lifted: f64,
     /// the touches at the end of the step
@@ -29,7 +30,7 @@ impl LineScratch {
     /// Room for the contact of wire of this `radius`, m; no frozen wire.
     pub fn new(radius: f64) -> Self {
         Self {
-            tube: SplineTube::new(radius),
+            tube: Arc::new(SplineTube::new(radius)),
             lifted: 0.0,
             accepted: Vec::with_capacity(256),
             pairs: PairScratch::default(),
@@ -37,5 +38,25 @@ impl LineScratch {
             undo: Vec::with_capacity(256),
             found: Vec::with_capacity(64),
         }
+    }
+
+    /// Serves the contact of another wire from now on, with the frozen wire that `other` serves.
+    pub(crate) fn serve(&mut self, other: &Self) {
+        let Self {
+            tube,
+            lifted,
+            accepted,
+            pairs,
+            near,
+            undo,
+            found,
+        } = self;
+        tube.clone_from(&other.tube);
+        *lifted = other.lifted;
+        accepted.clone_from(&other.accepted);
+        pairs.clear();
+        near.clear();
+        undo.clear();
+        found.clear();
     }
 }

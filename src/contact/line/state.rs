@@ -49,6 +49,28 @@ impl LineState {
         }
     }
 
+    /// Becomes a copy of another state, in the room that this one has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let Self {
+            points,
+            loss,
+            deepest,
+            height,
+            ahead,
+            hold_limits,
+            self_contact,
+        } = other;
+        self.points.truncate(points.len());
+        let mut from = points.iter();
+        for (to, from) in self.points.iter_mut().zip(&mut from) {
+            **to = **from;
+        }
+        self.points.extend(from.cloned());
+        (self.loss, self.deepest, self.height) = (*loss, *deepest, *height);
+        (self.ahead, self.hold_limits) = (*ahead, *hold_limits);
+        self.self_contact.clone_from(self_contact);
+    }
+
     /// Follows the split of edge `j`: the state of its middle becomes that of the new node `j + 1`, and the middles
     /// of both halves are new.
     pub fn split(&mut self, j: usize) {

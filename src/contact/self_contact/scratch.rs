@@ -63,3 +63,29 @@ pub struct PairScratch {
     /// the pairs as the linear system sees them
     pub(super) near: Vec<NearPair>,
 }
+
+impl PairScratch {
+    /// Empties the work arrays.
+    pub(crate) fn clear(&mut self) {
+        let Self {
+            previous,
+            angle,
+            arc,
+            unpaired,
+            reached,
+            used,
+            wire,
+            couplings,
+            near,
+        } = self;
+        previous.clear();
+        angle.clear();
+        arc.clear();
+        unpaired.clear();
+        reached.clear();
+        used.clear();
+        wire.clear();
+        couplings.clear();
+        near.clear();
+    }
+}

@@ -1,0 +1,87 @@
+//! A step of the method that reaches beyond the communication point, and what is read between its ends.
+
+use super::course::Course;
+use super::{SimError, Winding};
+use crate::signals::Outputs;
+use std::sync::Arc;
+
+/// A winding one step of the method ahead, along a course that may turn out to be another.
+#[derive(Clone, Debug)]
+pub(super) struct Ahead {
+    pub(super) winding: Arc<Winding>,
+    /// what the inputs were taken to go on as
+    pub(super) course: Course,
+    /// whether the step was the first along its course
+    pub(super) first: bool,
+}
+
+impl Ahead {
+    /// Lets a copy of a winding take a step along the course.
+    ///
+    /// # Errors
+    ///
+    /// If the method finds no step; the winding that comes with the reason stands where it gave up.
+    pub(super) fn of(
+        mut copy: Arc<Winding>,
+        course: Course,
+        first: bool,
+    ) -> Result<Self, (Arc<Winding>, SimError)> {
+        let winding = Arc::make_mut(&mut copy);
+        winding.run.events.clear();
+        let stepped = winding.step_along(&course, first);
+        match stepped {
+            Ok(()) => Ok(Self {
+                winding: copy,
+                course,
+                first,
+            }),
+            Err(error) => Err((copy, error)),
+        }
+    }
+}
+
+impl Winding {
+    /// Takes a step of the method along `course`, however long, and reads the outputs at its end.
+    ///
+    /// # Errors
+    ///
+    /// If the method finds no step.
+    pub(super) fn step_along(&mut self, course: &Course, first: bool) -> Result<(), SimError> {
+        self.take_course(course, first);
+        self.reset_extremes();
+        let before = self.statistics();
+        let stepped = self.step(self.longest_return());
+        self.tell_of_trouble(before);
+        stepped?;
+        (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
+        self.update_outputs();
+        Ok(())
+    }
+
+    fn take_course(&mut self, course: &Course, first: bool) {
+        let drive = course.drive(self.run.time, self.stepper.next());
+        if !course.is_still() || drive.tension != self.sys.state.set_tension {
+            self.run.quiet = 0.0;
+        }
+        self.run.acceleration = drive.acceleration;
+        if first {
+            self.sys.begin_drive(&drive);
+        } else {
+            self.sys
+                .continue_drive(&drive, course.at(self.run.time).nozzle_position);
+        }
+    }
+}
+
+/// Outputs a `share` of the way from one end of a step to the other: what follows the wire goes evenly, what is counted is that
+/// of the start. The tension rings from step to step, so that a parabola through three ends is off by as much as a line through two.
+pub(super) fn between(start: &Outputs, end: &Outputs, share: f64) -> Outputs {
+    let even = |a: f64, b: f64| a + share * (b - a);
+    let (a, b) = (start.smooth(), end.smooth());
+    Outputs {
+        wire_length: even(start.wire_length, end.wire_length),
+        wire_resistance: even(start.wire_resistance, end.wire_resistance),
+        flange_clearance: even(start.flange_clearance, end.flange_clearance),
+        ..start.with_smooth(std::array::from_fn(|k| even(a[k], b[k])))
+    }
+}

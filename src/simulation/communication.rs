@@ -1,0 +1,273 @@
+//! Communication points that the method's steps need not know of.
+//!
+//! A step costs the same however short it is. So the method steps as far as its error allows, with the inputs taken to go on as
+//! they do, and communication points within a step are answered from its two ends. The winding itself stands at the end of the
+//! last step that lies behind the communication point ([`Simulation::winding`]); the step beyond it is kept apart. Inputs that go
+//! on otherwise drop that step, and the time that has passed since the winding's is gone through with the inputs as they were.
+
+use super::ahead::Ahead;
+use super::course::{Course, Given, Likeness};
+use super::door::check_finite;
+use super::motion_profile::ROUNDING;
+use super::outputs::keep_told;
+use super::rates::rates_of;
+use super::talk::{LONGEST_WAIT, Served};
+use super::{SimError, Simulation, Winding};
+use crate::signals::Inputs;
+
+/// Share of the tolerance by which the wire may come out otherwise for inputs that count as gone on: what rounding does to
+/// the inputs of a master is far less, and what a person changes far more.
+const ALIKE: f64 = 1e-6;
+/// The same for the place of the nozzle. Its way in a ramp is told in straight pieces, which part from the curve by less, and a
+/// thousandth of an error moves no wire.
+const NOZZLE: f64 = 1e-3;
+impl Simulation {
+    /// Advances by `dt`, s, with the inputs held.
+    ///
+    /// Spindle speed and tension hold from the start of the interval. The nozzle moves evenly and
+    /// reaches its position at the end, because a jump would hit the wire.
+    ///
+    /// # Errors
+    ///
+    /// If an input or `dt` is not allowed, which changes nothing; or if the method gives up. Then the run stands where the last
+    /// step ended that went through ([`Self::time`]).
+    pub fn advance(&mut self, inputs: Inputs, dt: f64) -> Result<(), SimError> {
+        self.advance_ramped(inputs, Inputs::HELD, dt)
+    }
+
+    /// Advances by `dt`, s, with inputs that start at `inputs` and change evenly, at `rates` per s.
+    ///
+    /// The nozzle moves evenly from where it is to where its input is at the end, or with the core by the scene's law
+    /// ([`Self::starting_by_law`]). Steps below a nanosecond only add up until they are worth solving for.
+    ///
+    /// # Errors
+    ///
+    /// See [`Self::advance`].
+    pub fn advance_ramped(
+        &mut self,
+        inputs: Inputs,
+        rates: Inputs,
+        dt: f64,
+    ) -> Result<(), SimError> {
+        if !self.may_step_beyond(&inputs.after(&rates, dt)) || dt.is_nan() || dt <= 0.0 {
+            return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
+        }
+        check_finite(&inputs, self.time())?;
+        check_finite(&inputs.after(&rates, dt), self.time())?;
+        let nozzle = self.inputs().nozzle_position;
+        let given = Given::new(self.time(), inputs, rates, dt, nozzle);
+        let before = self.talk.travel.replace((given.rates.nozzle_position, dt));
+        if self.goes_on_as(&given) {
+            self.talk.wait = self.talk.wait.saturating_sub(1);
+        } else {
+            self.turn_to(Course::from(&given, before))?;
+        }
+        if self.talk.wait > 0 {
+            return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
+        }
+        self.communicate(inputs.after(&rates, dt), dt)
+    }
+
+    /// Advances by `dt`, s, along the scene's own spindle ramp and traverse, which are continuous.
+    ///
+    /// The set tension stays what it is.
+    ///
+    /// # Errors
+    ///
+    /// See [`Self::advance`].
+    pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
+        (self.talk.course, self.talk.travel) = (None, None);
+        self.step_to_the_point(|winding| winding.advance_profile(dt))
+    }
+
+    /// Brings the winding to the communication point, where it may be up to a step of the method behind it.
+    ///
+    /// # Errors
+    ///
+    /// If the method gives up on the way.
+    pub fn settle(&mut self) -> Result<(), SimError> {
+        if let Some(dropped) = self.ahead.take() {
+            self.pool.give(dropped.winding);
+        }
+        let (Some(served), Some(course)) = (self.talk.served.take(), self.talk.course) else {
+            return Ok(());
+        };
+        self.talk.underway = false;
+        let winding = self.pool.own(&mut self.now);
+        let debt = served.time - winding.run.time;
+        let gone = if debt > ROUNDING * served.time {
+            winding.run.events.clear();
+            winding.reset_extremes();
+            let gone = winding.go_along(&course, debt);
+            self.talk.events.append(&mut winding.run.events);
+            gone
+        } else {
+            Ok(())
+        };
+        winding.sys.end_drive();
+        if gone.is_err() {
+            winding.stop_short();
+            return gone;
+        }
+        winding.stand_at(&served);
+        Ok(())
+    }
+
+    /// Lets the winding itself step to the communication point.
+    fn step_to_the_point(
+        &mut self,
+        step: impl FnOnce(&mut Winding) -> Result<(), SimError>,
+    ) -> Result<(), SimError> {
+        self.settle()?;
+        let winding = self.pool.own(&mut self.now);
+        winding.run.events.clear();
+        let gone = step(winding);
+        self.talk.events.append(&mut winding.run.events);
+        gone
+    }
+
+    /// Whether a step may reach beyond the communication point at all, when the inputs there are `end`.
+    fn may_step_beyond(&self, end: &Inputs) -> bool {
+        let method = &self.now.stepper;
+        let now = self.inputs();
+        let aside = (end.nozzle_offset_x - now.nozzle_offset_x)
+            .hypot(end.nozzle_offset_z - now.nozzle_offset_z);
+        // (courses know of no way aside, and of no law of the nozzle)
+        !self.now.run.nozzle_by_law
+            && aside <= NOZZLE * self.now.scene.solver.tolerance
+            && self.steps_beyond
+            && method.is_implicit()
+            && method.fixed().is_none()
+            && !self.now.run.broken
+    }
+
+    /// Whether a communication step goes on as the inputs were taken to.
+    fn goes_on_as(&self, given: &Given) -> bool {
+        let Some(taken) = &self.talk.course else {
+            return false;
+        };
+        let end = given.start + given.dt;
+        let until = self
+            .ahead
+            .as_ref()
+            .map_or(end, |a| end.max(a.winding.run.time));
+        let lever = self.now.scene.nozzle.distance;
+        let tolerance = self.now.scene.solver.tolerance;
+        let alike = Likeness {
+            way: ALIKE * tolerance,
+            nozzle: NOZZLE * tolerance,
+            lever,
+            tension: ALIKE * tolerance * self.now.scene.wire.ea / lever,
+        };
+        taken.goes_on_as(given, until, &alike)
+    }
+
+    /// Begins another course: what has passed since the winding's time is gone through along the one before.
+    fn turn_to(&mut self, course: Course) -> Result<(), SimError> {
+        if self.ahead.is_some() {
+            self.talk.waited = (2 * self.talk.waited).clamp(1, LONGEST_WAIT);
+            self.talk.wait = self.talk.waited;
+        } else if self.talk.wait > 0 {
+            self.talk.wait = self.talk.waited;
+        }
+        self.settle()?;
+        self.talk.course = Some(course);
+        Ok(())
+    }
+
+    /// Goes on to the next communication point, `dt`, s, away, in steps that need not end there. The inputs at that point are
+    /// `inputs`.
+    fn communicate(&mut self, inputs: Inputs, dt: f64) -> Result<(), SimError> {
+        let Some(course) = self.talk.course else {
+            return Ok(());
+        };
+        let before = *self.outputs();
+        let mut served = self.talk.served.unwrap_or_else(|| Served::at(&self.now));
+        served.begin(dt, &self.now);
+        let point = served.time;
+        let near = ROUNDING * point;
+        loop {
+            if let Some(ahead) = self.ahead.take() {
+                if ahead.winding.run.time > point + near {
+                    self.ahead = Some(ahead);
+                    break;
+                }
+                let behind = std::mem::replace(&mut self.now, ahead.winding);
+                self.pool.give(behind);
+                self.talk.events.extend_from_slice(&self.now.run.events);
+                self.talk.waited /= 2;
+                served.pass(&self.now);
+                continue;
+            }
+            let room = point - self.now.run.time;
+            if room <= near || (self.now.is_quiescent() && course.is_still()) {
+                break;
+            }
+            if self.now.run.broken {
+                self.talk.served = Some(served);
+                return self.settle();
+            }
+            let first = !std::mem::replace(&mut self.talk.underway, true);
+            let stepped = if self.now.stepper.next() > room {
+                self.step_ahead(course, first)
+            } else {
+                let winding = self.pool.own(&mut self.now);
+                winding.run.events.clear();
+                let stepped = winding.step_along(&course, first);
+                self.talk.events.extend_from_slice(&winding.run.events);
+                served.pass(winding);
+                stepped
+            };
+            if let Err(error) = stepped {
+                let winding = self.pool.own(&mut self.now);
+                winding.sys.end_drive();
+                winding.stop_short();
+                (self.talk.served, self.talk.course) = (None, None);
+                return Err(error);
+            }
+        }
+        let end = self.ahead.as_ref().map(|ahead| &*ahead.winding);
+        served.read(&self.now, end, &course, inputs);
+        let both = [&before, &served.outputs];
+        served.rates = rates_of(&self.now, both, dt, inputs.spindle_speed);
+        self.talk.served = Some(served);
+        Ok(())
+    }
+
+    fn step_ahead(&mut self, course: Course, first: bool) -> Result<(), SimError> {
+        match Ahead::of(self.pool.copy(&self.now), course, first) {
+            Ok(ahead) => {
+                self.ahead = Some(ahead);
+                Ok(())
+            }
+            Err((winding, error)) => {
+                self.now = winding;
+                self.talk.events.extend_from_slice(&self.now.run.events);
+                Err(error)
+            }
+        }
+    }
+}
+
+impl Winding {
+    /// Goes along `course` for `duration`, s, and no farther.
+    fn go_along(&mut self, course: &Course, duration: f64) -> Result<(), SimError> {
+        let drive = course.drive(self.run.time, duration);
+        let before = self.statistics();
+        self.sys.begin_drive(&drive);
+        let gone = self.through(&drive);
+        self.tell_of_trouble(before);
+        gone
+    }
+
+    /// Takes a communication point for the present instant.
+    fn stand_at(&mut self, point: &Served) {
+        (self.run.time, self.run.time_lost) = (point.time, point.time_lost);
+        self.sys.state.spindle.speed = point.inputs.spindle_speed;
+        self.sys.state.set_tension = point.inputs.tension_setpoint;
+        self.sys.state.support[1].point.y = point.inputs.nozzle_position;
+        self.finish();
+        keep_told(&mut self.run.outputs, &point.outputs);
+        self.run.rates = point.rates;
+    }
+}

@@ -1,0 +1,258 @@
+//! The motion that a master gives the machine from one communication point on, until it says otherwise.
+
+use super::door::check_finite;
+use crate::signals::Inputs;
+use crate::system::{Drive, NozzleDrive};
+use serde::{Deserialize, Serialize};
+
+/// Even acceleration of the spindle and, along the core's axis, of the nozzle, and an even change of the set tension, from `start` on.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Course {
+    /// time of the run at which it begins, s
+    pub(super) start: f64,
+    /// speed, nozzle position and set tension then
+    inputs: Inputs,
+    /// their rates then, per s
+    rates: Inputs,
+    /// of the nozzle, m/s2
+    acceleration: f64,
+}
+
+/// A communication step as a master gives it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Given {
+    /// time of the run at which it begins, s
+    pub(super) start: f64,
+    /// its length, s
+    pub(super) dt: f64,
+    /// speed and set tension at its start, and where the nozzle is then
+    pub(super) inputs: Inputs,
+    /// rates of speed and set tension, and the mean velocity of the nozzle, per s
+    pub(super) rates: Inputs,
+}
+
+/// By how much inputs may differ and still be those of a course.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Likeness {
+    /// of the wire, m
+    pub(super) way: f64,
+    /// of the nozzle, m
+    pub(super) nozzle: f64,
+    /// farthest wire from the core's axis, m
+    pub(super) lever: f64,
+    /// of the set tension, N
+    pub(super) tension: f64,
+}
+
+impl Given {
+    /// A step of `dt`, s, from `start` with `inputs` and their `rates`, by which the nozzle goes evenly from `nozzle`, m, to
+    /// where its input is at the end.
+    pub(super) fn new(start: f64, inputs: Inputs, rates: Inputs, dt: f64, nozzle: f64) -> Self {
+        let end = inputs.after(&rates, dt).nozzle_position;
+        Self {
+            start,
+            dt,
+            inputs: Inputs {
+                nozzle_position: nozzle,
+                ..inputs
+            },
+            rates: Inputs {
+                nozzle_position: (end - nozzle) / dt,
+                ..rates
+            },
+        }
+    }
+
+    fn at(&self, time: f64) -> Inputs {
+        self.inputs.after(&self.rates, time - self.start)
+    }
+}
+
+impl Course {
+    /// What the inputs of a step are taken to go on as, when its nozzle went at `before` (m/s) for some time (s). The nozzle of
+    /// a spindle that speeds up does so too, as far as the means over both steps tell.
+    pub(super) fn from(given: &Given, before: Option<(f64, f64)>) -> Self {
+        let acceleration = match before {
+            Some((velocity, dt)) if given.rates.spindle_speed != 0.0 => {
+                (given.rates.nozzle_position - velocity) / (0.5 * (given.dt + dt))
+            }
+            _ => 0.0,
+        };
+        let mut rates = given.rates;
+        rates.nozzle_position -= 0.5 * acceleration * given.dt;
+        Self {
+            start: given.start,
+            inputs: given.inputs,
+            rates,
+            acceleration,
+        }
+    }
+
+    /// Speed, nozzle position and set tension at `time`, s.
+    pub(super) fn at(&self, time: f64) -> Inputs {
+        let gone = time - self.start;
+        let mut inputs = self.inputs.after(&self.rates, gone);
+        inputs.nozzle_position += 0.5 * self.acceleration * gone * gone;
+        inputs
+    }
+
+    /// The motion over `duration`, s, from `time`, s, on.
+    pub(super) fn drive(&self, time: f64, duration: f64) -> Drive {
+        let inputs = self.at(time);
+        let middle = time + 0.5 * duration - self.start;
+        Drive {
+            duration,
+            speed: inputs.spindle_speed,
+            acceleration: self.rates.spindle_speed,
+            nozzle: NozzleDrive::Even(self.rates.nozzle_position + self.acceleration * middle),
+            aside: [0.0; 2],
+            tension: inputs.tension_setpoint,
+            tension_rate: self.rates.tension_setpoint,
+        }
+    }
+
+    /// Angle that the spindle turns by from one time to another, s, in rad.
+    pub(super) fn turned(&self, from: f64, to: f64) -> f64 {
+        let half = 0.5 * (to - from);
+        self.at(from + half).spindle_speed * (to - from)
+    }
+
+    /// Whether it is a motion at all; bytes from elsewhere may say anything.
+    pub(super) fn is_sound(&self) -> bool {
+        let held = Inputs {
+            tension_setpoint: 0.0,
+            ..self.rates
+        };
+        self.start.is_finite()
+            && self.acceleration.is_finite()
+            && self.rates.tension_setpoint.is_finite()
+            && check_finite(&self.inputs, 0.0).is_ok()
+            && check_finite(&held, 0.0).is_ok()
+    }
+
+    /// Whether nothing moves or changes.
+    pub(super) fn is_still(&self) -> bool {
+        self.inputs.spindle_speed == 0.0 && self.rates == Inputs::HELD && self.acceleration == 0.0
+    }
+
+    /// Whether a step is this course gone on, at its end and, with the inputs going on from there, until `until`, s.
+    pub(super) fn goes_on_as(&self, given: &Given, until: f64, alike: &Likeness) -> bool {
+        let (start, end) = (given.start, given.start + given.dt);
+        let nozzle = [start, end].map(|time| {
+            let apart = self.at(time).nozzle_position - given.at(time).nozzle_position;
+            apart.abs() <= alike.nozzle
+        });
+        let [slow, fast] = [start, until].map(|time| {
+            let apart = self.at(time).spindle_speed - given.at(time).spindle_speed;
+            alike.lever * (apart * (until - start)).abs() <= alike.way
+        });
+        let tension = [start, until].map(|time| {
+            let apart = self.at(time).tension_setpoint - given.at(time).tension_setpoint;
+            apart.abs() <= alike.tension
+        });
+        nozzle == [true; 2] && tension == [true; 2] && slow && fast
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::TAU;
+
+    const ALIKE: Likeness = Likeness {
+        way: 1e-12,
+        nozzle: 1e-9,
+        lever: 0.06,
+        tension: 1e-6,
+    };
+
+    fn inputs(speed: f64, nozzle: f64) -> Inputs {
+        Inputs {
+            spindle_speed: speed,
+            nozzle_position: nozzle,
+            tension_setpoint: 15.0,
+            ..Inputs::HELD
+        }
+    }
+
+    #[test]
+    fn even_motion_told_in_pieces_is_one_course() {
+        let (dt, speed, travel) = (1e-4, 30.0, 0.7e-3 / 0.2);
+        let y = |t: f64| 1e-3 + travel * (t - 0.1);
+        let step = |t: f64| Given::new(t, inputs(speed, y(t + dt)), Inputs::HELD, dt, y(t));
+        let first = Course::from(&step(0.1), None);
+        for k in 1..1000 {
+            let t = 0.1 + f64::from(k) * dt;
+            assert!(first.goes_on_as(&step(t), t + 3.0 * dt, &ALIKE), "{k}");
+        }
+    }
+
+    /// A nozzle that goes with a spindle which speeds up is told its place at the end of each step.
+    #[test]
+    fn a_ramp_told_in_pieces_is_one_course_from_the_second_on() {
+        let (dt, rate, travel) = (2e-5, 300.0, 0.7e-3 / TAU);
+        let rates = Inputs {
+            spindle_speed: rate,
+            ..Inputs::HELD
+        };
+        let y = |t: f64| travel * 0.5 * rate * t * t;
+        let step = |k: u32| {
+            let t = f64::from(k) * dt;
+            let mut end = inputs(rate * t, y(t + dt));
+            end.spindle_speed = rate * t;
+            Given::new(t, end, rates, dt, y(t))
+        };
+        let before = (step(7).rates.nozzle_position, dt);
+        let course = Course::from(&step(8), Some(before));
+        for k in 9..500 {
+            let end = step(k).start + 3.0 * dt;
+            assert!(course.goes_on_as(&step(k), end, &ALIKE), "{k}");
+        }
+        let end = step(500);
+        let mean = course.drive(end.start, dt).nozzle;
+        let NozzleDrive::Even(velocity) = mean else {
+            panic!("{mean:?}")
+        };
+        assert!((velocity - end.rates.nozzle_position).abs() < 1e-9);
+    }
+
+    #[test]
+    fn another_speed_place_or_tension_is_another_course() {
+        let dt = 1e-4;
+        let step = |t, inputs, rates| Given::new(t, inputs, rates, dt, 0.0);
+        let first = Course::from(&step(0.0, inputs(30.0, 0.0), Inputs::HELD), None);
+        let differs = |other: Inputs, rates: Inputs| {
+            !first.goes_on_as(&step(dt, other, rates), 3.0 * dt, &ALIKE)
+        };
+        assert!(!differs(inputs(30.0, 0.0), Inputs::HELD));
+        assert!(differs(inputs(30.0 + 1e-6, 0.0), Inputs::HELD));
+        assert!(differs(inputs(30.0, 1e-8), Inputs::HELD));
+        let pull = Inputs {
+            tension_setpoint: 15.001,
+            ..inputs(30.0, 0.0)
+        };
+        assert!(differs(pull, Inputs::HELD));
+        let faster = Inputs {
+            spindle_speed: 1.0,
+            ..Inputs::HELD
+        };
+        assert!(differs(inputs(30.0, 0.0), faster));
+        // as fast on the mean, and not in between
+        let swings = Inputs {
+            spindle_speed: 2.0 / dt,
+            ..Inputs::HELD
+        };
+        assert!(differs(inputs(30.0 - 2.0, 0.0), swings));
+    }
+
+    #[test]
+    fn a_ramp_turns_as_its_mean() {
+        let rates = Inputs {
+            spindle_speed: 1000.0,
+            ..Inputs::HELD
+        };
+        let ramp = Course::from(&Given::new(0.0, inputs(10.0, 0.0), rates, 1e-3, 0.0), None);
+        assert!((ramp.turned(0.0, 0.1) - (1.0 + 5.0)).abs() < 1e-12);
+        assert_eq!(ramp.drive(0.01, 1.0).speed, 20.0);
+    }
+}

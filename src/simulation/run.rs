@@ -1,0 +1,159 @@
+//! The handle of a run: its winding, the step ahead of it, and what was said at communication points.
+
+use super::ahead::Ahead;
+use super::pool::Pool;
+use super::talk::Talk;
+use super::{SimError, Winding};
+use crate::scene::Scene;
+use crate::signals::{Event, Inputs, Outputs};
+#[cfg(feature = "lab")]
+use crate::system::System;
+use std::ops::Deref;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// A winding run, from one communication point to the next. A copy shares what neither has changed since.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    pub(super) now: Arc<Winding>,
+    pub(super) ahead: Option<Ahead>,
+    pub(super) talk: Talk,
+    pub(super) pool: Pool,
+    pub(super) steps_beyond: bool,
+}
+
+/// A run is read as its winding is; what a communication point has of its own, time, inputs and outputs, comes first.
+impl Deref for Simulation {
+    type Target = Winding;
+
+    fn deref(&self) -> &Winding {
+        &self.now
+    }
+}
+
+impl From<Winding> for Simulation {
+    fn from(mut winding: Winding) -> Self {
+        let mut talk = Talk::default();
+        talk.events.append(&mut winding.run.events);
+        Self {
+            now: Arc::new(winding),
+            ahead: None,
+            talk,
+            pool: Pool::default(),
+            steps_beyond: false,
+        }
+    }
+}
+
+impl Simulation {
+    /// Wire clamped to the core and straight to the nozzle at the set tension, everything at rest.
+    ///
+    /// # Errors
+    ///
+    /// If the scene has no valid start.
+    pub fn new(scene: &Scene) -> Result<Self, SimError> {
+        Winding::new(scene).map(Self::from)
+    }
+
+    /// The same with these inputs at the start.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::new`].
+    pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
+        Winding::starting_with(scene, inputs).map(Self::from)
+    }
+
+    /// Starts a run whose nozzle follows [`Scene::nozzle_law`]; `nozzle_position` is not looked at in such a run.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::new`].
+    pub fn starting_by_law(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
+        Winding::starting_by_law(scene, inputs).map(Self::from)
+    }
+
+    /// Starts over with other inputs; only before the first step.
+    ///
+    /// # Errors
+    ///
+    /// As for [`Self::new`].
+    pub fn set_start(&mut self, inputs: Inputs) -> Result<(), SimError> {
+        let run = match self.nozzle_follows_law() {
+            true => Self::starting_by_law(self.scene(), inputs)?,
+            false => Self::starting_with(self.scene(), inputs)?,
+        };
+        *self = Self {
+            steps_beyond: self.steps_beyond,
+            ..run
+        };
+        Ok(())
+    }
+
+    /// Lets steps of the implicit method reach beyond the communication point, as long as inputs go on as they did. Then a fine
+    /// communication step costs little, and the coil may be a step of the method behind; see [`Self::settle`].
+    pub fn step_beyond(&mut self, on: bool) {
+        self.steps_beyond = on;
+    }
+
+    /// Bounds the work of the run: beyond `most`, [`Self::advance`] returns an error.
+    ///
+    /// The work is the number of steps tried since the start, each times its number of nodes.
+    /// Rejected steps count too. The bound does not depend on the clock.
+    pub fn limit_work(&mut self, most: u64) {
+        Arc::make_mut(&mut self.now).most_work = most;
+    }
+
+    /// Lets a step of the run end early, with an error, once `flag` is up, however long the step is. The run then stands at the
+    /// last good step of the method.
+    pub fn stop_on(&mut self, flag: Arc<AtomicBool>) {
+        Arc::make_mut(&mut self.now).stop = Some(flag);
+    }
+
+    /// Time of the communication point, s.
+    pub fn time(&self) -> f64 {
+        let served = self.talk.served.as_ref();
+        served.map_or(self.now.run.time, |served| served.time)
+    }
+
+    /// Input values at the communication point.
+    pub fn inputs(&self) -> Inputs {
+        let served = self.talk.served.as_ref();
+        served.map_or_else(|| self.now.inputs(), |served| served.inputs)
+    }
+
+    /// Outputs at the communication point.
+    pub fn outputs(&self) -> &Outputs {
+        let served = self.talk.served.as_ref();
+        served.map_or(&self.now.run.outputs, |served| &served.outputs)
+    }
+
+    /// Wire, coil and method at the end of the last step that does not reach beyond the communication point.
+    pub fn winding(&self) -> &Winding {
+        &self.now
+    }
+
+    /// What happened since the last call.
+    pub fn drain_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.talk.events)
+    }
+
+    /// Takes over the tunable parameters of another version of the scene.
+    ///
+    /// # Errors
+    ///
+    /// If the method gives up on the way to the communication point, from which on they hold.
+    pub fn retune(&mut self, scene: &Scene) -> Result<(), SimError> {
+        self.settle()?;
+        Arc::make_mut(&mut self.now).retune(scene);
+        self.pool = Pool::default();
+        Ok(())
+    }
+
+    /// The mechanical system, to put loads on it that no scene has (verification only).
+    #[cfg(feature = "lab")]
+    #[doc(hidden)]
+    pub fn system_mut(&mut self) -> &mut System {
+        &mut Arc::make_mut(&mut self.now).sys
+    }
+}

@@ -1,0 +1,121 @@
+//! What was said at communication points, and what the inputs are taken to go on as.
+
+use super::Winding;
+use super::ahead::between;
+use super::course::Course;
+use super::door::check_finite;
+use super::motion_profile::ROUNDING;
+use super::outputs::{keep_told, raise_as};
+use crate::signals::{Event, Inputs, Outputs};
+use serde::{Deserialize, Serialize};
+
+/// Communication steps with inputs that go on, after which at the latest a step ahead is tried again.
+pub(super) const LONGEST_WAIT: u32 = 64;
+
+/// What has been said at communication points, and what the inputs are taken to go on as.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(super) struct Talk {
+    /// what the inputs are taken to go on as
+    pub(super) course: Option<Course>,
+    /// mean velocity of the nozzle over the last communication step, m/s, and its length, s
+    pub(super) travel: Option<(f64, f64)>,
+    /// whether the winding has taken a step along the course, and none since by another way
+    pub(super) underway: bool,
+    /// communication steps to go on as before, until a step ahead is tried
+    pub(super) wait: u32,
+    /// how many there were to wait for after the last step ahead that was dropped
+    pub(super) waited: u32,
+    /// what the master reads, where the winding is not at the communication point
+    pub(super) served: Option<Served>,
+    /// what happened since events were last taken
+    pub(super) events: Vec<Event>,
+}
+
+/// A communication point.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Served {
+    /// s
+    pub(super) time: f64,
+    /// what adding up steps has lost of `time`, s
+    pub(super) time_lost: f64,
+    pub(super) inputs: Inputs,
+    pub(super) outputs: Outputs,
+    /// per s
+    pub(super) rates: Outputs,
+}
+
+impl Talk {
+    /// Whether it goes with a winding, and with a step ahead of it or none; bytes from elsewhere may say anything.
+    pub(super) fn is_sound(&self, winding: &Winding, ahead: bool) -> bool {
+        let served = match &self.served {
+            Some(served) => {
+                let inputs = check_finite(&served.inputs, 0.0).is_ok();
+                inputs
+                    && served.time.is_finite()
+                    && served.time >= winding.run.time * (1.0 - ROUNDING)
+            }
+            None => !ahead,
+        };
+        let course = self.course.as_ref().map_or(!ahead, Course::is_sound);
+        served && course && self.wait <= LONGEST_WAIT && self.waited <= LONGEST_WAIT
+    }
+}
+
+impl Served {
+    /// The communication point at which the winding stands.
+    pub(super) fn at(winding: &Winding) -> Self {
+        Self {
+            time: winding.run.time,
+            time_lost: winding.run.time_lost,
+            inputs: winding.inputs(),
+            outputs: winding.run.outputs,
+            rates: winding.run.rates,
+        }
+    }
+
+    /// Begins a communication step of `dt`, s: extremes and flags are those of now.
+    pub(super) fn begin(&mut self, dt: f64, now: &Winding) {
+        let step = dt - self.time_lost;
+        let next = self.time + step;
+        self.time_lost = (next - self.time) - step;
+        self.time = next;
+        let o = &mut self.outputs;
+        (o.wire_tension_min, o.wire_tension_max) = (o.wire_tension, o.wire_tension);
+        now.lower_flags(o);
+    }
+
+    /// Takes note of the end of a step within the communication step.
+    pub(super) fn pass(&mut self, winding: &Winding) {
+        self.meet(winding.run.outputs.wire_tension);
+        raise_as(&mut self.outputs, &winding.run.outputs, winding.run.broken);
+    }
+
+    fn meet(&mut self, tension: f64) {
+        let o = &mut self.outputs;
+        o.wire_tension_min = o.wire_tension_min.min(tension);
+        o.wire_tension_max = o.wire_tension_max.max(tension);
+    }
+
+    /// Reads the outputs between the winding and the `end` of the step ahead of it.
+    pub(super) fn read(
+        &mut self,
+        now: &Winding,
+        end: Option<&Winding>,
+        course: &Course,
+        inputs: Inputs,
+    ) {
+        let start = &now.run.outputs;
+        let mut outputs = match end {
+            Some(end) => {
+                let share = (self.time - now.run.time) / (end.run.time - now.run.time);
+                between(start, &end.run.outputs, share)
+            }
+            None => *start,
+        };
+        outputs.spindle_angle = start.spindle_angle + course.turned(now.run.time, self.time);
+        self.meet(outputs.wire_tension);
+        outputs.nozzle_y = inputs.nozzle_position;
+        keep_told(&mut outputs, &self.outputs);
+        (self.outputs, self.inputs) = (outputs, inputs);
+    }
+}

@@ -1,0 +1,135 @@
+//! Wire, coil and method of a run, and what it remembers: what a step of the method changes.
+
+use super::MotionProfile;
+use super::run_state::RunState;
+use crate::integrate::{SolverStatistics, Stepper};
+use crate::measure::Coil;
+use crate::scene::Scene;
+use crate::signals::{Event, EventKind, Inputs, Outputs};
+use crate::system::System;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+/// The winding itself, at the end of a step of the method. [`super::Simulation`] lends it to readers.
+#[derive(Clone, Debug)]
+pub struct Winding {
+    pub(super) scene: Scene,
+    pub(super) motion_profile: MotionProfile,
+    pub(super) sys: System,
+    pub(super) coil: Coil,
+    pub(super) stepper: Stepper,
+    pub(super) run: RunState,
+    /// polar angle from each laid node to lift-off, at the last look, rad
+    pub(super) behind: Vec<f64>,
+    /// between which wire can be wound along y, m
+    pub(super) ends: [f64; 2],
+    /// how much [`RunState::work`] may become; the caller's
+    pub(super) most_work: u64,
+    /// ends a step of the run early where it is up; the caller's
+    pub(super) stop: Option<Arc<AtomicBool>>,
+}
+
+impl Winding {
+    /// Input values at the winding's time.
+    pub(super) fn inputs(&self) -> Inputs {
+        Inputs {
+            spindle_speed: self.sys.state.spindle.speed,
+            nozzle_position: self.sys.state.support[1].point.y,
+            tension_setpoint: self.sys.state.set_tension,
+            nozzle_offset_x: self.sys.state.support[1].point.x - self.scene.nozzle.distance,
+            nozzle_offset_z: self.sys.state.support[1].point.z,
+        }
+    }
+
+    /// What [`super::Simulation::limit_work`] counts.
+    pub fn work(&self) -> u64 {
+        self.run.work
+    }
+
+    /// Time of the winding, s.
+    pub fn time(&self) -> f64 {
+        self.run.time
+    }
+
+    /// The scene this run was made from.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Outputs at the winding's time.
+    pub fn outputs(&self) -> &Outputs {
+        &self.run.outputs
+    }
+
+    /// Settled wire and its measures.
+    pub fn coil(&self) -> &Coil {
+        &self.coil
+    }
+
+    /// The motion profile of the scene.
+    pub fn motion_profile(&self) -> &MotionProfile {
+        &self.motion_profile
+    }
+
+    pub(super) fn report(&mut self, kind: EventKind, text: String) {
+        let turn = self.run.outputs.turns_wound;
+        self.run.events.push(Event {
+            time: self.sys.state.time,
+            turn,
+            angle: self.sys.state.spindle.angle - self.run.angle0,
+            kind,
+            text,
+        });
+    }
+
+    /// Takes over the tunable parameters of another version of the scene.
+    pub(super) fn retune(&mut self, scene: &Scene) {
+        if self.scene.friction != scene.friction {
+            // What holds at rest with one friction may slide with another.
+            self.run.quiet = 0.0;
+        }
+        self.scene.defects = scene.defects;
+        self.scene.friction = scene.friction;
+        self.coil.set_limits(scene.defects);
+        if let Some(law) = self.sys.model.contact.law_mut() {
+            law.mu_static = scene.friction.static_;
+            law.mu_kinetic = scene.friction.kinetic;
+            law.slip_speed = scene.friction.slip_speed;
+        }
+    }
+
+    /// What the implicit method took so far; nothing for an explicit one.
+    pub fn statistics(&self) -> SolverStatistics {
+        self.stepper.statistics()
+    }
+
+    /// The mechanical system, for verification and tests.
+    #[cfg(feature = "lab")]
+    #[doc(hidden)]
+    pub fn system(&self) -> &System {
+        &self.sys
+    }
+
+    /// Becomes a copy of another winding of the same scene. Work space stays, which is most of what a copy from nothing costs.
+    pub(super) fn become_copy_of(&mut self, other: &Self) {
+        let Self {
+            scene: _,
+            motion_profile: _,
+            sys,
+            coil,
+            stepper,
+            run,
+            behind,
+            ends: _,
+            most_work,
+            stop,
+        } = other;
+        self.sys.follow(sys);
+        self.coil.clone_from(coil);
+        self.stepper.follow(stepper);
+        self.run.clone_from(run);
+        self.behind.clone_from(behind);
+        self.most_work = *most_work;
+        self.stop.clone_from(stop);
+    }
+}
