@@ -11,11 +11,13 @@
 
 mod coil;
 mod defect;
+mod judge;
 mod marks;
 mod passes;
 mod profile;
 mod row;
 mod runs;
+mod signs;
 mod state;
 mod station;
 mod support;

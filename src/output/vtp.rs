@@ -30,8 +30,8 @@ pub struct WireFields {
     pub gap: Vec<f64>,
     /// height over what the wire was laid over, m; not a number where it has not come to rest
     pub bulge: Vec<f64>,
-    /// kinds of defect, a sum of [`DefectKind::bit`](crate::measure::DefectKind::bit)
-    pub defect: Vec<u8>,
+    /// kinds of defect, a sum of [`DefectKind::code`](crate::measure::DefectKind::code)
+    pub defect: Vec<u16>,
 }
 
 /// Writes the wire as a tube of `radius` (m) in the core frame, `time` s after the start.
@@ -65,13 +65,13 @@ pub fn write_vtp(
             ("gap", &fields.gap),
             ("bulge", &fields.bulge),
         ]);
-        bytes.extend([
-            ("layer", fields.layer.as_slice()),
-            ("defect", &fields.defect),
-        ]);
+        bytes.push(("layer", fields.layer.as_slice()));
     }
+    let defects: Option<Vec<i32>> =
+        fields.map(|fields| fields.defect.iter().map(|&code| code.into()).collect());
     let lengths = (reals.iter().map(|(name, values)| (*name, values.len())))
-        .chain(bytes.iter().map(|(name, values)| (*name, values.len())));
+        .chain(bytes.iter().map(|(name, values)| (*name, values.len())))
+        .chain(defects.iter().map(|values| ("defect", values.len())));
     for (name, got) in lengths {
         if got != nodes {
             return Err(OutputError::Length {
@@ -99,6 +99,9 @@ pub fn write_vtp(
         data.array("Normals", Some(3), 3 * mesh.normals.len(), normals)?;
         let count = SIDES * drawn;
         data.array("turn", None, count, per_ring(&turns[..drawn]))?;
+        if let Some(defects) = &defects {
+            data.array("defect", None, count, per_ring(&defects[..drawn]))?;
+        }
         for (name, values) in &bytes {
             data.array(name, None, count, per_ring(&values[..drawn]))?;
         }

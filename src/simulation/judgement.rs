@@ -19,7 +19,7 @@ impl Simulation {
         }
         let surface = self.sys.model.core.clone().ok_or("there is no core")?;
         let profile = quasi_static::profile(&self.scene, &surface, tension);
-        self.coil.set_profile(profile);
+        self.coil.set_profile(tension, profile);
         Ok(())
     }
 

@@ -19,35 +19,37 @@ impl Simulation {
 
     /// Starts the extremes and flags of a communication step with what holds now.
     pub(super) fn reset_extremes(&mut self) {
-        let t = if self.run.broken {
+        let t = if self.run.over {
             0.0
         } else {
             self.wire_tension()
         };
-        let flags = self.coil.flags();
+        let (flags, code) = (self.coil.flags(), self.present_code());
         let o = &mut self.run.outputs;
         (o.wire_tension_min, o.wire_tension_max) = (t, t);
         (o.defect_bulge, o.defect_gap, o.defect_overlap) = (flags.bulge, flags.gap, flags.overlap);
         o.defect_slack = self.run.was_slack;
+        o.defect_code = code;
     }
 
     /// Raises the flags of what is wrong now: one that falls again within the communication step is up at its end.
     pub(super) fn raise_flags(&mut self) {
-        let flags = self.coil.flags();
+        let (flags, code) = (self.coil.flags(), self.present_code());
         let o = &mut self.run.outputs;
         o.defect_bulge |= flags.bulge;
         o.defect_gap |= flags.gap;
         o.defect_overlap |= flags.overlap;
         o.defect_slack |= self.run.was_slack;
-        let up = [
-            (DefectKind::Bulge, o.defect_bulge),
-            (DefectKind::Gap, o.defect_gap),
-            (DefectKind::Overlap, o.defect_overlap),
-            (DefectKind::Break, self.run.broken),
-            (DefectKind::Slack, o.defect_slack),
-        ];
-        let codes = up.iter().filter(|(_, up)| *up).map(|(kind, _)| kind.code());
-        o.defect_code = codes.sum();
+        o.defect_code |= code;
+    }
+
+    /// What is wrong now, as a sum of [`DefectKind::code`].
+    fn present_code(&self) -> i32 {
+        let laid = self.coil.flags().kinds();
+        let slack = self.run.was_slack.then_some(DefectKind::Slack);
+        let faults = self.run.faults.iter().map(|fault| fault.kind);
+        let over = faults.filter(|kind| kind.ends_winding());
+        laid.chain(slack).chain(over).map(DefectKind::code).sum()
     }
 
     /// The settled wire and, taken as if it were settled, the live wire up to lift-off.
@@ -62,13 +64,20 @@ impl Simulation {
                 p,
                 arc,
                 self.sys.state.rod.stretch[i.min(self.sys.state.rod.edges() - 1)].strain,
+                self.sys.state.load.tension[i.min(self.sys.state.rod.edges() - 1)],
             ));
             arc += self.sys.state.rod.rest.get(i).copied().unwrap_or(0.0);
         }
         self.coil.what_if(&extra)
     }
 
-    pub(super) fn settled(&self, position: V3, arc: f64, plastic_strain: f64) -> SettledNode {
+    pub(super) fn settled(
+        &self,
+        position: V3,
+        arc: f64,
+        plastic_strain: f64,
+        tension: f64,
+    ) -> SettledNode {
         let height = match (&self.scene.core, &self.sys.model.core) {
             (core, Some(surface)) if core.may_have_flanges() => self
                 .sys
@@ -96,6 +105,7 @@ impl Simulation {
             arc,
             height,
             plastic_strain,
+            tension,
             time: self.run.time,
         }
     }
@@ -116,7 +126,7 @@ impl Simulation {
     }
 
     pub(super) fn update_outputs(&mut self) {
-        if self.run.broken && self.run.outputs.defect_break {
+        if self.run.over && std::mem::replace(&mut self.run.told_over, true) {
             return self.update_broken();
         }
         self.raise_flags();
@@ -136,13 +146,12 @@ impl Simulation {
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
         o.wire_tension = tension;
-        o.defect_break = self.run.broken;
+        o.defect_break = breaks > 0;
         o.defect_count = count as i32;
-        [
-            o.defect_count_bulge,
-            o.defect_count_gap,
-            o.defect_count_overlap,
-        ] = raised.map(|count| count as i32);
+        let raised = |kind: DefectKind| raised[kind as usize] as i32;
+        o.defect_count_bulge = raised(DefectKind::Bulge);
+        o.defect_count_gap = raised(DefectKind::Gap);
+        o.defect_count_overlap = raised(DefectKind::Overlap);
         o.defect_count_break = breaks as i32;
         o.defect_count_slack = slacks as i32;
         if let Some(last) = last_defect {

@@ -15,7 +15,7 @@ impl Simulation {
             spindle_angle: self.sys.state.spindle.speed,
             ..Outputs::default()
         };
-        if self.run.broken || self.is_quiescent() {
+        if self.run.over || self.is_quiescent() {
             return;
         }
         self.run.rates.fed_length = o.feed_speed;

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 9;
+const VERSION: u32 = 10;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
