@@ -101,6 +101,11 @@ FLANGE = (3.0, 1.0)
 """Height and thickness of a flange."""
 FAR, NEAR = 25.0, 1.5
 """Nozzle from the axis, and over the flanges where it shall guide the wire over the turns below."""
+PULL = 2.5
+"""Pitches by which a near nozzle has to be beside the wire to draw it over the ridge of a turn.
+
+At the ridge the span stands a wire's height over the core, sqrt(2 (r + d) d) before it lies on; it has to be half a pitch aside there.
+From the nozzle's distance that is 1.6 pitches for the cylinder, and friction asks for as much again half."""
 
 
 def outline(core, grown):
@@ -168,7 +173,8 @@ def base(core, layers, speed, turns=TURNS, tension=15.0, near=False):
     start = -(inner - D) / 2
     distance = reach(core) + FLANGE[0] + NEAR if near else FAR
     # Wire trails by the angle of the free span, and a little more.
-    advance = math.degrees(math.acos((min(BOX[0] / 2, RADIUS) + D / 2) / distance)) + 15
+    trails = math.degrees(math.acos((min(BOX[0] / 2, RADIUS) + D / 2) / distance))
+    advance = trails + (15 if near else 60 if core.endswith("box") else 5)
     keys |= {"nozzle.distance_mm": distance, "nozzle.y_start_mm": start, "start.clamp_y_mm": start,
              "tensioner.tension": tension, "spindle.speed": speed, "traverse.mode": "orthocyclic",
              "traverse.crossover_deg": 360 * CROSSOVER, "traverse.advance_deg": advance,
@@ -208,8 +214,9 @@ def by_table(keys, turns, planned=None):
 
 # ---- kinds of scenes
 
-def nominal(core, layers, speed, **rest):
-    keys, mesh = base(core, layers, speed, **rest)
+def nominal(core, layers, speed, **keys_too):
+    keys, mesh = base(core, layers, speed)
+    keys |= keys_too
     return Scene(f"nominal-{slug(core)}-{layers}-{speed:g}", "as planned", core, layers, speed, keys, mesh=mesh)
 
 
@@ -233,30 +240,30 @@ def gap(core, speed, after, by):
 
 def double(core, layers, speed, after):
     """The nozzle stands back in the groove before for a whole turn of the last layer."""
-    keys, mesh, stack = layered(core, layers, speed, near=True)
+    keys, mesh, stack = layered(core, layers, speed, turns=TURNS + 1, near=True)
     *below, last = stack
     sense = last[0][1]
     turns = [y for layer in below for y, _ in layer]
     at = len(turns) + after
-    turns += [y for y, _ in last[:after]] + [last[after - 1][0] - sense * PITCH] + [y for y, _ in last[after:]]
+    turns += [y for y, _ in last[:after]] + [last[after - 1][0] - sense * PULL * PITCH] + [y for y, _ in last[after:]]
     keys, points = by_table(keys, turns)
     return Scene(f"double-{slug(core)}-{layers}-{after}-{speed:g}", f"nozzle back for turn {at + 1}", core, layers, speed, keys,
-                 [Label("double_turn", at - 0.3, at + 1.3)], {"overlap"}, points=points, mesh=mesh)
+                 [Label("double_turn", at - 0.3, at + 1.3)], {"overlap", "bulge", "gap"}, points=points, mesh=mesh)
 
 
 def overlap(core, layers, speed, after):
-    """The nozzle stands back in the groove before for a third of a turn."""
-    keys, mesh, stack = layered(core, layers, speed, near=True)
+    """The nozzle is drawn back for a fifth of a turn."""
+    keys, mesh, stack = layered(core, layers, speed, turns=TURNS + 1, near=True)
     *below, last = stack
     sense = last[0][1]
     turns = [y for layer in below for y, _ in layer] + [y for y, _ in last]
     at = len(turns) - len(last) + after
-    back = last[after - 1][0] - sense * PITCH
+    back, on = last[after - 1][0] - sense * PULL * PITCH, turns[at] + sense * PITCH
     keys, points = by_table(keys, turns)
-    points = [p for p in points if p[0] < at - 0.01] + [(at, back), (at + 0.33, back), (at + 0.5, turns[at])] \
-        + [p for p in points if p[0] > at + 0.6]
-    return Scene(f"overlap-{slug(core)}-{layers}-{after}-{speed:g}", f"nozzle back for a third of turn {at + 1}", core, layers, speed,
-                 keys, [Label("overlap", at - 0.3, at + 0.8)], points=points, mesh=mesh)
+    points = [p for p in points if p[0] < at - 0.01] + [(at, back), (at + 0.2, back), (at + 0.3, on), (at + 0.7, on)] \
+        + [p for p in points if p[0] > at + 0.8]
+    return Scene(f"overlap-{slug(core)}-{layers}-{after}-{speed:g}", f"nozzle back for a fifth of turn {at + 1}", core, layers, speed,
+                 keys, [Label("overlap", at - 0.3, at + 0.8)], {"gap", "bulge", "skipped_groove"}, points=points, mesh=mesh)
 
 
 def skip(core, layers, speed, after):
@@ -272,17 +279,14 @@ def skip(core, layers, speed, after):
                  [Label("skipped_groove", at - 0.3, at + 1.2)], {"gap"}, points=points, mesh=mesh)
 
 
-def early(core, layers, speed, by):
-    """The nozzle turns back some turns before the last layer is planned to begin."""
-    keys, mesh, stack = layered(core, layers, speed, near=True)
-    *below, last = stack
-    turns = [y for layer in below for y, _ in layer][:-by]
-    at = len(turns)
-    # half a pitch farther back, over the ridge of the turn below
-    turns += [last[by][0] + last[by][1] * PITCH / 2] + [y for y, _ in last][by + 1:]
-    keys, points = by_table(keys, turns, planned=TURNS)
-    return Scene(f"early-{slug(core)}-{layers}-{by}-{speed:g}", f"layer {layers} begun {by} early", core, layers, speed, keys,
-                 [Label("early_jump", at - 0.5, at + 0.7)], points=points, mesh=mesh)
+def early(core, layers, speed):
+    """The core has room for a turn less than a layer is planned to have, so that wire climbs before its time."""
+    keys, mesh, stack = layered(core, layers, speed)
+    turns = [y for layer in stack for y, _ in layer]
+    keys, points = by_table(keys, turns, planned=TURNS + 1)
+    labels = [Label("early_jump", number * TURNS - 0.5, number * TURNS + 0.3) for number in range(1, layers)]
+    return Scene(f"early-{slug(core)}-{layers}-{speed:g}", f"room for {TURNS} of {TURNS + 1} planned turns", core, layers, speed, keys,
+                 labels, points=points, mesh=mesh)
 
 
 def late(core, speed, by):
@@ -370,7 +374,8 @@ def runaway(speed, tension):
 SCENES = [
     *[nominal("cylinder", layers, speed) for layers in (1, 2, 3, 4) for speed in (100.0, 300.0)],
     nominal("cylinder", 2, 500.0),
-    *[nominal("box", layers, 100.0) for layers in (1, 2, 3, 4)],
+    *[nominal("box", layers, 100.0) for layers in (1, 2, 3)],
+    nominal("box", 4, 100.0, **{"tensioner.tension": 12.0, "traverse.advance_deg": 160.0}),
     nominal("box", 1, 300.0),
     nominal("box", 2, 300.0),
     *[nominal("mesh cylinder", layers, 100.0) for layers in (1, 3)],
@@ -383,19 +388,21 @@ SCENES = [
     gap("mesh cylinder", 300.0, 3, 1.0),
     gap("mesh box", 100.0, 3, 0.5),
     *[double("cylinder", layers, speed, after) for layers, speed, after in
-      ((1, 100.0, 3), (2, 100.0, 3), (3, 100.0, 2), (1, 300.0, 2), (2, 300.0, 3))],
-    double("box", 1, 100.0, 3),
-    double("mesh cylinder", 2, 100.0, 2),
-    *[overlap("cylinder", layers, speed, 3) for layers, speed in ((1, 100.0), (1, 300.0), (2, 100.0))],
-    overlap("box", 1, 100.0, 2),
-    overlap("mesh cylinder", 1, 100.0, 3),
+      ((1, 100.0, 4), (2, 100.0, 4), (3, 100.0, 4), (1, 300.0, 4), (2, 300.0, 4))],
+    double("box", 1, 100.0, 4),
+    double("mesh cylinder", 2, 100.0, 4),
+    *[overlap("cylinder", layers, speed, 4) for layers, speed in ((1, 100.0), (1, 300.0), (2, 100.0))],
+    overlap("box", 1, 100.0, 4),
+    overlap("mesh cylinder", 1, 100.0, 4),
     *[skip("cylinder", layers, speed, after) for layers, speed, after in
       ((2, 100.0, 2), (2, 300.0, 3), (3, 100.0, 2), (4, 100.0, 2))],
     skip("box", 2, 100.0, 2),
     skip("mesh cylinder", 2, 300.0, 2),
-    *[early("cylinder", layers, speed, by) for layers, speed, by in ((2, 100.0, 1), (2, 300.0, 2), (3, 100.0, 1))],
-    early("box", 2, 100.0, 2),
-    early("mesh cylinder", 2, 100.0, 1),
+    early("mesh cylinder", 2, 100.0),
+    early("mesh cylinder", 2, 300.0),
+    early("mesh cylinder", 3, 100.0),
+    early("mesh box", 2, 100.0),
+    early("mesh box", 2, 300.0),
     *[late("cylinder", speed, by) for speed, by in ((100.0, 1), (300.0, 2))],
     late("box", 100.0, 2),
     late("mesh cylinder", 300.0, 1),

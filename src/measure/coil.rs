@@ -432,10 +432,7 @@ impl Coil {
             row,
             &support,
             bucket,
-            between(
-                start.settled.plastic_strain,
-                end.settled.plastic_strain,
-            ),
+            between(start.settled.plastic_strain, end.settled.plastic_strain),
             start.settled.tension,
         );
         let beneath = self.buckets.insert(bucket, index);

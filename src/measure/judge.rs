@@ -80,11 +80,9 @@ impl Coil {
                 limits.bulge_absolute,
                 SHORT_RUN,
             ),
-            DefectKind::Bulge if self.spec.profile.is_none() => (
-                measured(Some(station.bulge)),
-                FALLBACK_BULGE * d,
-                SHORT_RUN,
-            ),
+            DefectKind::Bulge if self.spec.profile.is_none() => {
+                (measured(Some(station.bulge)), FALLBACK_BULGE * d, SHORT_RUN)
+            }
             DefectKind::Bulge => (
                 measured(station.bulge_excess),
                 limits.bulge_excess * d,
@@ -110,10 +108,9 @@ impl Coil {
                 limits.stretch,
                 SHORT_RUN,
             ),
-            DefectKind::Slack
-            | DefectKind::Collision
-            | DefectKind::Runaway
-            | DefectKind::Break => (None, f64::INFINITY, 0.0),
+            DefectKind::Slack | DefectKind::Collision | DefectKind::Runaway | DefectKind::Break => {
+                (None, f64::INFINITY, 0.0)
+            }
         };
         (value, limit, stations_for(least))
     }

@@ -21,9 +21,7 @@ impl Coil {
                 let (_, _, least) = self.criterion(kind, record);
                 if !counts && run.counts(least) {
                     counts = true;
-                    marks[start..index]
-                        .iter_mut()
-                        .for_each(|m| *m |= code);
+                    marks[start..index].iter_mut().for_each(|m| *m |= code);
                 }
                 if counts {
                     marks[index] |= code;

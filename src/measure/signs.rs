@@ -1,10 +1,10 @@
 //! What the settled wire shows of double turns, skipped grooves, jumps out of turn, loose and stretched wire.
 
+use super::STATIONS_PER_TURN;
 use super::coil::{Coil, STEP_UP};
 use super::row::Row;
 use super::station::Station;
 use super::support::Support;
-use super::STATIONS_PER_TURN;
 use std::f64::consts::TAU;
 
 /// Signs at a station, beside gap, bulge and overlap.
@@ -55,7 +55,7 @@ impl Coil {
             late,
             strain,
             layer_since,
-            untouched: before.untouched + u32::from(self.touches_nothing(station)),
+            untouched: before.untouched + u32::from(self.touches_nothing(station, support)),
             tension_sum: before.tension_sum + tension,
             loose: None,
         };
@@ -75,7 +75,9 @@ impl Coil {
         support: &Support,
         bucket: (usize, i64),
     ) -> Option<f64> {
-        let (neighbour, below) = (station.neighbour?, support.row?);
+        // wire that comes back skips none
+        let neighbour = station.neighbour.filter(|n| n.axial > 0.0)?;
+        let below = support.row?;
         let (here, there) = (
             station.position.y,
             station.position.y - row.sense * neighbour.axial,
@@ -110,16 +112,20 @@ impl Coil {
         let [from, to] = jumps[number];
         // from 1, the layer before the jump
         let (before, layer) = (number as u32 + 1, station.layer);
-        let early = (layer > before && angle < from + STEP_UP).then_some((from - layer_since) / TAU);
-        let late = (layer <= before && layer_since < to && angle > to).then_some((angle - to) / TAU);
+        let early =
+            (layer > before && angle < from + STEP_UP).then_some((from - layer_since) / TAU);
+        let late =
+            (layer <= before && layer_since < to && angle > to).then_some((angle - to) / TAU);
         (early, late)
     }
 
     /// Whether wire stands higher over what it was laid on than it would at rest; not known where that height is not.
-    fn touches_nothing(&self, station: &Station) -> bool {
+    fn touches_nothing(&self, station: &Station, support: &Support) -> bool {
         let most = self.spec.limits.loose_height * self.spec.diameter;
         let free = self.is_free_of_clamp(station.angle);
-        free && station.bulge_excess.is_some_and(|excess| excess > most)
+        // wire that rides on its own row touches that
+        free && station.height - support.highest > most
+            && station.bulge_excess.is_some_and(|excess| excess > most)
     }
 
     /// How loose the last turn up to the station at `index` is: 1 where too much of it touches nothing, or where its mean

@@ -248,7 +248,9 @@ impl Coil {
 
     /// How many defects of each kind there are in the settled wire.
     pub(crate) fn raised(&self) -> [u32; MEASURED] {
-        self.records.last().map_or([0; MEASURED], |record| record.raised)
+        self.records
+            .last()
+            .map_or([0; MEASURED], |record| record.raised)
     }
 
     fn last_turn(&self) -> impl Iterator<Item = &Record> {

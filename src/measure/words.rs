@@ -71,7 +71,11 @@ fn of_kind(kind: DefectKind, defects: &[Defect]) -> Option<String> {
     })?;
     let words = match of_kind().count() {
         1 => worst.in_words(),
-        count => format!("{count} times {}; the gravest: {}", kind.words(), worst.in_words()),
+        count => format!(
+            "{count} times {}; the gravest: {}",
+            kind.words(),
+            worst.in_words()
+        ),
     };
     let mut letters = words.chars();
     Some(letters.next()?.to_uppercase().chain(letters).collect())

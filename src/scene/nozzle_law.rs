@@ -89,7 +89,10 @@ impl NozzleLaw {
 
     /// The same law, with the turns between which wire is meant to climb to each next layer.
     pub(super) fn with_jumps(self, turns: &[[f64; 2]]) -> Self {
-        let jumps = turns.iter().map(|pair| pair.map(|turn| turn * TAU)).collect();
+        let jumps = turns
+            .iter()
+            .map(|pair| pair.map(|turn| turn * TAU))
+            .collect();
         Self { jumps, ..self }
     }
 

@@ -67,10 +67,7 @@ const KEYS_OF_CHOICES: [KeysOf; 11] = [
     keys_of(
         MODE,
         &["orthocyclic", "helical"],
-        &[
-            "winding.direction",
-            "winding.pitch",
-        ],
+        &["winding.direction", "winding.pitch"],
     ),
 ];
 

@@ -382,11 +382,11 @@ impl Simulation {
         }
         let (angle, _) = self.wound_to(node);
         let text = format!(
-                "the coil has grown into the nozzle: wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm; set nozzle.distance to more, or let the nozzle travel so that fewer turns lie on each other",
-                (angle.max(0.0) / std::f64::consts::TAU) as u32 + 1,
-                1e3 * reach,
-                1e3 * distance
-            );
+            "the coil has grown into the nozzle: wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm; set nozzle.distance to more, or let the nozzle travel so that fewer turns lie on each other",
+            (angle.max(0.0) / std::f64::consts::TAU) as u32 + 1,
+            1e3 * reach,
+            1e3 * distance
+        );
         self.note_end(DefectKind::Collision, node, text);
     }
 
@@ -463,9 +463,9 @@ impl Simulation {
             return;
         }
         let text = format!(
-                "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up; raise tension_setpoint or turn the spindle more slowly",
-                feed.rate, self.sys.state.set_tension, feed.fed
-            );
+            "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up; raise tension_setpoint or turn the spindle more slowly",
+            feed.rate, self.sys.state.set_tension, feed.fed
+        );
         self.note_end(DefectKind::Runaway, self.sys.state.rod.nodes() - 1, text);
     }
 
