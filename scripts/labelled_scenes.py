@@ -251,8 +251,8 @@ def double(core, layers, speed, after):
                  [Label("double_turn", at - 0.3, at + 1.3)], {"overlap", "bulge", "gap"}, points=points, mesh=mesh)
 
 
-def overlap(core, layers, speed, after):
-    """The nozzle is drawn back for a fifth of a turn."""
+def overlap(core, layers, speed, after, hold=0.2):
+    """The nozzle is drawn back for a part of a turn, and then beyond its place, so that wire comes down again."""
     keys, mesh, stack = layered(core, layers, speed, turns=TURNS + 1, near=True)
     *below, last = stack
     sense = last[0][1]
@@ -260,9 +260,9 @@ def overlap(core, layers, speed, after):
     at = len(turns) - len(last) + after
     back, on = last[after - 1][0] - sense * PULL * PITCH, turns[at] + sense * PITCH
     keys, points = by_table(keys, turns)
-    points = [p for p in points if p[0] < at - 0.01] + [(at, back), (at + 0.2, back), (at + 0.3, on), (at + 0.7, on)] \
+    points = [p for p in points if p[0] < at - 0.01] + [(at, back), (at + hold, back), (at + hold + 0.1, on), (at + 0.7, on)] \
         + [p for p in points if p[0] > at + 0.8]
-    return Scene(f"overlap-{slug(core)}-{layers}-{after}-{speed:g}", f"nozzle back for a fifth of turn {at + 1}", core, layers, speed,
+    return Scene(f"overlap-{slug(core)}-{layers}-{after}-{speed:g}", f"nozzle back for {hold:g} of turn {at + 1}", core, layers, speed,
                  keys, [Label("overlap", at - 0.3, at + 0.8)], {"gap", "bulge", "skipped_groove"}, points=points, mesh=mesh)
 
 
@@ -392,7 +392,7 @@ SCENES = [
     double("box", 1, 100.0, 4),
     double("mesh cylinder", 2, 100.0, 4),
     *[overlap("cylinder", layers, speed, 4) for layers, speed in ((1, 100.0), (1, 300.0), (2, 100.0))],
-    overlap("box", 1, 100.0, 4),
+    overlap("box", 1, 100.0, 4, hold=0.1),
     overlap("mesh cylinder", 1, 100.0, 4),
     *[skip("cylinder", layers, speed, after) for layers, speed, after in
       ((2, 100.0, 2), (2, 300.0, 3), (3, 100.0, 2), (4, 100.0, 2))],

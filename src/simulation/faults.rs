@@ -24,6 +24,7 @@ impl Simulation {
             self.note_slack();
         }
         self.run.was_slack = slack;
+        self.watch_yardstick();
     }
 
     fn note_slack(&mut self) {

@@ -36,6 +36,8 @@ pub(super) struct RunState {
     pub(super) rest_depth: f64,
     /// no wire moves any more: it broke, ran away, or the coil met the nozzle
     pub(super) over: bool,
+    /// wire was laid tighter than bulges are judged by, which has been told
+    pub(super) told_tighter: bool,
     /// outputs have told so
     pub(super) told_over: bool,
     pub(super) was_slack: bool,

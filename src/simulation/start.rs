@@ -266,6 +266,7 @@ impl Simulation {
             events: Vec::new(),
             rest_depth: 0.0,
             over: false,
+            told_tighter: false,
             told_over: false,
             was_slack: false,
             faults: Vec::new(),

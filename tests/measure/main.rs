@@ -5,3 +5,4 @@ mod coils;
 mod defects;
 mod layers;
 mod pitch;
+mod shop_floor;
