@@ -403,7 +403,11 @@ impl Coil {
         let (layer, other_layer) = self.layer_after(support.layer);
         let (neighbour, window) = self.neighbour(angle, position, row);
         // Beside a double turn, in the place after it, lies the turn below that one.
-        let neighbour = neighbour.filter(|_| !self.is_double(index.checked_sub(STATIONS_PER_TURN)));
+        let after_double = || {
+            let before = index.checked_sub(STATIONS_PER_TURN);
+            before.is_some_and(|before| self.is_double(before))
+        };
+        let neighbour = neighbour.filter(|_| !after_double());
         // The nozzle turns here or the flange is near, and the wire leaves its row.
         let lifts = (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
             && bulge > self.spec.limits.overlap_height * self.spec.diameter;

@@ -20,10 +20,13 @@ pub(crate) const FALLBACK_BULGE: f64 = 1.0;
 const STANDS: f64 = 0.5;
 
 impl Coil {
-    /// Whether wire stands on its own row at a station.
-    pub(crate) fn is_double(&self, index: Option<usize>) -> bool {
-        let rise = index.and_then(|index| self.records.get(index)?.signs.rise);
-        rise.is_some_and(|rise| rise > STANDS * self.spec.diameter)
+    /// Whether the station at `index` is part of a double turn.
+    pub(crate) fn is_double(&self, index: usize) -> bool {
+        let kind = DefectKind::DoubleTurn;
+        let runs = (index..self.records.len()).map(|k| self.records[k].runs[kind as usize]);
+        let least = stations_for(self.spec.limits.double_turn);
+        runs.take_while(|run| *run != Run::default())
+            .any(|run| run.counts(least))
     }
 
     /// Diameter minus axial distance where the wire overlaps its neighbour, else 0, m; a diameter where it has changed
