@@ -202,50 +202,36 @@ fn a_jump_is_early_or_late_by_the_plan_only() {
     assert_eq!(late.turns()[4].verdict, Verdict::LateJump);
 }
 
-/// Turns side by side, with another tension, stretch or height where `is_there` says.
+/// Turns side by side, altered where `is_there` says.
 fn altered(is_there: impl Fn(f64) -> bool, alter: impl Fn(&mut SettledNode)) -> Coil {
-    let mut nodes = on_cylinder(6.0, 1.0, |angle| {
-        let off = if is_there(angle / TAU) { 0.2 * D } else { 0.0 };
-        (D * angle / TAU, off)
-    });
-    for node in &mut nodes {
-        // spirals begin at angle 0, a millirad a micrometre
-        let turn = node.time * 30.0 / TAU;
-        if is_there(turn) {
-            alter(node);
-        }
-    }
+    let mut nodes = on_cylinder(6.0, 1.0, |angle| (D * angle / TAU, 0.0));
+    // a node comes to rest a second after its angle has reached 30 rad
+    let there = |node: &&mut SettledNode| is_there(node.time * 30.0 / TAU);
+    nodes.iter_mut().filter(there).for_each(alter);
     wound(spec(), &nodes)
 }
 
 #[test]
 fn wire_that_hangs_loose_over_half_a_turn_is_a_loose_turn() {
-    let loose = altered(|turn| (3.0..3.6).contains(&turn), |_| {});
+    let loose = altered(
+        |turn| (3.0..3.6).contains(&turn),
+        |node| node.height += 0.2 * D,
+    );
     let turn = only(DefectKind::LooseTurn, &loose);
     assert!(turn.turn == 3 || turn.turn == 4, "{turn:?}");
     assert!((turn.size_d.unwrap() - 0.2).abs() < 0.01, "{turn:?}");
-    let short = altered(|turn| (3.0..3.4).contains(&turn), |_| {});
+    let short = altered(
+        |turn| (3.0..3.4).contains(&turn),
+        |node| node.height += 0.2 * D,
+    );
     assert!(!short.flags().loose_turn && !short.flags().bulge);
 }
 
 #[test]
 fn a_turn_with_less_than_half_its_tension_is_loose() {
     let slack = |share: f64| {
-        wound(
-            spec(),
-            &on_cylinder(6.0, 1.0, |angle| (D * angle / TAU, 0.0))
-                .into_iter()
-                .map(
-                    |node| match (2.0..4.0).contains(&(node.time * 30.0 / TAU)) {
-                        true => SettledNode {
-                            tension: share * PULL,
-                            ..node
-                        },
-                        false => node,
-                    },
-                )
-                .collect::<Vec<_>>(),
-        )
+        let there = |turn| (2.0..4.0).contains(&turn);
+        altered(there, |node| node.tension = share * PULL)
     };
     let turn = only(DefectKind::LooseTurn, &slack(0.3));
     assert!((3..=4).contains(&turn.turn), "{turn:?}");
