@@ -1,13 +1,11 @@
 //! The settled wire, node by node, and what is measured on it.
 
-use super::defect::{BulgeLimit, DefectLimits, MEASURED};
-use super::judge::{FALLBACK_BULGE, SHORT_RUN};
+use super::defect::{BulgeLimit, DefectLimits, FALLBACK_BULGE, MEASURED};
 use super::passes::Passes;
 use super::profile::Profile;
 use super::row::{Row, RowPlace};
-use super::runs::{Run, stations_for};
-use super::signs::Signs;
-use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
+use super::runs::{Run, SHORT_RUN, stations_for};
+use super::station::{NEIGHBOUR_WINDOW, Neighbour, Signs, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::PersistentVec;
 use crate::math::V3;

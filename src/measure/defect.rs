@@ -58,6 +58,9 @@ pub enum BulgeLimit {
     },
 }
 
+/// Height that is a bulge where no quasi-static height is known, diameters: it takes the room of another wire.
+pub(crate) const FALLBACK_BULGE: f64 = 1.0;
+
 /// How many kinds of defect are measured on settled wire.
 pub(crate) const MEASURED: usize = DefectKind::MEASURED.len();
 

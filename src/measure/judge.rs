@@ -1,19 +1,9 @@
 //! Which limit a station is judged by, and the runs of stations beyond it.
 
 use super::coil::{Coil, Record};
-use super::defect::DefectKind;
-use super::runs::{Run, stations_for};
+use super::defect::{DefectKind, FALLBACK_BULGE, MEASURED};
+use super::runs::{Run, SHORT_RUN, stations_for};
 use super::station::{Neighbour, Station};
-use super::{STATIONS_PER_TURN, defect::MEASURED};
-
-/// Fraction of a turn that a bulge or an overlap must cover before its flag rises: 8 degrees.
-///
-/// Chosen: a noisy node 0.4 mm from its neighbours, 6 mm from the axis, reaches over 7.6 degrees; a
-/// 2 mm corner of the 12 x 30 mm core, the shortest place for a wire to ride up, over 11.
-pub(crate) const SHORT_RUN: f64 = 8.0 / STATIONS_PER_TURN as f64;
-
-/// Height that is a bulge where no quasi-static height is known, diameters: it takes the room of another wire.
-pub(crate) const FALLBACK_BULGE: f64 = 1.0;
 
 /// Rise over wire of its own row from which on wire stands on it, diameters: half of a wire on a wire. In the groove of
 /// touching wires it is 0.866, beside them 0.
