@@ -105,6 +105,9 @@ lab() {
     # 127: wire that yields with twist off takes more steps than are enough
     "$command" stress --count 200 --seed 1 --known 127 --quiet --out "$target/stress" | tail -n 1
 
+    step "scenes with a known defect, a sample"
+    COILWIND_COMMAND=$command python3 scripts/labelled.py --sample --out "$target/labelled" | tail -n 1
+
     step long runs, short
     COILWIND_COMMAND=$command scripts/endurance.sh --short
 

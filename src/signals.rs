@@ -60,7 +60,7 @@ pub struct Outputs {
     pub defect_break: bool,
     /// tension fell to zero
     pub defect_slack: bool,
-    /// bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16
+    /// bit mask of [`DefectKind::code`](crate::measure::DefectKind::code)
     pub defect_code: i32,
     /// defects found so far
     pub defect_count: i32,
@@ -116,7 +116,7 @@ pub struct Outputs {
     pub defect_kind: i32,
     /// time of the last defect since the start of the run, s
     pub defect_time: f64,
-    /// size of the last bulge, gap or overlap where it was found, m; 0 for a break and for slack
+    /// size of the last defect where it was found, m; 0 for slack, break, collision and runaway
     pub defect_size: f64,
     /// wire let go by the tensioner since the start, m
     pub tensioner_position: f64,
@@ -192,8 +192,12 @@ pub enum EventKind {
     Defect,
     /// tension fell to zero
     Slack,
-    /// tension rose above the wire's strength
+    /// the wire parted
     Break,
+    /// the coil has grown into the nozzle
+    Collision,
+    /// the wire shoots out of the nozzle
+    Runaway,
     /// the coil is judged otherwise than perhaps meant
     Judgement,
     /// what a reader of the verdict should know

@@ -1,7 +1,8 @@
 //! Whole coils between flanges: layers are counted, lie in grooves, and stay out of flange and each other.
 
-use coilwind::measure::{DefectKind, STATIONS_PER_TURN};
+use coilwind::measure::{DefectKind, STATIONS_PER_TURN, Verdict};
 use coilwind::settings::SceneSettings;
+use coilwind::signals::EventKind;
 use coilwind::simulation::Simulation;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -149,18 +150,31 @@ fn the_nozzle_is_where_its_law_says_however_long_the_steps_are() {
 /// Wire piled up in one place until it met the nozzle: energy was off by a sixth, wire 0.2 diameters deep in wire, and the run said
 /// that the wire broke.
 #[test]
-fn a_coil_that_grows_into_the_nozzle_ends_the_run() {
+fn a_coil_that_grows_into_the_nozzle_ends_the_winding() {
     let text = "[core]\nshape = 'cylinder'\nradius_mm = 3\n[core.flange]\ninner_distance_mm = 1.5\nheight_mm = 1\n\
                 [nozzle]\ndistance_mm = 5.6\ny_start_mm = -0.4\n[start]\nclamp_y_mm = -0.4\n\
                 [spindle]\nspeed = 100\nturns = 22\n[traverse]\nper_turn_mm = 0\n[solver]\ntolerance_um = 5\n";
     let mut sim = started(text);
     let end = sim.motion_profile().end();
-    let error = sim
-        .advance_profile(end)
-        .expect_err("the coil is in the way");
+    sim.advance_profile(end).expect("the machine goes on");
+    let defects = sim.defects();
+    let [collision] = &defects
+        .iter()
+        .filter(|d| d.kind == DefectKind::Collision)
+        .collect::<Vec<_>>()[..]
+    else {
+        panic!("one collision: {defects:?}");
+    };
+    assert!(collision.turn > 2 && collision.layer > 2, "{collision:?}");
+    assert_eq!(sim.verdict(), Verdict::Collision);
+    assert!(sim.outputs().defect_code & DefectKind::Collision.code() != 0);
+    assert!(!sim.outputs().defect_break);
+    let events = sim.drain_events();
+    let told = events.iter().filter(|e| e.kind == EventKind::Collision);
+    let texts: Vec<_> = told.map(|e| &e.text).collect();
     assert!(
-        error.reason.contains("the coil has grown into the nozzle"),
-        "{error}"
+        texts.len() == 1 && texts[0].contains("the coil has grown into the nozzle"),
+        "{texts:?}"
     );
     let summary = sim.summary();
     assert!(summary.turns_wound > 2.0, "{}", summary.turns_wound);

@@ -19,9 +19,12 @@ impl Message {
         let (status, category) = match event.kind {
             EventKind::Turn | EventKind::Defect | EventKind::Note => (Status::Ok, Category::Events),
             // The wire is still computed, but a machine would have stopped.
-            EventKind::Slack | EventKind::Break | EventKind::Solver | EventKind::Judgement => {
-                (Status::Warning, Category::Warning)
-            }
+            EventKind::Slack
+            | EventKind::Break
+            | EventKind::Collision
+            | EventKind::Runaway
+            | EventKind::Solver
+            | EventKind::Judgement => (Status::Warning, Category::Warning),
         };
         Self {
             status,

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 pub(super) type Rows = BTreeMap<usize, Row>;
 
 /// Columns after those of the swept variables, in the order of the fields.
-pub(super) const COLUMNS: [&str; 16] = [
+pub(super) const COLUMNS: [&str; 24] = [
     "member",
     "verdict",
     "defect",
@@ -21,6 +21,14 @@ pub(super) const COLUMNS: [&str; 16] = [
     "defects_overlap",
     "defects_break",
     "defects_slack",
+    "defects_double_turn",
+    "defects_skipped_groove",
+    "defects_early_jump",
+    "defects_late_jump",
+    "defects_loose_turn",
+    "defects_overstretch",
+    "defects_collision",
+    "defects_runaway",
     "tension_min_N",
     "tension_max_N",
     "turns_settled",
@@ -48,6 +56,14 @@ pub(super) struct Row {
     pub(super) defects_overlap: usize,
     pub(super) defects_break: usize,
     pub(super) defects_slack: usize,
+    pub(super) defects_double_turn: usize,
+    pub(super) defects_skipped_groove: usize,
+    pub(super) defects_early_jump: usize,
+    pub(super) defects_late_jump: usize,
+    pub(super) defects_loose_turn: usize,
+    pub(super) defects_overstretch: usize,
+    pub(super) defects_collision: usize,
+    pub(super) defects_runaway: usize,
     /// least tension at the nozzle, N
     #[serde(rename = "tension_min_N")]
     pub(super) tension_min: Option<f64>,
@@ -75,6 +91,14 @@ impl Row {
             defects_overlap: 0,
             defects_break: 0,
             defects_slack: 0,
+            defects_double_turn: 0,
+            defects_skipped_groove: 0,
+            defects_early_jump: 0,
+            defects_late_jump: 0,
+            defects_loose_turn: 0,
+            defects_overstretch: 0,
+            defects_collision: 0,
+            defects_runaway: 0,
             tension_min: None,
             tension_max: None,
             turns_settled: 0.0,

@@ -1,34 +1,26 @@
 //! The settled wire, node by node, and what is measured on it.
 
 use super::buckets::Buckets;
-use super::defect::{BulgeLimit, DefectKind, DefectLimits};
+use super::defect::{BulgeLimit, DefectLimits, FALLBACK_BULGE, MEASURED};
 use super::passes::Passes;
 use super::profile::Profile;
 use super::row::{Row, RowPlace};
-use super::runs::{Run, stations_for};
-use super::station::{NEIGHBOUR_WINDOW, Neighbour, Station, closest_point_segment};
+use super::runs::{Run, SHORT_RUN, stations_for};
+use super::station::{NEIGHBOUR_WINDOW, Neighbour, Signs, Station, closest_point_segment};
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::PersistentVec;
 use crate::math::V3;
 use crate::math::{polar_angle, wrap_to_pi};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-
-/// Fraction of a turn that a bulge or an overlap must cover before its flag rises: 8 degrees.
-///
-/// Chosen: a noisy node 0.4 mm from its neighbours, 6 mm from the axis, reaches over 7.6 degrees; a
-/// 2 mm corner of the 12 x 30 mm core, the shortest place for a wire to ride up, over 11.
-const SHORT_RUN: f64 = 8.0 / STATIONS_PER_TURN as f64;
+use std::sync::Arc;
 
 /// Last part of a pass, in which its wire may climb to the next layer, rad: a quarter of a turn. Crossovers take a
 /// twelfth to a sixth of a turn, and wire lands face by face.
-const STEP_UP: f64 = 0.25 * TAU;
+pub(crate) const STEP_UP: f64 = 0.25 * TAU;
 
 /// A station is taken this far before its angle, rad: rounding may leave the clamp's own node a hair before its own angle.
 const HAIR: f64 = 1e-9;
-
-/// Height that is a bulge where no quasi-static height is known, diameters: it takes the room of another wire.
-const FALLBACK_BULGE: f64 = 1.0;
 
 /// What the measures need to know of the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +32,11 @@ pub struct CoilSpec {
     /// quasi-static height of this wire at this tension; without one the bulge is judged against
     /// `limits.bulge_absolute`, or a diameter where that is 0
     pub profile: Option<Profile>,
+    /// tension that wire is meant to be laid with, N; 0: not known, and no turn is loose for its tension
+    pub tension: f64,
+    /// winding angles between which wire is meant to climb to the next layer, rad, one pair a layer; none: not known, and
+    /// no jump is early or late
+    pub jumps: Arc<[[f64; 2]]>,
     /// polar angle of the clamp, rad
     pub start_angle: f64,
     /// +1 where wire runs towards growing polar angle (positive spindle speed), else -1; see
@@ -66,6 +63,8 @@ pub struct SettledNode {
     pub flange: Option<f64>,
     /// plastic stretch
     pub plastic_strain: f64,
+    /// tension of the wire after it, N
+    pub tension: f64,
     /// time at which it came to rest, s
     pub time: f64,
 }
@@ -92,22 +91,23 @@ pub(crate) struct Node {
 pub(crate) struct Record {
     pub(crate) station: Station,
     pub(crate) row: Row,
-    pub(crate) runs: [Run; 3],
+    pub(crate) signs: Signs,
+    pub(crate) runs: [Run; MEASURED],
     /// defects so far, by kind
-    pub(crate) raised: [u32; 3],
+    pub(crate) raised: [u32; MEASURED],
     /// station at which the last defect was found
     pub(crate) last_defect: Option<usize>,
     /// sum and number of the axial distances so far
     pub(crate) axial_sum: f64,
     pub(crate) axial_count: u32,
     /// first node of the neighbour window
-    window: usize,
+    pub(crate) window: usize,
     /// bucket of wire at this polar angle and place along y
-    bucket: (usize, i64),
+    pub(crate) bucket: (usize, i64),
     /// the station that was in the bucket before
     pub(crate) beneath: Option<usize>,
     /// for how many stations what lies below has said another layer than the station's
-    other_layer: u32,
+    pub(crate) other_layer: u32,
 }
 
 /// Measures of the settled wire, kept up to date node by node.
@@ -160,10 +160,12 @@ impl Coil {
         self.measure_again(0);
     }
 
-    /// Replaces the quasi-static height and measures all settled wire again (linear in the wire).
-    pub fn set_profile(&mut self, profile: Option<Profile>) {
-        if self.spec.profile != profile {
+    /// Replaces the tension that wire is meant to be laid with, N, and the quasi-static height under it, and measures all
+    /// settled wire again (linear in the wire).
+    pub fn set_profile(&mut self, tension: f64, profile: Option<Profile>) {
+        if self.spec.profile != profile || self.spec.tension != tension {
             self.spec.profile = profile;
+            self.spec.tension = tension;
             self.measure_again(0);
         }
     }
@@ -208,13 +210,14 @@ impl Coil {
     /// turn before it may climb and is not judged. Settled wire from there on is measured again.
     pub fn begin_pass(&mut self, from: f64, sense: f64) {
         self.passes.push(from, sense);
-        self.measure_again(self.first_node_from(self.passes.last().from - STEP_UP));
+        self.measure_again(self.first_node_from(self.passes.open_from() - STEP_UP));
     }
 
     /// Takes the last pass back, unless it is the first: its wire belongs to the pass before.
     pub fn take_back_pass(&mut self) {
-        if let Some(pass) = self.passes.pop() {
-            self.measure_again(self.first_node_from(pass.from - STEP_UP));
+        let from = self.passes.open_from();
+        if self.passes.pop().is_some() {
+            self.measure_again(self.first_node_from(from - STEP_UP));
         }
     }
 
@@ -416,6 +419,12 @@ impl Coil {
         };
         let (layer, other_layer) = self.layer_after(support.layer);
         let (neighbour, window) = self.neighbour(angle, position, row);
+        // Beside a double turn, in the place after it, lies the turn below that one.
+        let after_double = || {
+            let before = index.checked_sub(STATIONS_PER_TURN);
+            before.is_some_and(|before| self.is_double(before))
+        };
+        let neighbour = neighbour.filter(|_| !after_double());
         // The nozzle turns here or the flange is near, and the wire leaves its row.
         let lifts = (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
             && bulge > self.spec.limits.overlap_height * self.spec.diameter;
@@ -439,15 +448,34 @@ impl Coil {
             measured: self.is_free_of_clamp(angle) && !steps_up,
         };
         station.overlap_depth = self.overlap_depth(&station);
+        let signs = self.signs(
+            &station,
+            row,
+            &support,
+            bucket,
+            between(start.settled.plastic_strain, end.settled.plastic_strain),
+            start.settled.tension,
+        );
         let beneath = self.buckets.insert(bucket, index);
-        let mut record = self.judge(station, row, window, bucket, beneath);
-        record.other_layer = other_layer;
-        self.records.push(record);
+        self.records.push(self.judge(Record {
+            station,
+            row,
+            signs,
+            runs: [Run::default(); MEASURED],
+            raised: [0; MEASURED],
+            last_defect: None,
+            axial_sum: 0.0,
+            axial_count: 0,
+            window,
+            bucket,
+            beneath,
+            other_layer,
+        }));
     }
 
     /// True where neither this wire nor the wire one turn back lies within the skip angle of the
     /// clamp.
-    fn is_free_of_clamp(&self, angle: f64) -> bool {
+    pub(crate) fn is_free_of_clamp(&self, angle: f64) -> bool {
         let within = angle - TAU * (angle / TAU + 1e-9).floor();
         within >= self.spec.limits.skip_angle || angle >= 2.0 * TAU - 1e-9
     }
@@ -502,99 +530,5 @@ impl Coil {
             axial: row.sense * (p.y - q.y),
         });
         (neighbour, first)
-    }
-
-    /// Diameter minus axial distance where the wire overlaps its neighbour, else 0, m; a diameter where it has changed
-    /// places with it.
-    fn overlap_depth(&self, station: &Station) -> f64 {
-        let (d, limits) = (self.spec.diameter, &self.spec.limits);
-        let Some(Neighbour { axial, .. }) = station.neighbour else {
-            return 0.0;
-        };
-        let stands_on =
-            axial < limits.overlap_axial * d && station.bulge > limits.overlap_height * d;
-        if stands_on || axial < 0.0 {
-            (d - axial).min(d)
-        } else {
-            0.0
-        }
-    }
-
-    /// The record of a station, with the runs and sums carried on from the one before.
-    fn judge(
-        &self,
-        station: Station,
-        row: Row,
-        window: usize,
-        bucket: (usize, i64),
-        beneath: Option<usize>,
-    ) -> Record {
-        let index = self.records.len();
-        let mut record = Record {
-            station,
-            row,
-            runs: [Run::default(); 3],
-            raised: [0; 3],
-            last_defect: None,
-            axial_sum: 0.0,
-            axial_count: 0,
-            window,
-            bucket,
-            beneath,
-            other_layer: 0,
-        };
-        let mut runs_before = [Run::default(); 3];
-        if let Some(last) = self.records.last() {
-            runs_before = last.runs;
-            record.raised = last.raised;
-            record.last_defect = last.last_defect;
-            record.axial_sum = last.axial_sum;
-            record.axial_count = last.axial_count;
-        }
-        for kind in DefectKind::MEASURED {
-            let (value, limit, least) = self.criterion(kind, &station);
-            let k = kind as usize;
-            record.runs[k] = runs_before[k].next(value, limit);
-            if record.runs[k].counts(least) && !runs_before[k].counts(least) {
-                record.raised[k] += 1;
-                record.last_defect = Some(index);
-            }
-        }
-        if let (true, Some(neighbour)) = (station.measured, station.neighbour) {
-            record.axial_sum += neighbour.axial;
-            record.axial_count += 1;
-        }
-        record
-    }
-
-    /// Value of a defect at a station (`None`: nothing to judge), its limit, m, and the least
-    /// length of a run, in stations.
-    pub(crate) fn criterion(&self, kind: DefectKind, station: &Station) -> (Option<f64>, f64, u32) {
-        let (d, limits) = (self.spec.diameter, &self.spec.limits);
-        let (value, limit, least) = match kind {
-            DefectKind::Bulge if limits.bulge_absolute > 0.0 => {
-                (Some(station.bulge), limits.bulge_absolute, SHORT_RUN)
-            }
-            DefectKind::Bulge if self.spec.profile.is_none() => {
-                (Some(station.bulge), FALLBACK_BULGE * d, SHORT_RUN)
-            }
-            DefectKind::Bulge => (station.bulge_excess, limits.bulge_excess * d, SHORT_RUN),
-            DefectKind::Gap => (
-                station.neighbour.map(|n| n.gap),
-                limits.gap * d,
-                limits.gap_fraction,
-            ),
-            DefectKind::Overlap => (
-                Some(station.overlap_depth),
-                (1.0 - limits.overlap_axial) * d,
-                SHORT_RUN,
-            ),
-            DefectKind::Slack | DefectKind::Break => (None, f64::INFINITY, 0.0),
-        };
-        (
-            value.filter(|_| station.measured),
-            limit,
-            stations_for(least),
-        )
     }
 }

@@ -19,6 +19,20 @@ pub struct DefectLimits {
     pub overlap_height: f64,
     /// polar angle after the clamp in which nothing is judged, rad
     pub skip_angle: f64,
+    /// least length over which wire stands on its own row to be a double turn, as a fraction of a turn
+    pub double_turn: f64,
+    /// least length over which a groove lies empty beside the wire, as a fraction of a turn
+    pub skipped_groove: f64,
+    /// turns by which a change of layer may miss the place where it is planned
+    pub jump: f64,
+    /// height over that at rest above which wire touches nothing, diameters
+    pub loose_height: f64,
+    /// largest share of a turn that may touch nothing
+    pub loose_fraction: f64,
+    /// least mean tension of a turn at rest, as a share of the set tension
+    pub loose_tension: f64,
+    /// largest plastic stretch
+    pub stretch: f64,
 }
 
 /// What a bulge is judged by.
@@ -44,9 +58,15 @@ pub enum BulgeLimit {
     },
 }
 
-/// Kinds of defect: the first three are measured on settled wire, the others are faults of the wire itself.
+/// Height that is a bulge where no quasi-static height is known, diameters: it takes the room of another wire.
+pub(crate) const FALLBACK_BULGE: f64 = 1.0;
+
+/// How many kinds of defect are measured on settled wire.
+pub(crate) const MEASURED: usize = DefectKind::MEASURED.len();
+
+/// Kinds of defect: those before slack are measured on settled wire, the others are faults of the wire itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "snake_case")]
 pub enum DefectKind {
     /// stands off further than allowed
     Bulge = 0,
@@ -54,26 +74,60 @@ pub enum DefectKind {
     Gap = 1,
     /// rides on its neighbour or has changed places with it
     Overlap = 2,
+    /// stands on turns of its own row for a good part of a turn
+    DoubleTurn = 3,
+    /// leaves a groove of the layer below empty beside it
+    SkippedGroove = 4,
+    /// climbed to the next layer before the turn that the scene plans
+    EarlyJump = 5,
+    /// climbed to the next layer after the turn that the scene plans
+    LateJump = 6,
+    /// touches nothing over a good part of a turn, or lies there with hardly any tension
+    LooseTurn = 7,
+    /// has been drawn longer for good by more than allowed
+    Overstretch = 8,
     /// the tension at the nozzle fell to zero
-    Slack = 3,
+    Slack = 9,
+    /// the coil has grown into the nozzle
+    Collision = 10,
+    /// the wire shoots out of the nozzle
+    Runaway = 11,
     /// the wire parted
-    Break = 4,
+    Break = 12,
 }
 
 impl DefectKind {
     /// Every kind, the mildest last.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 13] = [
         Self::Break,
+        Self::Runaway,
+        Self::Collision,
+        Self::Overstretch,
+        Self::DoubleTurn,
         Self::Overlap,
+        Self::SkippedGroove,
+        Self::EarlyJump,
+        Self::LateJump,
         Self::Gap,
         Self::Bulge,
+        Self::LooseTurn,
         Self::Slack,
     ];
 
-    /// Those measured on settled wire.
-    pub(crate) const MEASURED: [Self; 3] = [Self::Bulge, Self::Gap, Self::Overlap];
+    /// Those measured on settled wire, by their numbers.
+    pub(crate) const MEASURED: [Self; 9] = [
+        Self::Bulge,
+        Self::Gap,
+        Self::Overlap,
+        Self::DoubleTurn,
+        Self::SkippedGroove,
+        Self::EarlyJump,
+        Self::LateJump,
+        Self::LooseTurn,
+        Self::Overstretch,
+    ];
 
-    /// Its bit in `defect_code`.
+    /// Its bit in `defect_code` and in the field `defect` of `coil.vtp`.
     pub fn code(self) -> i32 {
         match self {
             Self::Bulge => 1,
@@ -81,18 +135,51 @@ impl DefectKind {
             Self::Overlap => 4,
             Self::Break => 8,
             Self::Slack => 16,
+            Self::DoubleTurn => 32,
+            Self::SkippedGroove => 64,
+            Self::EarlyJump => 128,
+            Self::LateJump => 256,
+            Self::LooseTurn => 512,
+            Self::Overstretch => 1024,
+            Self::Collision => 2048,
+            Self::Runaway => 4096,
         }
     }
 
-    /// The word for it, as in `defects.csv`.
+    /// The name for it, as in `defects.csv`.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Bulge => "bulge",
             Self::Gap => "gap",
             Self::Overlap => "overlap",
+            Self::DoubleTurn => "double_turn",
+            Self::SkippedGroove => "skipped_groove",
+            Self::EarlyJump => "early_jump",
+            Self::LateJump => "late_jump",
+            Self::LooseTurn => "loose_turn",
+            Self::Overstretch => "overstretch",
             Self::Slack => "slack",
+            Self::Collision => "collision",
+            Self::Runaway => "runaway",
             Self::Break => "break",
         }
+    }
+
+    /// The words for it in a sentence.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::DoubleTurn => "double turn",
+            Self::SkippedGroove => "skipped groove",
+            Self::EarlyJump => "early layer jump",
+            Self::LateJump => "late layer jump",
+            Self::LooseTurn => "loose turn",
+            kind => kind.as_str(),
+        }
+    }
+
+    /// Whether no wire moves from then on.
+    pub fn ends_winding(self) -> bool {
+        matches!(self, Self::Break | Self::Collision | Self::Runaway)
     }
 }
 
@@ -117,7 +204,7 @@ pub struct Defect {
     pub time_s: f64,
     /// when slack wire was last slack; nothing for other kinds
     pub until_s: Option<f64>,
-    /// largest bulge, gap or overlap depth; nothing for a wire that went slack or broke
+    /// how large it is, see the guide; nothing for what befalls the wire
     pub size_m: Option<f64>,
     /// the same in wire diameters
     pub size_d: Option<f64>,
@@ -134,6 +221,37 @@ pub struct DefectFlags {
     pub gap: bool,
     /// wire rides on its neighbour or has changed places with it
     pub overlap: bool,
+    /// wire stands on turns of its own row
+    pub double_turn: bool,
+    /// wire leaves a groove empty beside it
+    pub skipped_groove: bool,
+    /// wire climbed before its turn
+    pub early_jump: bool,
+    /// wire climbed after its turn
+    pub late_jump: bool,
+    /// wire is loose
+    pub loose_turn: bool,
+    /// wire is stretched
+    pub overstretch: bool,
+}
+
+impl DefectFlags {
+    /// The kinds that are present.
+    pub fn kinds(self) -> impl Iterator<Item = DefectKind> {
+        let up = [
+            self.bulge,
+            self.gap,
+            self.overlap,
+            self.double_turn,
+            self.skipped_groove,
+            self.early_jump,
+            self.late_jump,
+            self.loose_turn,
+            self.overstretch,
+        ];
+        let kinds = DefectKind::MEASURED.into_iter().zip(up);
+        kinds.filter(|(_, up)| *up).map(|(kind, _)| kind)
+    }
 }
 
 /// Where a defect was found: the end of the first run long enough to count.
@@ -141,7 +259,7 @@ pub struct DefectFlags {
 pub struct DefectPlace {
     /// what was found
     pub kind: DefectKind,
-    /// bulge, gap or overlap depth there, m
+    /// its size there, m
     pub size: f64,
     /// turn, from 1
     pub turn: u32,

@@ -4,25 +4,13 @@ use super::coil::Coil;
 use super::defect::DefectKind;
 use super::runs::Run;
 
-impl DefectKind {
-    /// The bit of this kind in `defect_code` and in the field `defect` of `coil.vtp`.
-    pub fn bit(self) -> u8 {
-        1 << match self {
-            Self::Bulge => 0,
-            Self::Gap => 1,
-            Self::Overlap => 2,
-            Self::Break => 3,
-            Self::Slack => 4,
-        }
-    }
-}
-
 impl Coil {
-    /// Kinds of defect at each station, in the order of [`Self::stations`], as a sum of [`DefectKind::bit`]: every
+    /// Kinds of defect at each station, in the order of [`Self::stations`], as a sum of [`DefectKind::code`]: every
     /// station of a run that is long enough to count (linear in the wire).
-    pub fn defect_marks(&self) -> Vec<u8> {
+    pub fn defect_marks(&self) -> Vec<u16> {
         let mut marks = vec![0; self.records.len()];
         for kind in DefectKind::MEASURED {
+            let code = kind.code() as u16;
             let (mut start, mut counts) = (0, false);
             for (index, record) in self.records.iter().enumerate() {
                 let run = record.runs[kind as usize];
@@ -30,15 +18,13 @@ impl Coil {
                     (start, counts) = (index + 1, false);
                     continue;
                 }
-                let (_, _, least) = self.criterion(kind, &record.station);
+                let (_, _, least) = self.criterion(kind, record);
                 if !counts && run.counts(least) {
                     counts = true;
-                    marks[start..index]
-                        .iter_mut()
-                        .for_each(|m| *m |= kind.bit());
+                    marks[start..index].iter_mut().for_each(|m| *m |= code);
                 }
                 if counts {
-                    marks[index] |= kind.bit();
+                    marks[index] |= code;
                 }
             }
         }

@@ -1,6 +1,11 @@
 //! Passes of the traverse: which wire was laid while the nozzle went which way.
 
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// A nozzle that goes the other way for less wire than this, rad, and on again has hung back: its way is that of one pass.
+/// Chosen: a turn, and the quarter in which wire follows from one place to the next.
+const HUNG_BACK: f64 = 1.25 * TAU;
 
 /// A pass: wire laid while the nozzle went one way along y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,14 +31,41 @@ impl Passes {
 
     /// Number from 1 and pass of the wire at this winding angle, rad.
     pub(crate) fn at(&self, angle: f64) -> (u32, Pass) {
-        let number = self.0.partition_point(|pass| pass.from <= angle).max(1);
-        (number as u32, self.0[number - 1])
+        let mut number = 0;
+        let mut found = self.0[0];
+        for pass in self.judged().take_while(|pass| pass.from <= angle) {
+            number += 1;
+            found = pass;
+        }
+        (number.max(1), found)
+    }
+
+    /// The passes without those in which the nozzle hung back.
+    fn judged(&self) -> impl Iterator<Item = Pass> {
+        let mut rest = &self.0[..];
+        std::iter::from_fn(move || {
+            let (first, mut after) = rest.split_first()?;
+            while let [back, on, ..] = after
+                && on.from - back.from < HUNG_BACK
+            {
+                after = &after[2..];
+            }
+            rest = after;
+            Some(*first)
+        })
+    }
+
+    /// Where the wire begins that the last pass says something about, rad: with it the one before may turn out to be none.
+    pub(crate) fn open_from(&self) -> f64 {
+        match self.0[..] {
+            [.., before, back, on] if on.from - back.from < HUNG_BACK => back.from.max(before.from),
+            _ => self.last().from,
+        }
     }
 
     /// Whether the pass of the wire at this winding angle ends within so much of it, rad.
     pub(crate) fn ends_within(&self, angle: f64, reach: f64) -> bool {
-        let (number, _) = self.at(angle);
-        let next = self.0.get(number as usize);
+        let next = self.judged().find(|pass| pass.from > angle);
         next.is_some_and(|next| next.from - angle < reach)
     }
 

@@ -1,10 +1,10 @@
 //! Numbers that describe the settled coil as a whole, as the machine sees them.
 
 use super::coil::{Coil, Record};
-use super::defect::{Defect, DefectFlags, DefectKind, DefectPlace};
+use super::defect::{Defect, DefectFlags, DefectKind, DefectPlace, MEASURED};
 use super::runs::Run;
 use super::station::Station;
-use super::{STATIONS_PER_TURN, Verdict};
+use super::{STATION_STEP, STATIONS_PER_TURN, Verdict};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 
@@ -22,11 +22,27 @@ pub struct Worst {
 impl Coil {
     /// Defects present in the settled wire.
     pub fn flags(&self) -> DefectFlags {
-        let [bulge, gap, overlap] = self.raised().map(|count| count > 0);
+        let [
+            bulge,
+            gap,
+            overlap,
+            double_turn,
+            skipped_groove,
+            early_jump,
+            late_jump,
+            loose_turn,
+            overstretch,
+        ] = self.raised().map(|count| count > 0);
         DefectFlags {
             bulge,
             gap,
             overlap,
+            double_turn,
+            skipped_groove,
+            early_jump,
+            late_jump,
+            loose_turn,
+            overstretch,
         }
     }
 
@@ -41,14 +57,14 @@ impl Coil {
         let raised = self.records[index].raised;
         let before = index
             .checked_sub(1)
-            .map_or([0; 3], |k| self.records[k].raised);
+            .map_or([0; MEASURED], |k| self.records[k].raised);
         let mut kinds = DefectKind::MEASURED.into_iter();
         let kind = kinds.find(|kind| raised[*kind as usize] > before[*kind as usize])?;
         Some(DefectPlace {
             kind,
-            size: self.defect_at(kind, index).size_m.unwrap_or(0.0),
+            size: self.size_at(kind, index).unwrap_or(0.0),
             turn: (index / STATIONS_PER_TURN) as u32 + 1,
-            angle: (index % STATIONS_PER_TURN) as f64 * super::STATION_STEP,
+            angle: (index % STATIONS_PER_TURN) as f64 * STATION_STEP,
             time: self.records[index].station.time,
         })
     }
@@ -71,7 +87,7 @@ impl Coil {
         let mut worst: Option<(usize, f64)> = None;
         let mut counts = false;
         for (index, record) in self.records.iter().enumerate() {
-            let (value, _, least) = self.criterion(kind, &record.station);
+            let (value, _, least) = self.criterion(kind, record);
             let run = record.runs[kind as usize];
             if run == Run::default() {
                 found.extend(
@@ -97,23 +113,55 @@ impl Coil {
         found
     }
 
+    /// The defect of a run that is worst at `index`.
     fn defect_at(&self, kind: DefectKind, index: usize) -> Defect {
-        let station = &self.records[index].station;
-        let size = match kind {
-            DefectKind::Gap => station.neighbour.map(|n| n.gap),
-            DefectKind::Overlap => Some(station.overlap_depth),
-            _ => Some(station.bulge),
-        };
+        let place = self.place_of(kind, index);
+        let station = &self.records[place].station;
+        let size = self.size_at(kind, index);
         Defect {
             kind,
-            turn: (index / STATIONS_PER_TURN) as u32 + 1,
+            turn: (place / STATIONS_PER_TURN) as u32 + 1,
             layer: station.layer,
-            angle_deg: (index % STATIONS_PER_TURN) as f64,
+            angle_deg: (place % STATIONS_PER_TURN) as f64,
             time_s: station.time,
             until_s: None,
             size_m: size,
             size_d: size.map(|size| size / self.spec.diameter),
             place_m: station.position.into(),
+        }
+    }
+
+    /// Where the defect lies that shows at `index`: a jump where it was or should have been, a loose turn in its middle.
+    fn place_of(&self, kind: DefectKind, index: usize) -> usize {
+        let signs = &self.records[index].signs;
+        let back = match kind {
+            DefectKind::EarlyJump => self.records[index].station.angle - signs.layer_since,
+            DefectKind::LateJump => TAU * signs.late.unwrap_or(0.0),
+            DefectKind::LooseTurn => PI,
+            _ => 0.0,
+        };
+        index.saturating_sub((back / STATION_STEP).round() as usize)
+    }
+
+    /// How large a defect is that shows at `index`, m.
+    fn size_at(&self, kind: DefectKind, index: usize) -> Option<f64> {
+        let Record { station, signs, .. } = &self.records[index];
+        let turn = || index.saturating_sub(STATIONS_PER_TURN)..=index;
+        match kind {
+            DefectKind::Gap => station.neighbour.map(|n| n.gap),
+            DefectKind::Overlap => Some(station.overlap_depth),
+            DefectKind::DoubleTurn => signs.rise,
+            DefectKind::SkippedGroove => signs.empty_groove,
+            DefectKind::EarlyJump => signs.early.map(|turns| turns * self.spec.diameter),
+            DefectKind::LateJump => signs.late.map(|turns| turns * self.spec.diameter),
+            DefectKind::LooseTurn => turn()
+                .map(|k| self.records[k].station.bulge)
+                .reduce(f64::max),
+            DefectKind::Overstretch => {
+                let arc = station.arc - self.records[*turn().start()].station.arc;
+                Some(signs.strain * arc)
+            }
+            _ => Some(station.bulge),
         }
     }
 
@@ -198,9 +246,11 @@ impl Coil {
             .unwrap_or(Verdict::Unsettled)
     }
 
-    /// How many bulges, gaps and overlaps there are in the settled wire.
-    pub(crate) fn raised(&self) -> [u32; 3] {
-        self.records.last().map_or([0; 3], |record| record.raised)
+    /// How many defects of each kind there are in the settled wire.
+    pub(crate) fn raised(&self) -> [u32; MEASURED] {
+        self.records
+            .last()
+            .map_or([0; MEASURED], |record| record.raised)
     }
 
     fn last_turn(&self) -> impl Iterator<Item = &Record> {

@@ -47,6 +47,29 @@ pub struct Station {
     pub measured: bool,
 }
 
+/// Signs at a station, beside gap, bulge and overlap.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Signs {
+    /// rise over the wire of its own row that it stands on, m; none where it stands on none
+    pub(crate) rise: Option<f64>,
+    /// gap to the turn before, m, where a groove of the row below lies empty between them
+    pub(crate) empty_groove: Option<f64>,
+    /// turns by which the wire climbed before it was meant to, known from where it was meant to
+    pub(crate) early: Option<f64>,
+    /// turns for which the wire has not climbed though it was meant to
+    pub(crate) late: Option<f64>,
+    /// plastic stretch
+    pub(crate) strain: f64,
+    /// how loose the last turn is, 1 at the limit
+    pub(crate) loose: Option<f64>,
+    /// winding angle since which it lies in its layer, rad
+    pub(crate) layer_since: f64,
+    /// stations so far where the wire touches nothing
+    pub(crate) untouched: u32,
+    /// sum of the tensions so far, N
+    pub(crate) tension_sum: f64,
+}
+
 impl Station {
     /// Distance from the core axis, m.
     pub fn radius(&self) -> f64 {

@@ -24,6 +24,12 @@ pub(crate) struct Support {
     pub(crate) is_wire: bool,
     /// one more than the layer of the wire below, 1 where there is none
     pub(crate) layer: u32,
+    /// row of the wire that it would rest on
+    pub(crate) row: Option<u32>,
+    /// rise over wire of its own row that it has climbed on, m
+    pub(crate) own_row: Option<f64>,
+    /// the same as `level` where wire of its own row carries it too, m
+    pub(crate) highest: f64,
 }
 
 impl Coil {
@@ -65,6 +71,9 @@ impl Coil {
             level: 0.0,
             is_wire: false,
             layer: 1,
+            row: None,
+            own_row: None,
+            highest: 0.0,
         };
         for bin in bucket.1 - 1..=bucket.1 + 1 {
             let mut next = self.buckets.get((bucket.0, bin));
@@ -78,16 +87,23 @@ impl Coil {
                 next = *beneath;
                 let (aside, rise) = ((y - lower.position.y).abs() / d, height - lower.height);
                 let earlier = of.number < row;
+                if !earlier && aside <= BELOW && rise > 0.0 {
+                    support.own_row = Some(support.own_row.unwrap_or(0.0).max(rise));
+                }
+                let level = lower.height + d * (1.0 - aside * aside).max(0.0).sqrt();
+                if aside <= BELOW && rise > 0.0 {
+                    support.highest = support.highest.max(level);
+                }
                 if aside > if earlier { BELOW } else { CLIMBED } {
                     continue;
                 }
                 if rise >= NEXT_LAYER * d {
                     support.layer = support.layer.max(lower.layer + 1);
                 }
-                let level = lower.height + d * (1.0 - aside * aside).sqrt();
                 if earlier && level > support.level {
                     support.level = level;
                     support.is_wire = true;
+                    support.row = Some(of.number);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! Measures and verdict of each turn.
 
 use super::coil::{Coil, Record};
-use super::defect::DefectKind;
+use super::defect::{DefectKind, MEASURED};
 use super::runs::Run;
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use serde::Serialize;
@@ -17,7 +17,7 @@ const ALIGNED_RMS: f64 = 0.05;
 
 /// Verdict on a turn, mildest first. A turn with several defects gets the worst.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// nothing has come to rest where it could be measured
     #[default]
@@ -30,12 +30,28 @@ pub enum Verdict {
     Marginal,
     /// the wire went slack on the way
     Slack,
+    /// touches nothing over a good part of the turn, or has hardly any tension
+    LooseTurn,
     /// stands off further than allowed
     Bulge,
     /// lies beside its place over a run of stations
     Gap,
+    /// climbed to the next layer after the turn that the scene plans
+    LateJump,
+    /// climbed to the next layer before the turn that the scene plans
+    EarlyJump,
+    /// leaves a groove of the layer below empty beside it
+    SkippedGroove,
     /// rides on its neighbour, or has changed places with it, at any station
     Overlap,
+    /// stands on turns of its own row
+    DoubleTurn,
+    /// has been drawn longer for good by more than allowed
+    Overstretch,
+    /// the coil has grown into the nozzle
+    Collision,
+    /// the wire shot out of the nozzle
+    Runaway,
     /// the wire broke
     Break,
 }
@@ -48,11 +64,19 @@ impl Verdict {
             Self::Single => "single",
             Self::Aligned => "aligned",
             Self::Marginal => "marginal",
-            Self::Bulge => "bulge",
-            Self::Gap => "gap",
-            Self::Overlap => "overlap",
-            Self::Slack => "slack",
-            Self::Break => "break",
+            Self::Slack => DefectKind::Slack.as_str(),
+            Self::LooseTurn => DefectKind::LooseTurn.as_str(),
+            Self::Bulge => DefectKind::Bulge.as_str(),
+            Self::Gap => DefectKind::Gap.as_str(),
+            Self::LateJump => DefectKind::LateJump.as_str(),
+            Self::EarlyJump => DefectKind::EarlyJump.as_str(),
+            Self::SkippedGroove => DefectKind::SkippedGroove.as_str(),
+            Self::Overlap => DefectKind::Overlap.as_str(),
+            Self::DoubleTurn => DefectKind::DoubleTurn.as_str(),
+            Self::Overstretch => DefectKind::Overstretch.as_str(),
+            Self::Collision => DefectKind::Collision.as_str(),
+            Self::Runaway => DefectKind::Runaway.as_str(),
+            Self::Break => DefectKind::Break.as_str(),
         }
     }
 
@@ -68,7 +92,15 @@ impl From<DefectKind> for Verdict {
             DefectKind::Bulge => Self::Bulge,
             DefectKind::Gap => Self::Gap,
             DefectKind::Overlap => Self::Overlap,
+            DefectKind::DoubleTurn => Self::DoubleTurn,
+            DefectKind::SkippedGroove => Self::SkippedGroove,
+            DefectKind::EarlyJump => Self::EarlyJump,
+            DefectKind::LateJump => Self::LateJump,
+            DefectKind::LooseTurn => Self::LooseTurn,
+            DefectKind::Overstretch => Self::Overstretch,
             DefectKind::Slack => Self::Slack,
+            DefectKind::Collision => Self::Collision,
+            DefectKind::Runaway => Self::Runaway,
             DefectKind::Break => Self::Break,
         }
     }
@@ -152,12 +184,12 @@ impl Coil {
             ..TurnMeasures::default()
         };
         let mut gaps = GapSums::default();
-        let mut runs = [Run::default(); 3];
-        let mut has = [false; 3];
+        let mut runs = [Run::default(); MEASURED];
+        let mut has = [false; MEASURED];
         for record in records {
             let station = &record.station;
             for kind in DefectKind::MEASURED {
-                let (value, limit, least) = self.criterion(kind, station);
+                let (value, limit, least) = self.criterion(kind, record);
                 let run = &mut runs[kind as usize];
                 *run = run.next(value, limit);
                 has[kind as usize] |= run.counts(least);
@@ -249,7 +281,7 @@ impl GapSums {
         result.gap_over = f64::from(self.over) / n;
     }
 
-    fn verdict(&self, turn: &TurnMeasures, has: [bool; 3], d: f64) -> Verdict {
+    fn verdict(&self, turn: &TurnMeasures, has: [bool; MEASURED], d: f64) -> Verdict {
         let aligned = f64::from(self.within) >= ALIGNED_SHARE * f64::from(self.count)
             && turn.gap_rms.is_none_or(|rms| rms < ALIGNED_RMS * d);
         if turn.stations == 0 {

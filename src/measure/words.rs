@@ -14,9 +14,23 @@ impl Defect {
             (DefectKind::Break, ..) => {
                 format!("the wire broke {place}; nothing was wound after that")
             }
+            (DefectKind::Collision, ..) => {
+                format!("the coil met the nozzle {place}; nothing was wound after that")
+            }
+            (DefectKind::Runaway, ..) => {
+                format!("the wire ran away from the nozzle {place}; nothing was wound after that")
+            }
             (DefectKind::Slack, ..) => format!("the wire went slack {place}"),
-            (kind, Some(m), Some(d)) => format!("{kind} of {:.3} mm ({d:.2} d) {place}", 1e3 * m),
-            (kind, ..) => format!("{kind} {place}"),
+            (DefectKind::EarlyJump | DefectKind::LateJump, _, Some(turns)) => {
+                format!("{} by {turns:.1} turns {place}", self.kind.words())
+            }
+            (DefectKind::Overstretch, Some(m), _) => {
+                format!("overstretch, {:.3} mm a turn, {place}", 1e3 * m)
+            }
+            (kind, Some(m), Some(d)) => {
+                format!("{} of {:.3} mm ({d:.2} d) {place}", kind.words(), 1e3 * m)
+            }
+            (kind, ..) => format!("{} {place}", kind.words()),
         }
     }
 }
@@ -57,7 +71,11 @@ fn of_kind(kind: DefectKind, defects: &[Defect]) -> Option<String> {
     })?;
     let words = match of_kind().count() {
         1 => worst.in_words(),
-        count => format!("{count} times {kind}; the gravest: {}", worst.in_words()),
+        count => format!(
+            "{count} times {}; the gravest: {}",
+            kind.words(),
+            worst.in_words()
+        ),
     };
     let mut letters = words.chars();
     Some(letters.next()?.to_uppercase().chain(letters).collect())

@@ -24,8 +24,8 @@ pub struct WireFields {
     pub gap: Vec<f64>,
     /// height over what the wire was laid over, m; not a number where it has not come to rest
     pub bulge: Vec<f64>,
-    /// kinds of defect, a sum of [`DefectKind::bit`](crate::measure::DefectKind::bit)
-    pub defect: Vec<u8>,
+    /// kinds of defect, a sum of [`DefectKind::code`](crate::measure::DefectKind::code)
+    pub defect: Vec<u16>,
 }
 
 /// Writes the wire as a tube of `radius` (m) in the core frame, `time` s after the start.
@@ -64,6 +64,9 @@ pub fn write_vtp(
             xml.array("Normals", Some(3), 3 * mesh.normals.len(), normals)?;
             let count = SIDES * drawn;
             xml.array("turn", None, count, per_ring(&data.turns[..drawn]))?;
+            if let Some(defect) = &data.defect {
+                xml.array("defect", None, count, per_ring(&defect[..drawn]))?;
+            }
             for (name, values) in &data.bytes {
                 xml.array(name, None, count, per_ring(&values[..drawn]))?;
             }
@@ -106,6 +109,9 @@ pub fn write_frame(
         || line.iter(),
         |xml| {
             xml.array("turn", None, nodes, data.turns.iter().copied())?;
+            if let Some(defect) = &data.defect {
+                xml.array("defect", None, nodes, defect.iter().copied())?;
+            }
             for (name, values) in &data.bytes {
                 xml.array(name, None, nodes, values.iter().copied())?;
             }
@@ -124,6 +130,7 @@ pub fn write_frame(
 /// What is known of the wire, a value per node, in the order of the files.
 struct NodeData<'a> {
     turns: Vec<i32>,
+    defect: Option<Vec<i32>>,
     bytes: Vec<(&'static str, Cow<'a, [u8]>)>,
     reals: Vec<(&'static str, &'a [f64])>,
 }
@@ -149,13 +156,13 @@ impl<'a> NodeData<'a> {
                 ("gap", &fields.gap),
                 ("bulge", &fields.bulge),
             ]);
-            bytes.extend([
-                ("layer", Cow::Borrowed(fields.layer.as_slice())),
-                ("defect", Cow::Borrowed(fields.defect.as_slice())),
-            ]);
+            bytes.extend([("layer", Cow::Borrowed(fields.layer.as_slice()))]);
         }
+        let defect: Option<Vec<i32>> =
+            fields.map(|fields| fields.defect.iter().map(|&code| code.into()).collect());
         let lengths = (reals.iter().map(|(name, values)| (*name, values.len())))
-            .chain(bytes.iter().map(|(name, values)| (*name, values.len())));
+            .chain(bytes.iter().map(|(name, values)| (*name, values.len())))
+            .chain(defect.iter().map(|values| ("defect", values.len())));
         for (name, got) in lengths {
             if got != nodes {
                 return Err(OutputError::Length {
@@ -169,6 +176,7 @@ impl<'a> NodeData<'a> {
         let turns = turns_of_nodes(&wire.points);
         Ok(Self {
             turns: turns.iter().map(|&turn| turn as i32).collect(),
+            defect,
             bytes,
             reals,
         })

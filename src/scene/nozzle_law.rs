@@ -21,6 +21,8 @@ pub struct NozzleLaw {
     pieces: Arc<[Piece]>,
     /// turns after which it ends
     turns: f64,
+    /// angles between which wire is meant to climb to the next layer, rad, one pair a layer
+    jumps: Arc<[[f64; 2]]>,
 }
 
 impl NozzleLaw {
@@ -34,6 +36,7 @@ impl NozzleLaw {
         Self {
             pieces: Arc::new([piece]),
             turns,
+            jumps: Arc::new([]),
         }
     }
 
@@ -58,6 +61,7 @@ impl NozzleLaw {
         Self {
             pieces: pieces.into(),
             turns: last[0],
+            jumps: Arc::new([]),
         }
     }
 
@@ -79,7 +83,22 @@ impl NozzleLaw {
         Self {
             pieces: std::iter::once(start).chain(later).collect(),
             turns: self.turns,
+            jumps: self.jumps,
         }
+    }
+
+    /// The same law, with the turns between which wire is meant to climb to each next layer.
+    pub(super) fn with_jumps(self, turns: &[[f64; 2]]) -> Self {
+        let jumps = turns
+            .iter()
+            .map(|pair| pair.map(|turn| turn * TAU))
+            .collect();
+        Self { jumps, ..self }
+    }
+
+    /// Angles between which wire is meant to climb to the next layer, rad; none where layers are not planned.
+    pub fn jumps(&self) -> &[[f64; 2]] {
+        &self.jumps
     }
 
     /// The piece at an angle turned, rad.

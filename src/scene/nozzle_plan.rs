@@ -44,6 +44,20 @@ struct Layers {
     pitch: f64,
 }
 
+impl Layers {
+    /// Turns between which the wire climbs to each next layer, in a step that takes so many.
+    fn jumps(&self, step: f64) -> Vec<[f64; 2]> {
+        let mut done = 0.0;
+        let mut ends: Vec<[f64; 2]> = Vec::new();
+        for layer in &self.layers {
+            done += f64::from(layer.turns);
+            ends.push([done - step, done]);
+        }
+        ends.pop();
+        ends
+    }
+}
+
 impl SceneSettings {
     /// Whether the nozzle's way follows from turns and layers.
     pub(super) fn winds_layers(&self) -> bool {
@@ -59,7 +73,13 @@ impl SceneSettings {
     ) -> Option<NozzleLaw> {
         let t = &self.traverse;
         let law = match t.mode.as_str() {
-            "table" => problems.note(self.law_of_table())?,
+            "table" => {
+                let law = problems.note(self.law_of_table())?;
+                match self.winding.turns_per_layer {
+                    0.0 => law,
+                    _ => law.with_jumps(&self.layers(diameter, extent, problems)?.jumps(0.0)),
+                }
+            }
             "orthocyclic" => self.orthocyclic(&self.layers(diameter, extent, problems)?),
             "helical" => self.helical(&self.layers(diameter, extent, problems)?),
             // without inputs the nozzle goes with the core's angle
@@ -196,7 +216,8 @@ impl SceneSettings {
     /// Straight in its place for most of a turn, a step to the next in the rest.
     ///
     /// The step ends at the clamp's angle, where the next turn begins.
-    fn orthocyclic(&self, Layers { layers, pitch }: &Layers) -> NozzleLaw {
+    fn orthocyclic(&self, stacked: &Layers) -> NozzleLaw {
+        let Layers { layers, pitch } = stacked;
         let places: Vec<f64> = layers
             .iter()
             .flat_map(|layer| {
@@ -213,34 +234,38 @@ impl SceneSettings {
             points.push([end, pair[1]]);
         }
         points.push([places.len() as f64, places[places.len() - 1]]);
-        NozzleLaw::through(&points)
+        NozzleLaw::through(&points).with_jumps(&stacked.jumps(self.traverse.crossover / TAU))
     }
 
     /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there.
     fn helical(&self, Layers { layers, pitch }: &Layers) -> NozzleLaw {
         let (lead, dwell) = (self.traverse.lead, self.traverse.dwell_turns);
         let mut points = vec![[0.0, layers[0].first + layers[0].sense * lead]];
+        let mut jumps = Vec::new();
+        // the turns at which it is there
         let mut go_to = |y: f64, least: f64| {
             let [turns, before] = points[points.len() - 1];
             let turned = ((y - before).abs() / pitch).max(least);
             if turned > 0.0 {
                 points.push([turns + turned, y]);
             }
+            turns + turned
         };
         for (number, layer) in layers.iter().enumerate() {
             let lead = layer.sense * lead;
             go_to(layer.last + lead, 0.0);
             match layers.get(number + 1) {
                 Some(next) => {
-                    go_to(next.first + lead, 0.0);
-                    go_to(next.first + lead, dwell);
+                    let from = go_to(next.first + lead, 0.0);
+                    let to = go_to(next.first + lead, dwell);
+                    jumps.push([from, to]);
                     go_to(next.first - lead, 0.0);
                 }
                 // the last turn has to be laid as well
-                None => go_to(layer.last + lead, 1.0),
+                None => drop(go_to(layer.last + lead, 1.0)),
             }
         }
-        NozzleLaw::through(&points)
+        NozzleLaw::through(&points).with_jumps(&jumps)
     }
 
     /// The coil has to stay clear of the nozzle in every layer.

@@ -35,7 +35,7 @@ const SHAPE: &str = "core.shape";
 const MODE: &str = "traverse.mode";
 
 /// All keys that depend on a choice.
-const KEYS_OF_CHOICES: [KeysOf; 10] = [
+const KEYS_OF_CHOICES: [KeysOf; 11] = [
     keys_of(
         SHAPE,
         &["rounded-box"],
@@ -67,13 +67,13 @@ const KEYS_OF_CHOICES: [KeysOf; 10] = [
     ),
     keys_of(
         MODE,
+        &["orthocyclic", "helical", "table"],
+        &["winding.turns_per_layer", "winding.layers"],
+    ),
+    keys_of(
+        MODE,
         &["orthocyclic", "helical"],
-        &[
-            "winding.turns_per_layer",
-            "winding.layers",
-            "winding.direction",
-            "winding.pitch",
-        ],
+        &["winding.direction", "winding.pitch"],
     ),
 ];
 

@@ -345,6 +345,13 @@ impl Default for SceneSettings {
                 overlap_axial: 0.9,
                 overlap_height: 0.3,
                 skip_angle: 1.2,
+                double_turn: 0.5,
+                skipped_groove: 0.25,
+                jump: 0.5,
+                loose_height: 0.1,
+                loose_fraction: 0.5,
+                loose_tension: 0.5,
+                stretch: 0.02,
             },
             output: Output {
                 history_interval: std::f64::consts::PI / 180.0,

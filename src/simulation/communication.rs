@@ -138,7 +138,7 @@ impl Simulation {
             && self.steps_beyond
             && method.is_implicit()
             && method.fixed().is_none()
-            && !self.now.run.broken
+            && !self.now.run.over
     }
 
     /// Whether a communication step goes on as the inputs were taken to.
@@ -203,7 +203,7 @@ impl Simulation {
             if room <= near || (self.now.is_quiescent() && course.is_still()) {
                 break;
             }
-            if self.now.run.broken {
+            if self.now.run.over {
                 self.talk.served = Some(served);
                 return self.settle();
             }

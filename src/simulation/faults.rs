@@ -24,6 +24,7 @@ impl Winding {
             self.note_slack();
         }
         self.run.was_slack = slack;
+        self.watch_yardstick();
     }
 
     fn note_slack(&mut self) {
@@ -45,13 +46,20 @@ impl Winding {
         );
     }
 
-    /// The wire has parted at a live node; from now on it stays as it is.
-    pub(super) fn note_break(&mut self, node: usize, text: String) {
-        self.run.broken = true;
-        let before: f64 = self.sys.state.rod.rest[..node].iter().sum();
-        self.run.outputs.break_position = self.sys.state.arc0 + before;
-        self.note_fault(DefectKind::Break, node);
-        self.report(EventKind::Break, text);
+    /// No wire can be wound after what happened at a live node; from now on it stays as it is.
+    pub(super) fn note_end(&mut self, kind: DefectKind, node: usize, text: String) {
+        self.run.over = true;
+        if kind == DefectKind::Break {
+            let before: f64 = self.sys.state.rod.rest[..node].iter().sum();
+            self.run.outputs.break_position = self.sys.state.arc0 + before;
+        }
+        self.note_fault(kind, node);
+        let event = match kind {
+            DefectKind::Collision => EventKind::Collision,
+            DefectKind::Runaway => EventKind::Runaway,
+            _ => EventKind::Break,
+        };
+        self.report(event, text);
     }
 
     /// Keeps a fault of the wire at a live node; what is not laid yet counts to the place where wire is laid.

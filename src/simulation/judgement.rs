@@ -4,6 +4,10 @@ use super::{Winding, quasi_static};
 use crate::measure::BulgeLimit;
 use crate::signals::EventKind;
 
+/// Share by which wire may be laid tighter than the tension that its height at rest is for, before that is told. The height falls
+/// with the root of the tension, so it is off by a twentieth then.
+const TIGHTER: f64 = 0.1;
+
 /// Largest tension of a yardstick that a saved state may ask for, N: that of the input.
 const MOST_TENSION: f64 = 1e4;
 
@@ -19,8 +23,24 @@ impl Winding {
         }
         let surface = self.sys.model.core.clone().ok_or("there is no core")?;
         let profile = quasi_static::profile(&self.scene, &surface, tension);
-        self.coil.set_profile(profile);
+        self.coil.set_profile(tension, profile);
         Ok(())
+    }
+
+    /// Tells once where wire is laid so much tighter than bulges are judged by that they seem smaller than they are.
+    pub(super) fn watch_yardstick(&mut self) {
+        let (meant, set) = (self.run.yardstick_tension, self.sys.state.set_tension);
+        let judged = matches!(self.bulge_limit(), BulgeLimit::OverRest { .. });
+        if self.run.told_tighter || !judged || set <= (1.0 + TIGHTER) * meant {
+            return;
+        }
+        self.run.told_tighter = true;
+        self.report(
+            EventKind::Judgement,
+            format!(
+                "the wire is laid under {set:.1} N, and bulges are judged by its height at rest under {meant:.1} N, which is larger; set tensioner.tension to the largest tension of the run, or defects.bulge_absolute"
+            ),
+        );
     }
 
     /// What bulges are judged by.

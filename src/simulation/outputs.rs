@@ -20,7 +20,7 @@ impl Winding {
 
     /// Starts the extremes and flags of a communication step with what holds now.
     pub(super) fn reset_extremes(&mut self) {
-        let t = if self.run.broken {
+        let t = if self.run.over {
             0.0
         } else {
             self.wire_tension()
@@ -31,18 +31,28 @@ impl Winding {
         self.run.outputs = outputs;
     }
 
-    /// Leaves up only those flags whose defect holds now.
+    /// Leaves up only those flags whose defect holds now, and their code.
     pub(super) fn lower_flags(&self, o: &mut Outputs) {
-        let flags = self.coil.flags();
+        let (flags, code) = (self.coil.flags(), self.present_code());
         (o.defect_bulge, o.defect_gap, o.defect_overlap) = (flags.bulge, flags.gap, flags.overlap);
         o.defect_slack = self.run.was_slack;
+        o.defect_code = code;
     }
 
     /// Raises the flags of what is wrong now: one that falls again within the communication step is up at its end.
     pub(super) fn raise_flags(&mut self) {
         let mut now = self.run.outputs;
         self.lower_flags(&mut now);
-        raise_as(&mut self.run.outputs, &now, self.run.broken);
+        raise_as(&mut self.run.outputs, &now);
+    }
+
+    /// What is wrong now, as a sum of [`DefectKind::code`].
+    fn present_code(&self) -> i32 {
+        let laid = self.coil.flags().kinds();
+        let slack = self.run.was_slack.then_some(DefectKind::Slack);
+        let faults = self.run.faults.iter().map(|fault| fault.kind);
+        let over = faults.filter(|kind| kind.ends_winding());
+        laid.chain(slack).chain(over).map(DefectKind::code).sum()
     }
 
     /// The settled wire and, taken as if it were settled, the live wire up to lift-off.
@@ -57,13 +67,20 @@ impl Winding {
                 p,
                 arc,
                 self.sys.state.rod.stretch[i.min(self.sys.state.rod.edges() - 1)].strain,
+                self.sys.state.load.tension[i.min(self.sys.state.rod.edges() - 1)],
             ));
             arc += self.sys.state.rod.rest.get(i).copied().unwrap_or(0.0);
         }
         self.coil.what_if(&extra)
     }
 
-    pub(super) fn settled(&self, position: V3, arc: f64, plastic_strain: f64) -> SettledNode {
+    pub(super) fn settled(
+        &self,
+        position: V3,
+        arc: f64,
+        plastic_strain: f64,
+        tension: f64,
+    ) -> SettledNode {
         let height = match (&self.scene.core, &self.sys.model.core) {
             (core, Some(surface)) if core.may_have_flanges() => self
                 .sys
@@ -91,6 +108,7 @@ impl Winding {
             arc,
             height,
             plastic_strain,
+            tension,
             time: self.run.time,
         }
     }
@@ -111,7 +129,7 @@ impl Winding {
     }
 
     pub(super) fn update_outputs(&mut self) {
-        if self.run.broken && self.run.outputs.defect_break {
+        if self.run.over && std::mem::replace(&mut self.run.told_over, true) {
             return self.update_broken();
         }
         self.raise_flags();
@@ -132,13 +150,12 @@ impl Winding {
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
         o.wire_tension = tension;
-        o.defect_break = self.run.broken;
+        o.defect_break = breaks > 0;
         o.defect_count = count as i32;
-        [
-            o.defect_count_bulge,
-            o.defect_count_gap,
-            o.defect_count_overlap,
-        ] = raised.map(|count| count as i32);
+        let raised = |kind: DefectKind| raised[kind as usize] as i32;
+        o.defect_count_bulge = raised(DefectKind::Bulge);
+        o.defect_count_gap = raised(DefectKind::Gap);
+        o.defect_count_overlap = raised(DefectKind::Overlap);
         o.defect_count_break = breaks as i32;
         o.defect_count_slack = slacks as i32;
         if let Some(last) = last_defect {
@@ -207,21 +224,13 @@ impl Winding {
     }
 }
 
-/// Raises the flags that are up in `other`, and the code with them; `broken` wire has no flag before its measures are read.
-pub(super) fn raise_as(o: &mut Outputs, other: &Outputs, broken: bool) {
+/// Raises the flags that are up in `other`, and the code with them.
+pub(super) fn raise_as(o: &mut Outputs, other: &Outputs) {
     o.defect_bulge |= other.defect_bulge;
     o.defect_gap |= other.defect_gap;
     o.defect_overlap |= other.defect_overlap;
     o.defect_slack |= other.defect_slack;
-    let up = [
-        (DefectKind::Bulge, o.defect_bulge),
-        (DefectKind::Gap, o.defect_gap),
-        (DefectKind::Overlap, o.defect_overlap),
-        (DefectKind::Break, broken),
-        (DefectKind::Slack, o.defect_slack),
-    ];
-    let codes = up.iter().filter(|(_, up)| *up).map(|(kind, _)| kind.code());
-    o.defect_code = codes.sum();
+    o.defect_code |= other.defect_code;
 }
 
 /// Gives `o` the extremes and flags that a master was told of.
@@ -229,5 +238,5 @@ pub(super) fn keep_told(o: &mut Outputs, told: &Outputs) {
     (o.wire_tension_min, o.wire_tension_max) = (told.wire_tension_min, told.wire_tension_max);
     (o.defect_bulge, o.defect_gap) = (told.defect_bulge, told.defect_gap);
     (o.defect_overlap, o.defect_slack) = (told.defect_overlap, told.defect_slack);
-    raise_as(o, told, o.defect_break);
+    o.defect_code = told.defect_code;
 }

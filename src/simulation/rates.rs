@@ -19,7 +19,7 @@ pub(super) fn rates_of(
         spindle_angle: speed,
         ..Outputs::default()
     };
-    if winding.run.broken || winding.is_quiescent() {
+    if winding.run.over || winding.is_quiescent() {
         return rates;
     }
     rates.fed_length = after.feed_speed;

@@ -5,6 +5,7 @@ use crate::geometry::FrozenNode;
 use crate::math::Spin;
 use crate::math::turn_about_y;
 use crate::math::{polar_angle, wrap_to_pi};
+use crate::measure::DefectKind;
 use crate::scene::LiveContact;
 use crate::signals::EventKind;
 use std::f64::consts::{PI, TAU};
@@ -209,7 +210,7 @@ impl Winding {
                 plastic_strain: self.sys.state.rod.stretch[i].strain,
             };
             let centre = spin.to_core(self.sys.centre(i));
-            let settled = self.settled(centre, arc, node.plastic_strain);
+            let settled = self.settled(centre, arc, node.plastic_strain, node.tension);
             if i > 0 {
                 self.run.rest_depth = self.run.rest_depth.max(self.sys.depth(i));
             }
@@ -345,12 +346,8 @@ impl Winding {
         if self.coil.defect_count() > defects
             && let Some(d) = self.coil.last_defect()
         {
-            let f = self.coil.flags();
-            let names: Vec<&str> = [(f.bulge, "bulge"), (f.gap, "gap"), (f.overlap, "overlap")]
-                .iter()
-                .filter(|(on, _)| *on)
-                .map(|(_, name)| *name)
-                .collect();
+            let flags = self.coil.flags();
+            let names: Vec<&str> = flags.kinds().map(DefectKind::words).collect();
             self.report(
                 EventKind::Defect,
                 format!(
@@ -375,25 +372,22 @@ impl Winding {
     }
 
     /// The coil must not reach the nozzle: no wire could leave it freely there.
-    fn check_clearance(&self) -> Result<(), SimError> {
+    fn check_clearance(&mut self) {
         let node = self.lift_off();
         let x = self.sys.state.rod.x[node];
         let reach = libm::hypot(x.x, x.z) + self.scene.wire.radius();
         let distance = self.nozzle_distance();
         if node == 0 || node + 1 == self.sys.state.rod.nodes() || reach < distance {
-            return Ok(());
+            return;
         }
         let (angle, _) = self.wound_to(node);
-        Err(SimError {
-            time: self.sys.state.time,
-            node: Some(node),
-            reason: format!(
-                "the coil has grown into the nozzle: wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm; set nozzle.distance to more, or let the nozzle travel so that fewer turns lie on each other",
-                (angle.max(0.0) / std::f64::consts::TAU) as u32 + 1,
-                1e3 * reach,
-                1e3 * distance
-            ),
-        })
+        let text = format!(
+            "the coil has grown into the nozzle: wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm; set nozzle.distance to more, or let the nozzle travel so that fewer turns lie on each other",
+            (angle.max(0.0) / std::f64::consts::TAU) as u32 + 1,
+            1e3 * reach,
+            1e3 * distance
+        );
+        self.note_end(DefectKind::Collision, node, text);
     }
 
     /// Values must be finite, the wire below its strength and where it was sent.
@@ -418,8 +412,11 @@ impl Winding {
                 });
             }
         }
-        self.check_feed()?;
-        self.check_clearance()?;
+        self.check_feed();
+        self.check_clearance();
+        if self.run.over {
+            return Ok(());
+        }
         let strength = self.scene.wire.strength;
         if let Some((j, t)) = self
             .sys
@@ -433,14 +430,14 @@ impl Winding {
             let text = format!(
                 "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N; lower tension_setpoint or the spindle's acceleration"
             );
-            self.note_break(j, text);
+            self.note_end(DefectKind::Break, j, text);
         } else if let Some((i, radius)) = self.kink() {
             let text = format!(
                 "the wire broke: it is kinked at live node {i}, bent to a radius of {:.3} mm and itself {:.3} mm thick; keep it under tension there",
                 1e3 * radius,
                 1e3 * self.scene.wire.diameter
             );
-            self.note_break(i, text);
+            self.note_end(DefectKind::Break, i, text);
         }
         Ok(())
     }
@@ -451,12 +448,10 @@ impl Winding {
     /// tension therefore draws more wire after it, and each metre makes a step more expensive.
     /// A coil of springy wire that opens can start this, or a loop that whirls without tension.
     ///
-    /// # Errors
-    ///
-    /// If more than [`RUNAWAY`] times the wire has come in that the largest possible core takes up.
-    fn check_feed(&mut self) -> Result<(), SimError> {
+    /// It does where more than [`RUNAWAY`] times the wire has come in that the largest possible core takes up.
+    fn check_feed(&mut self) {
         let Some(feed) = &self.sys.state.feed else {
-            return Ok(());
+            return;
         };
         let angle = (self.sys.state.spindle.angle - self.run.angle0).abs();
         self.run.farthest = self.run.farthest.max(angle);
@@ -465,16 +460,13 @@ impl Winding {
         // a core cannot be larger than the nozzle's circle
         let most = way + (self.run.farthest + TAU) * self.nozzle_distance();
         if feed.fed <= RUNAWAY * most {
-            return Ok(());
+            return;
         }
-        Err(SimError {
-            time: self.sys.state.time,
-            node: Some(rod.nodes() - 1),
-            reason: format!(
-                "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up; raise tension_setpoint or turn the spindle more slowly",
-                feed.rate, self.sys.state.set_tension, feed.fed
-            ),
-        })
+        let text = format!(
+            "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up; raise tension_setpoint or turn the spindle more slowly",
+            feed.rate, self.sys.state.set_tension, feed.fed
+        );
+        self.note_end(DefectKind::Runaway, self.sys.state.rod.nodes() - 1, text);
     }
 
     /// The first live node at which the wire is kinked, and the radius of its centreline there, m.

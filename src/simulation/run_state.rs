@@ -34,7 +34,12 @@ pub(super) struct RunState {
     pub(super) events: Vec<Event>,
     /// deepest penetration of wire when it came to rest, m
     pub(super) rest_depth: f64,
-    pub(super) broken: bool,
+    /// no wire moves any more: it broke, ran away, or the coil met the nozzle
+    pub(super) over: bool,
+    /// wire was laid tighter than bulges are judged by, which has been told
+    pub(super) told_tighter: bool,
+    /// outputs have told so
+    pub(super) told_over: bool,
     pub(super) was_slack: bool,
     /// slack and breaks, in the order of their times
     pub(super) faults: Vec<Defect>,

@@ -10,7 +10,7 @@ impl Winding {
     /// Goes through the interval of `drive` in steps that the method finds fit.
     pub(super) fn through(&mut self, drive: &Drive) -> Result<(), SimError> {
         let dt = drive.duration;
-        if self.run.broken {
+        if self.run.over {
             self.turn_on(dt, drive);
             return Ok(());
         }
@@ -29,7 +29,7 @@ impl Winding {
         let count = (drive.duration / longest).ceil().max(1.0);
         let step = drive.duration / count;
         for _ in 0..count as u64 {
-            if self.run.broken {
+            if self.run.over {
                 self.turn_on(step, drive);
                 continue;
             }
@@ -52,7 +52,7 @@ impl Winding {
             }
             let taken = self.step(left.min(self.longest_return()))?;
             left = if taken >= left { 0.0 } else { left - taken };
-            if self.run.broken {
+            if self.run.over {
                 self.turn_on(left, drive);
                 break;
             }

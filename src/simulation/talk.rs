@@ -87,7 +87,7 @@ impl Served {
     /// Takes note of the end of a step within the communication step.
     pub(super) fn pass(&mut self, winding: &Winding) {
         self.meet(winding.run.outputs.wire_tension);
-        raise_as(&mut self.outputs, &winding.run.outputs, winding.run.broken);
+        raise_as(&mut self.outputs, &winding.run.outputs);
     }
 
     fn meet(&mut self, tension: f64) {

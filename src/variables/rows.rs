@@ -246,7 +246,7 @@ table! {
     flag(105, defect_overlap, "a turn has climbed on its neighbour or changed places with it");
     flag(106, defect_break, "tension above the strength of the wire");
     flag(107, defect_slack, "tension fell to zero");
-    count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16");
+    count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16, double turn 32, skipped groove 64, early layer jump 128, late layer jump 256, loose turn 512, overstretch 1024, collision 2048, runaway 4096");
     count(Output, 109, defect_count, "defects found so far, of every kind");
     output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect");
     output(111, defect_angle, "rad", "deg", -1e7, 1e7, 1.0, "polar angle of the last defect within its turn");
@@ -275,7 +275,7 @@ table! {
     count(Output, 133, defect_count_slack, "how often the wire went slack so far");
     count(Output, 134, defect_kind, "kind of the last defect, as in defect_code; 0: none so far");
     output(135, defect_time, "s", "", -1e9, 1e9, 1.0, "time of the last defect since the start of the run");
-    output(136, defect_size, "m", "mm", -10.0, 10.0, 1e-4, "size of the last bulge, gap or overlap where it was found; 0 for a break and for slack");
+    output(136, defect_size, "m", "mm", -10.0, 10.0, 1e-4, "size of the last defect where it was found; 0 for what befalls the wire: slack, break, collision, runaway");
     output(137, tensioner_position, "m", "mm", -1e6, 1e6, 0.1, "wire let go by the tensioner since the start");
     output(138, tensioner_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire at the tensioner");
     output(139, nozzle_angle, "rad", "deg", -1.6, 1.6, 0.1, "angle at the nozzle between the free span and the plane across the axis; positive towards larger y");
@@ -403,6 +403,13 @@ table! {
     tunable(2104, "defects.overlap_axial", defects.overlap_axial, "1", "", 0.0, 1.0, 1.0, "axial distance to the neighbour below this many diameters ...");
     tunable(2105, "defects.overlap_height", defects.overlap_height, "1", "", 0.0, 100.0, 1.0, "... while standing above its layer by this many diameters");
     tunable(2106, "defects.skip_angle", defects.skip_angle, "rad", "deg", 0.0, 1e3, 1.0, "polar angle after the clamp that is left out");
+    tunable(2120, "defects.double_turn", defects.double_turn, "1", "", 0.0, 10.0, 1.0, "fraction of a turn over which wire stands on its own row to be a double turn");
+    tunable(2121, "defects.skipped_groove", defects.skipped_groove, "1", "", 0.0, 10.0, 1.0, "fraction of a turn over which a groove of the layer below lies empty beside the wire");
+    tunable(2122, "defects.jump", defects.jump, "1", "", 0.0, 1e3, 1.0, "turns by which a layer jump may come before or after the planned one; judged where the scene has winding.turns_per_layer or a layered traverse mode");
+    tunable(2123, "defects.loose_height", defects.loose_height, "1", "", 0.0, 100.0, 0.1, "height over the quasi-static height above which wire touches nothing, diameters ...");
+    tunable(2124, "defects.loose_fraction", defects.loose_fraction, "1", "", 0.0, 1.0, 1.0, "... and the share of a turn that may do so");
+    tunable(2125, "defects.loose_tension", defects.loose_tension, "1", "", 0.0, 1.0, 1.0, "least mean tension of a settled turn, as a share of tensioner.tension");
+    tunable(2126, "defects.stretch", defects.stretch, "1", "", 0.0, 10.0, 1e-2, "plastic stretch allowed");
 
     native(2200, "output.history_interval", output.history_interval, "rad", "deg", 1e-5, 1e3, 1e-2, "core angle between rows of history.csv");
     text(2201, "output.directory", (output.directory), [], "where result files go; empty: the FMU writes none");

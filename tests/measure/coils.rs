@@ -6,6 +6,8 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 
 pub(crate) const D: f64 = 0.7e-3;
 pub(crate) const RADIUS: f64 = 10e-3;
+/// Tension of the wire, N.
+pub(crate) const PULL: f64 = 15.0;
 
 pub(crate) fn limits() -> DefectLimits {
     DefectLimits {
@@ -16,6 +18,13 @@ pub(crate) fn limits() -> DefectLimits {
         overlap_axial: 0.9,
         overlap_height: 0.3,
         skip_angle: 1.2,
+        double_turn: 0.5,
+        skipped_groove: 0.25,
+        jump: 0.5,
+        loose_height: 0.1,
+        loose_fraction: 0.5,
+        loose_tension: 0.5,
+        stretch: 0.02,
     }
 }
 
@@ -24,6 +33,8 @@ pub(crate) fn spec() -> CoilSpec {
         diameter: D,
         limits: limits(),
         profile: Profile::new(vec![0.0]),
+        tension: PULL,
+        jumps: [].into(),
         start_angle: 0.0,
         direction: 1.0,
         traverse: 1.0,
@@ -50,7 +61,8 @@ pub(crate) fn on_cylinder(
                 position: V3::new(r * libm::cos(polar), y, r * libm::sin(polar)),
                 arc: angle * r,
                 height,
-                plastic_strain: 1e-3 * angle,
+                plastic_strain: 1e-5 * angle,
+                tension: PULL,
                 time: angle / 30.0,
             }
         })

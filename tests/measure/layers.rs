@@ -79,18 +79,18 @@ fn layers_in_grooves_have_neither_gaps_nor_flicker() {
     }
 }
 
-/// A nozzle that goes back by one pitch once makes no gap where the pass begins anew.
+/// A nozzle that goes back by two pitches once makes no gap where the pass begins anew.
 #[test]
-fn going_back_by_a_pitch_once_is_no_gap() {
+fn going_back_by_two_pitches_once_is_no_gap() {
     let place = |angle: f64| match angle / TAU {
         t if t < 3.0 => (D * t, 0.0),
-        t if t < 4.0 => (D * (6.0 - t), step()),
-        t => (D * (t - 2.0) + 2.0 * D, 0.0),
+        t if t < 5.0 => (D * (6.0 - t), step()),
+        t => (D * (t - 1.0), 0.0),
     };
-    let mut coil = wound(spec(), &on_cylinder(7.0, 1.0, place));
+    let mut coil = wound(spec(), &on_cylinder(8.0, 1.0, place));
     assert!(coil.flags().gap, "one pass would have gaps");
     coil.begin_pass(3.0 * TAU, -1.0);
-    coil.begin_pass(4.0 * TAU, 1.0);
+    coil.begin_pass(5.0 * TAU, 1.0);
     assert!(!coil.flags().gap, "{:?}", coil.defects());
     let without = |s: &&coilwind::measure::Station| s.neighbour.is_none();
     // The first turn of each of three rows, which begin up to half a wire's way after the nozzle has turned.

@@ -6,3 +6,4 @@ mod defects;
 mod layers;
 mod pitch;
 mod product;
+mod shop_floor;

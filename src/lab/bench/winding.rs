@@ -112,10 +112,10 @@ fn wind(scene: &Scene, args: &BenchOptions) -> Result<Run, BenchError> {
     outcome.spent = watch.spent();
     outcome.failure = ended.err().map(|e| e.to_string());
     let outputs = simulation.outputs();
-    if outputs.defect_break {
-        // a broken wire costs nothing from then on, so its time means nothing
-        let text = "the wire broke on the way".to_owned();
-        outcome.failure.get_or_insert(text);
+    let defects = simulation.defects();
+    if let Some(end) = defects.iter().find(|defect| defect.kind.ends_winding()) {
+        // a wire that moves no more costs nothing, so its time means nothing
+        outcome.failure.get_or_insert(end.in_words());
     }
     outcome.steps = outputs.solver_steps as u64;
     outcome.iterations = iterations(method, simulation.statistics(), outcome.steps);

@@ -22,6 +22,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         diameter: ctx.section.diameter,
         limits: SceneSettings::default().defects,
         profile: None,
+        tension: 0.0,
+        jumps: [].into(),
         start_angle: 0.0,
         direction: 1.0,
         traverse: pitch,
@@ -44,6 +46,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             arc: spacing * i as f64,
             height: 0.0,
             plastic_strain: 0.0,
+            tension: 0.0,
             time: angle,
         });
     }

@@ -16,7 +16,7 @@ mod wire_in_wire;
 mod work;
 
 use super::{Case, Invariant, Measures, Outcome, Verdict};
-use crate::signals::EventKind;
+use crate::signals::{Event, EventKind};
 use crate::simulation::{SimError, Simulation};
 use broken::Broken;
 use std::f64::consts::TAU;
@@ -77,12 +77,23 @@ fn wind(case: &Case, measures: &mut Measures) -> Outcome {
         }
         // parted wire stays as it is while core and nozzle go on, and nothing balances from there: the run is judged up to
         // the look before
-        let mut events = sim.drain_events().into_iter();
-        if let Some(event) = events.find(|e| e.kind == EventKind::Break) {
-            return Outcome::Broke {
+        let ends = |event: &Event| {
+            use EventKind::{Break, Collision, Runaway};
+            matches!(event.kind, Break | Collision | Runaway)
+        };
+        if let Some(event) = sim.drain_events().into_iter().find(ends) {
+            if event.kind == EventKind::Break {
+                return Outcome::Broke {
+                    time: event.time,
+                    text: event.text,
+                };
+            }
+            let error = SimError {
                 time: event.time,
-                text: event.text,
+                node: Some(sim.system().state.rod.nodes() - 1),
+                reason: event.text,
             };
+            return gave_up(&error, Some(&sim));
         }
         if let Err(broken) = watch.look(&sim, measures) {
             return broken.at(end);

@@ -8,6 +8,14 @@ const DEFECTS = [
   { name: "overlap", bit: 4, colour: "#a02bb0" },
   { name: "break", bit: 8, colour: "#111111" },
   { name: "slack", bit: 16, colour: "#2b76d5" },
+  { name: "loose_turn", bit: 512, colour: "#5aa9a0" },
+  { name: "late_jump", bit: 256, colour: "#8a7a2b" },
+  { name: "early_jump", bit: 128, colour: "#b5651d" },
+  { name: "skipped_groove", bit: 64, colour: "#c2417c" },
+  { name: "double_turn", bit: 32, colour: "#6a1fb0" },
+  { name: "overstretch", bit: 1024, colour: "#7a1f1f" },
+  { name: "collision", bit: 2048, colour: "#333333" },
+  { name: "runaway", bit: 4096, colour: "#555555" },
 ];
 const PLAIN = "#c08457";
 const UNKNOWN = "#9aa0a6";

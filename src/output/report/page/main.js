@@ -1,7 +1,7 @@
 // The page: reads the data, and lays out one run, or two side by side.
 
 const GOOD = ["aligned", "single"];
-const BAD = ["bulge", "gap", "overlap", "slack", "break"];
+const BAD = DEFECTS.map((kind) => kind.name);
 
 /** What the parts of the page need of a run. */
 class Run {

@@ -1,0 +1,110 @@
+//! Which limit a station is judged by, and the runs of stations beyond it.
+
+use super::coil::{Coil, Record};
+use super::defect::{DefectKind, FALLBACK_BULGE, MEASURED};
+use super::runs::{Run, SHORT_RUN, stations_for};
+use super::station::{Neighbour, Station};
+
+/// Rise over wire of its own row from which on wire stands on it, diameters: half of a wire on a wire. In the groove of
+/// touching wires it is 0.866, beside them 0.
+const STANDS: f64 = 0.5;
+
+impl Coil {
+    /// Whether the station at `index` is part of a double turn.
+    pub(crate) fn is_double(&self, index: usize) -> bool {
+        let kind = DefectKind::DoubleTurn;
+        let runs = (index..self.records.len()).map(|k| self.records[k].runs[kind as usize]);
+        let least = stations_for(self.spec.limits.double_turn);
+        runs.take_while(|run| *run != Run::default())
+            .any(|run| run.counts(least))
+    }
+
+    /// Diameter minus axial distance where the wire overlaps its neighbour, else 0, m; a diameter where it has changed
+    /// places with it.
+    pub(crate) fn overlap_depth(&self, station: &Station) -> f64 {
+        let (d, limits) = (self.spec.diameter, &self.spec.limits);
+        let Some(Neighbour { axial, .. }) = station.neighbour else {
+            return 0.0;
+        };
+        let stands_on =
+            axial < limits.overlap_axial * d && station.bulge > limits.overlap_height * d;
+        if stands_on || axial < 0.0 {
+            (d - axial).min(d)
+        } else {
+            0.0
+        }
+    }
+
+    /// The record of a station, with the runs and sums carried on from the one before.
+    pub(crate) fn judge(&self, mut record: Record) -> Record {
+        let mut runs_before = [Run::default(); MEASURED];
+        if let Some(last) = self.records.last() {
+            runs_before = last.runs;
+            record.raised = last.raised;
+            record.last_defect = last.last_defect;
+            record.axial_sum = last.axial_sum;
+            record.axial_count = last.axial_count;
+        }
+        for kind in DefectKind::MEASURED {
+            let (value, limit, least) = self.criterion(kind, &record);
+            let k = kind as usize;
+            record.runs[k] = runs_before[k].next(value, limit);
+            if record.runs[k].counts(least) && !runs_before[k].counts(least) {
+                record.raised[k] += 1;
+                record.last_defect = Some(self.records.len());
+            }
+        }
+        if let (true, Some(neighbour)) = (record.station.measured, record.station.neighbour) {
+            record.axial_sum += neighbour.axial;
+            record.axial_count += 1;
+        }
+        record
+    }
+
+    /// Value of a defect at a station (`None`: nothing to judge), its limit, and the least length of a run, in stations.
+    /// Value and limit are in m, but in turns for jumps, a share for loose turns, and strain for stretch.
+    pub(crate) fn criterion(&self, kind: DefectKind, record: &Record) -> (Option<f64>, f64, u32) {
+        let (d, limits) = (self.spec.diameter, &self.spec.limits);
+        let (station, signs) = (&record.station, &record.signs);
+        let measured = |value: Option<f64>| value.filter(|_| station.measured);
+        let (value, limit, least) = match kind {
+            DefectKind::Bulge if limits.bulge_absolute > 0.0 => (
+                measured(Some(station.bulge)),
+                limits.bulge_absolute,
+                SHORT_RUN,
+            ),
+            DefectKind::Bulge if self.spec.profile.is_none() => {
+                (measured(Some(station.bulge)), FALLBACK_BULGE * d, SHORT_RUN)
+            }
+            DefectKind::Bulge => (
+                measured(station.bulge_excess),
+                limits.bulge_excess * d,
+                SHORT_RUN,
+            ),
+            DefectKind::Gap => (
+                measured(station.neighbour.map(|n| n.gap)),
+                limits.gap * d,
+                limits.gap_fraction,
+            ),
+            DefectKind::Overlap => (
+                measured(Some(station.overlap_depth)),
+                (1.0 - limits.overlap_axial) * d,
+                SHORT_RUN,
+            ),
+            DefectKind::DoubleTurn => (measured(signs.rise), STANDS * d, limits.double_turn),
+            DefectKind::SkippedGroove => (measured(signs.empty_groove), 0.0, limits.skipped_groove),
+            DefectKind::EarlyJump => (signs.early, limits.jump, SHORT_RUN),
+            DefectKind::LateJump => (signs.late, limits.jump, SHORT_RUN),
+            DefectKind::LooseTurn => (signs.loose, 1.0, SHORT_RUN),
+            DefectKind::Overstretch => (
+                Some(signs.strain).filter(|_| self.is_free_of_clamp(station.angle)),
+                limits.stretch,
+                SHORT_RUN,
+            ),
+            DefectKind::Slack | DefectKind::Collision | DefectKind::Runaway | DefectKind::Break => {
+                (None, f64::INFINITY, 0.0)
+            }
+        };
+        (value, limit, stations_for(least))
+    }
+}

@@ -1,0 +1,272 @@
+//! Double turns, skipped grooves, jumps out of turn, loose and stretched wire, made on paper; and what is none of them.
+
+use crate::coils::{D, PULL, on_cylinder, spec, wound};
+use coilwind::measure::{Coil, CoilSpec, Defect, DefectFlags, DefectKind, SettledNode, Verdict};
+use std::f64::consts::TAU;
+
+/// Turns of a layer of the coils here.
+const TURNS: f64 = 5.0;
+
+/// Rise from layer to layer in grooves, m.
+fn step() -> f64 {
+    0.75f64.sqrt() * D
+}
+
+/// Defects of one kind.
+fn of(kind: DefectKind, coil: &Coil) -> Vec<Defect> {
+    let all = coil.defects().into_iter();
+    all.filter(|defect| defect.kind == kind).collect()
+}
+
+/// The only defect of a kind.
+#[track_caller]
+fn only(kind: DefectKind, coil: &Coil) -> Defect {
+    match &of(kind, coil)[..] {
+        [one] => one.clone(),
+        _ => panic!("one {kind}: {:?}", coil.defects()),
+    }
+}
+
+/// Straight over most of a turn, then a step to the next place; a place is y over d and the layer from 0.
+fn in_places(places: &'static [(f64, f64)]) -> impl Fn(f64) -> (f64, f64) {
+    move |angle| {
+        let turn = (angle / TAU).floor();
+        let at = |turn: f64| places[(turn as usize).min(places.len() - 1)];
+        let aside = ((angle / TAU - turn - 0.9) / 0.1).max(0.0);
+        let ((y, layer), (next_y, next)) = (at(turn), at(turn + 1.0));
+        let between = |from: f64, to: f64| from + aside * (to - from);
+        (D * between(y, next_y), step() * between(layer, next))
+    }
+}
+
+/// Four turns, a fifth in the groove of the last two, two more beside the fourth.
+const DOUBLE: [(f64, f64); 7] = [
+    (0.0, 0.0),
+    (1.0, 0.0),
+    (2.0, 0.0),
+    (3.0, 0.0),
+    (2.5, 1.0),
+    (4.0, 0.0),
+    (5.0, 0.0),
+];
+
+#[test]
+fn a_turn_on_its_own_row_is_a_double_turn() {
+    let nodes = on_cylinder(6.8, 1.0, in_places(&DOUBLE));
+    let coil = wound(spec(), &nodes);
+    let double = only(DefectKind::DoubleTurn, &coil);
+    assert_eq!(double.turn, 5);
+    assert!((double.size_d.unwrap() - 0.866).abs() < 0.02, "{double:?}");
+    assert_eq!(coil.turns()[4].verdict, Verdict::DoubleTurn);
+    assert!(coil.flags().double_turn);
+    // the turn after it lies where it should, beside the fourth, and has no gap to the fifth
+    assert!(
+        of(DefectKind::Gap, &coil).iter().all(|gap| gap.turn < 6),
+        "{:?}",
+        coil.defects()
+    );
+    assert_eq!(coil.turns()[6].verdict, Verdict::Aligned);
+}
+
+/// A nozzle that hung back began a row of its own, so that a turn on other turns was a layer and no defect.
+#[test]
+fn a_nozzle_that_hangs_back_for_a_turn_begins_no_layer() {
+    let nodes = on_cylinder(6.8, 1.0, in_places(&DOUBLE));
+    let told = |angles: [f64; 2]| {
+        let mut coil = wound(spec(), &nodes);
+        coil.begin_pass(angles[0], -1.0);
+        assert!(of(DefectKind::DoubleTurn, &coil).is_empty(), "not yet");
+        let before = coil.clone();
+        coil.begin_pass(angles[1], 1.0);
+        let after = coil.clone();
+        coil.take_back_pass();
+        assert_eq!(coil, before, "taken back as if never told");
+        after
+    };
+    let coil = told([4.0 * TAU, 5.0 * TAU]);
+    assert_eq!(only(DefectKind::DoubleTurn, &coil).turn, 5);
+    assert_eq!(coil.stations().last().unwrap().pass, 1);
+    // a nozzle that stays away for longer winds a layer
+    let coil = told([3.6 * TAU, 5.0 * TAU]);
+    assert!(of(DefectKind::DoubleTurn, &coil).is_empty());
+    assert_eq!(coil.stations().last().unwrap().pass, 3);
+}
+
+#[test]
+fn riding_up_for_less_than_half_a_turn_is_an_overlap_and_no_double_turn() {
+    let place = |angle: f64| match angle / TAU {
+        turn if (4.0..4.4).contains(&turn) => (2.5 * D, step()),
+        turn => (D * turn.floor(), 0.0),
+    };
+    let coil = wound(spec(), &on_cylinder(6.8, 1.0, place));
+    assert!(
+        coil.flags().overlap && !coil.flags().double_turn,
+        "{:?}",
+        coil.defects()
+    );
+}
+
+/// A layer of five, and a second layer back over it in these grooves.
+fn two_layers(grooves: &'static [f64]) -> Coil {
+    let place = move |angle: f64| {
+        let turn = (angle / TAU).floor();
+        let at = |turn: f64| match turn < TURNS {
+            true => (turn, 0.0),
+            false => (
+                grooves[((turn - TURNS) as usize).min(grooves.len() - 1)],
+                1.0,
+            ),
+        };
+        let aside = ((angle / TAU - turn - 0.9) / 0.1).max(0.0);
+        let ((y, layer), (next_y, next)) = (at(turn), at(turn + 1.0));
+        (
+            D * (y + aside * (next_y - y)),
+            step() * (layer + aside * (next - layer)),
+        )
+    };
+    let turns = TURNS + grooves.len() as f64 - 0.15;
+    let mut coil = wound(spec(), &on_cylinder(turns, 1.0, place));
+    coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    coil
+}
+
+#[test]
+fn a_groove_left_out_is_found_where_it_is() {
+    let coil = two_layers(&[4.5, 3.5, 1.5, 0.5]);
+    let skipped = only(DefectKind::SkippedGroove, &coil);
+    assert_eq!((skipped.turn, skipped.layer), (8, 2));
+    assert!(
+        (skipped.size_d.unwrap() - 1.0).abs() < 0.02,
+        "a whole wire has room: {skipped:?}"
+    );
+    assert_eq!(coil.turns()[7].verdict, Verdict::SkippedGroove);
+    let whole = two_layers(&[4.5, 3.5, 2.5, 1.5, 0.5]);
+    assert_eq!(
+        whole.flags(),
+        DefectFlags::default(),
+        "{:?}",
+        whole.defects()
+    );
+}
+
+/// Wire of a layer that is planned to be so many turns.
+fn planned(turns: f64) -> CoilSpec {
+    CoilSpec {
+        jumps: [[(turns - 0.1) * TAU, turns * TAU]].into(),
+        ..spec()
+    }
+}
+
+/// Five turns, then back over them.
+fn jumping(spec: CoilSpec) -> Coil {
+    let place = |angle: f64| {
+        let turn = (angle / TAU).floor();
+        match turn < TURNS {
+            true => (D * turn, 0.0),
+            false => (D * (2.0 * TURNS - 0.5 - turn), step()),
+        }
+    };
+    let mut coil = wound(spec, &on_cylinder(9.0, 1.0, place));
+    coil.begin_pass(TURNS * TAU, -1.0);
+    coil
+}
+
+#[test]
+fn a_jump_is_early_or_late_by_the_plan_only() {
+    for turns in [4.6, 5.0, 5.4] {
+        let coil = jumping(planned(turns));
+        assert_eq!(
+            coil.flags(),
+            DefectFlags::default(),
+            "{turns}: {:?}",
+            coil.defects()
+        );
+    }
+    assert_eq!(
+        jumping(spec()).flags(),
+        DefectFlags::default(),
+        "nothing is planned"
+    );
+    let early = jumping(planned(6.0));
+    let jump = only(DefectKind::EarlyJump, &early);
+    assert_eq!((jump.turn, jump.layer), (6, 2), "{jump:?}");
+    assert!(
+        (jump.size_d.unwrap() - 0.9).abs() < 0.05,
+        "a turn, less the step: {jump:?}"
+    );
+    assert!(!early.flags().late_jump);
+    let late = jumping(planned(4.0));
+    let jump = only(DefectKind::LateJump, &late);
+    assert_eq!((jump.turn, jump.layer), (5, 1), "{jump:?}");
+    assert!((jump.size_d.unwrap() - 1.0).abs() < 0.05, "{jump:?}");
+    assert_eq!(late.turns()[4].verdict, Verdict::LateJump);
+}
+
+/// Turns side by side, altered where `is_there` says.
+fn altered(is_there: impl Fn(f64) -> bool, alter: impl Fn(&mut SettledNode)) -> Coil {
+    let mut nodes = on_cylinder(6.0, 1.0, |angle| (D * angle / TAU, 0.0));
+    // a node comes to rest a second after its angle has reached 30 rad
+    let there = |node: &&mut SettledNode| is_there(node.time * 30.0 / TAU);
+    nodes.iter_mut().filter(there).for_each(alter);
+    wound(spec(), &nodes)
+}
+
+#[test]
+fn wire_that_hangs_loose_over_half_a_turn_is_a_loose_turn() {
+    let loose = altered(
+        |turn| (3.0..3.6).contains(&turn),
+        |node| node.height += 0.2 * D,
+    );
+    let turn = only(DefectKind::LooseTurn, &loose);
+    assert!(turn.turn == 3 || turn.turn == 4, "{turn:?}");
+    assert!((turn.size_d.unwrap() - 0.2).abs() < 0.01, "{turn:?}");
+    let short = altered(
+        |turn| (3.0..3.4).contains(&turn),
+        |node| node.height += 0.2 * D,
+    );
+    assert!(!short.flags().loose_turn && !short.flags().bulge);
+}
+
+#[test]
+fn a_turn_with_less_than_half_its_tension_is_loose() {
+    let slack = |share: f64| {
+        let there = |turn| (2.0..4.0).contains(&turn);
+        altered(there, |node| node.tension = share * PULL)
+    };
+    let turn = only(DefectKind::LooseTurn, &slack(0.3));
+    assert!((3..=4).contains(&turn.turn), "{turn:?}");
+    assert_eq!(slack(0.6).flags(), DefectFlags::default());
+}
+
+#[test]
+fn one_noisy_node_raises_nothing() {
+    let nodes = on_cylinder(6.0, 1.0, |angle| (D * angle / TAU, 0.0));
+    for noise in [0.2, 0.9] {
+        let mut noisy = nodes.clone();
+        let node = &mut noisy[600];
+        (node.tension, node.plastic_strain) = (0.0, noise);
+        node.height += noise * D;
+        let coil = wound(spec(), &noisy);
+        assert_eq!(coil.flags(), DefectFlags::default(), "{:?}", coil.defects());
+    }
+}
+
+#[test]
+fn wire_drawn_out_is_overstretched_where_it_is() {
+    let stretched = altered(
+        |turn| (3.2..3.3).contains(&turn),
+        |node| node.plastic_strain = 0.03,
+    );
+    let place = only(DefectKind::Overstretch, &stretched);
+    assert_eq!(place.turn, 4);
+    let around = TAU * (crate::coils::RADIUS + D / 2.0);
+    assert!(
+        (place.size_m.unwrap() - 0.03 * around).abs() < 0.02 * around * 0.03,
+        "{place:?}"
+    );
+    let within = altered(
+        |turn| (3.2..3.3).contains(&turn),
+        |node| node.plastic_strain = 0.019,
+    );
+    assert!(!within.flags().overstretch);
+}
