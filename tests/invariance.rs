@@ -31,6 +31,7 @@ fn settings(changes: &[(&str, &str)]) -> SceneSettings {
         ("spindle.turns", "1.6"),
         // the rigidities of the paper's wire are those of one diameter
         ("wire.material", "copper"),
+        ("wire.resistivity", "1.7e-8"),
     ];
     for (name, value) in explicit.iter().chain(changes) {
         settings.set_text(name, value).expect("a valid setting");
@@ -114,7 +115,12 @@ fn traverse_to_either_side() {
     mirrored
         .set("traverse.per_turn", other)
         .expect("a traverse");
-    let odd = ["layon_position", "nozzle_position", "nozzle_angle"];
+    let odd = [
+        "layon_position",
+        "nozzle_position",
+        "nozzle_angle",
+        "nozzle_y",
+    ];
     for (a, b) in left.iter().zip(wound(&mirrored, 1.0)) {
         let sign = if odd.contains(&a.0) { -1.0 } else { 1.0 };
         assert_eq!((a.0, sign * a.1), b);

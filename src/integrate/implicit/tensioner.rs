@@ -432,9 +432,9 @@ mod tests {
     }
 
     #[test]
-    fn without_mass_the_set_force_acts() {
+    fn without_mass_and_damping_the_set_force_acts() {
         let (mut spec, feed, past, step) = setting();
-        spec.mass = 0.0;
+        (spec.mass, spec.damping) = (0.0, 0.0);
         let edge = NozzleEdge::new(
             &spec,
             &feed,
