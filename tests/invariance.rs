@@ -31,7 +31,7 @@ fn settings(changes: &[(&str, &str)]) -> SceneSettings {
         ("spindle.turns", "1.6"),
         // the rigidities of the paper's wire are those of one diameter
         ("wire.material", "copper"),
-        ("wire.resistivity", "1.7e-8"),
+        ("wire.resistivity", "1e-7"),
     ];
     for (name, value) in explicit.iter().chain(changes) {
         settings.set_text(name, value).expect("a valid setting");

@@ -133,7 +133,7 @@ fn a_run_by_inputs_that_is_stopped_goes_on_to_the_same_bytes() {
     let inputs = folder.path().join("in.csv");
     std::fs::write(
         &inputs,
-        "time,spindle_speed,tension_setpoint\n0,0,15\n0.004,300,15\n0.004,300,12\n0.09,300,12\n",
+        "time,spindle_speed,tension_setpoint\n0,0,15\n0.004,300,15\n0.004,300,12\n0.3,300,12\n",
     )
     .unwrap();
     let run = |out: &Path| {

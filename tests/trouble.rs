@@ -418,6 +418,7 @@ fn broken_wire_is_told_once_and_the_spindle_turns_on() {
     assert!((now.spindle_angle - then.spindle_angle - 0.5 * TAU).abs() < 0.05);
     let still = Outputs {
         spindle_angle: then.spindle_angle,
+        nozzle_y: then.nozzle_y,
         ..now
     };
     assert_eq!(still, then, "all else stays");

@@ -1,6 +1,6 @@
 //! First derivatives of the outputs by time, for importers that look ahead.
 
-use super::{Simulation, Winding};
+use super::Winding;
 use crate::signals::Outputs;
 
 /// Wire laid in a step over wire fed in it, from which on a stretch of wire has landed. A round core lays what is fed;
@@ -29,21 +29,4 @@ pub(super) fn rates_of(
         rates.free_length = (after.free_length - before.free_length) / dt;
     }
     rates
-}
-
-impl Simulation {
-    /// Returns the first time derivatives of the outputs at the last communication point, per s.
-    ///
-    /// - `spindle_angle` and `fed_length`: the speeds themselves.
-    /// - `free_length`: the change over the communication step; 0 where a stretch of wire landed in it.
-    /// - `layon_*`, `turns_wound`: 0. Wire swings about a corner and lands on the next, so that these go in jumps.
-    /// - `wire_tension`, `spindle_torque`, `feed_speed`: 0. The free span rings at a period of a millisecond, so that
-    ///   a slope of now misses the next communication point by more than the value held.
-    /// - All others: 0, because they change only when wire comes to rest.
-    pub fn output_rates(&self) -> &Outputs {
-        self.talk
-            .served
-            .as_ref()
-            .map_or(&self.now.run.rates, |served| &served.rates)
-    }
 }

@@ -128,6 +128,21 @@ impl Simulation {
         served.map_or(&self.now.run.outputs, |served| &served.outputs)
     }
 
+    /// Returns the first time derivatives of the outputs at the last communication point, per s.
+    ///
+    /// - `spindle_angle` and `fed_length`: the speeds themselves.
+    /// - `free_length`: the change over the communication step; 0 where a stretch of wire landed in it.
+    /// - `layon_*`, `turns_wound`: 0. Wire swings about a corner and lands on the next, so that these go in jumps.
+    /// - `wire_tension`, `spindle_torque`, `feed_speed`: 0. The free span rings at a period of a millisecond, so that
+    ///   a slope of now misses the next communication point by more than the value held.
+    /// - All others: 0, because they change only when wire comes to rest.
+    pub fn output_rates(&self) -> &Outputs {
+        self.talk
+            .served
+            .as_ref()
+            .map_or(&self.now.run.rates, |served| &served.rates)
+    }
+
     /// Wire, coil and method at the end of the last step that does not reach beyond the communication point.
     pub fn winding(&self) -> &Winding {
         &self.now
