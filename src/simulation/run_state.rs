@@ -28,7 +28,7 @@ pub(super) struct RunState {
     /// steps tried so far, each counted as often as it had nodes
     pub(super) work: u64,
     pub(super) outputs: Outputs,
-    /// per s, see [`super::Winding::output_rates`]
+    /// per s, see [`super::Simulation::output_rates`]
     pub(super) rates: Outputs,
     /// what happened since events were last taken
     pub(super) events: Vec<Event>,
