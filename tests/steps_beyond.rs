@@ -195,3 +195,17 @@ fn standing_still_is_never_behind() {
     sim.advance(held(5.0, 0.0), 0.01).expect("a step");
     assert!((sim.outputs().spindle_angle - 0.05).abs() < 1e-12);
 }
+
+/// The motion of the scene begins where the inputs ended, not where the last step did.
+#[test]
+fn the_scenes_own_motion_goes_on_from_the_point() {
+    let mut sim = start(true);
+    for _ in 0..37 {
+        sim.advance(held(100.0, 0.0), 2e-5).expect("a step");
+    }
+    let (time, angle) = (sim.time(), sim.outputs().spindle_angle);
+    assert!(sim.winding().time() < time, "no step reaches beyond");
+    sim.advance_profile(1e-4).expect("a step");
+    assert!((sim.time() - time - 1e-4).abs() < 1e-12);
+    assert!(sim.outputs().spindle_angle >= angle);
+}

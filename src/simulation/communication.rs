@@ -76,6 +76,7 @@ impl Simulation {
     ///
     /// See [`Self::advance`].
     pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
+        self.settle()?;
         (self.talk.course, self.talk.travel) = (None, None);
         self.step_to_the_point(|winding| winding.advance_profile(dt))
     }
