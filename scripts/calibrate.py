@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Fits parameters of a scene to what was measured on a machine.
 
-    calibrate.py SCENE.toml --measured FILE.csv --fit tensioner.mass=0.002 --fit wire.yield_stress --out DIR
+    calibrate.py SCENE.toml --measured FILE.csv --fit tensioner.mass=0.002 --fit wire.yield_stress=1e8 --out DIR
 
 The Python is that of `scripts/venv.sh study`. A measured file has a column of the spindle's angle (angle_deg, angle_rad or
 turns) and one or more of

@@ -40,7 +40,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         wire.bare_diameter * 1e3,
         scene.tensioner.tension,
         scene.spindle.turns,
-        scene.spindle.speed,
+        (1e4 * scene.spindle.speed).round() / 1e4,
     ))?;
     let Some(laws) = &scene.wire_laws else {
         return Ok(());
