@@ -13,7 +13,7 @@ use super::outputs::keep_told;
 use super::rates::rates_of;
 use super::talk::{LONGEST_WAIT, Served};
 use super::{SimError, Simulation, Winding};
-use crate::signals::Inputs;
+use crate::signals::{Inputs, Outputs};
 
 /// Share of the tolerance by which the wire may come out otherwise for inputs that count as gone on: what rounding does to
 /// the inputs of a master is far less, and what a person changes far more.
@@ -57,15 +57,21 @@ impl Simulation {
         let nozzle = self.inputs().nozzle_position;
         let given = Given::new(self.time(), inputs, rates, dt, nozzle);
         let before = self.talk.travel.replace((given.rates.nozzle_position, dt));
+        let told = *self.outputs();
         if self.goes_on_as(&given) {
             self.talk.wait = self.talk.wait.saturating_sub(1);
         } else {
             self.turn_to(Course::from(&given, before))?;
         }
         if self.talk.wait > 0 {
-            return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
+            return self.step_to_the_point(|winding| {
+                winding.advance_ramped(inputs, rates, dt)?;
+                let both = [&told, &winding.run.outputs];
+                winding.run.rates = rates_of(winding, both, dt, winding.inputs().spindle_speed);
+                Ok(())
+            });
         }
-        self.communicate(inputs.after(&rates, dt), dt)
+        self.communicate(inputs.after(&rates, dt), &told, dt)
     }
 
     /// Advances by `dt`, s, along the scene's own spindle ramp and traverse, which are continuous.
@@ -164,12 +170,15 @@ impl Simulation {
     }
 
     /// Begins another course: what has passed since the winding's time is gone through along the one before.
+    ///
+    /// The first step along a course that follows another ends at its communication point: inputs that have just changed often
+    /// change again, and what a master learns from small changes of a step is not blurred by the line between two ends.
     fn turn_to(&mut self, course: Course) -> Result<(), SimError> {
         if self.ahead.is_some() {
             self.talk.waited = (2 * self.talk.waited).clamp(1, LONGEST_WAIT);
-            self.talk.wait = self.talk.waited;
-        } else if self.talk.wait > 0 {
-            self.talk.wait = self.talk.waited;
+        }
+        if self.talk.course.is_some() {
+            self.talk.wait = self.talk.waited.max(1);
         }
         self.settle()?;
         self.talk.course = Some(course);
@@ -177,12 +186,11 @@ impl Simulation {
     }
 
     /// Goes on to the next communication point, `dt`, s, away, in steps that need not end there. The inputs at that point are
-    /// `inputs`.
-    fn communicate(&mut self, inputs: Inputs, dt: f64) -> Result<(), SimError> {
+    /// `inputs`; `told` was at the last.
+    fn communicate(&mut self, inputs: Inputs, told: &Outputs, dt: f64) -> Result<(), SimError> {
         let Some(course) = self.talk.course else {
             return Ok(());
         };
-        let before = *self.outputs();
         let mut served = self.talk.served.unwrap_or_else(|| Served::at(&self.now));
         served.begin(dt, &self.now);
         let point = served.time;
@@ -229,7 +237,7 @@ impl Simulation {
         }
         let end = self.ahead.as_ref().map(|ahead| &*ahead.winding);
         served.read(&self.now, end, &course, inputs);
-        let both = [&before, &served.outputs];
+        let both = [told, &served.outputs];
         served.rates = rates_of(&self.now, both, dt, inputs.spindle_speed);
         self.talk.served = Some(served);
         Ok(())

@@ -23,7 +23,8 @@ def test_setting_an_input_ends_the_demonstration(slave):
     assert angle > 0.1
     slave.set(spindle_speed=0.0)
     slave.fmu.doStep(0.01, 0.01)
-    assert slave.get("spindle_angle") == angle
+    # the time that a step reached beyond the point is solved again, which rounds otherwise
+    assert abs(slave.get("spindle_angle") - angle) < 1e-15
 
 
 def test_an_importer_that_writes_every_start_value_is_told(slave):
