@@ -8,6 +8,8 @@ mod manifests;
 mod sources;
 #[path = "tidy/texts.rs"]
 mod texts;
+#[path = "tidy/tracked.rs"]
+mod tracked;
 
 use sources::{Source, read};
 use std::path::Path;
