@@ -1,5 +1,9 @@
 //! Enamelled wire: what touches is the outer diameter, what bends, stretches and conducts is the bare one.
 
+#[path = "common/bobbin.rs"]
+mod bobbin;
+
+use bobbin::{DIAMETER as OUTER, STRAIGHT, TURNS, small_bobbin};
 use coilwind::measure::STATIONS_PER_TURN;
 use coilwind::scene::Section;
 use coilwind::settings::SceneSettings;
@@ -7,44 +11,15 @@ use coilwind::simulation::Simulation;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-/// Two layers of six turns on a small bobbin; there is room for half a turn more of 0.7 mm.
-const BOBBIN: &str = "
-[core]
-shape = 'cylinder'
-radius_mm = 6
-[core.flange]
-inner_distance_mm = 4.65
-height_mm = 3
-thickness_mm = 1
-edge_radius_mm = 0.3
-[nozzle]
-distance_mm = 25
-y_start_mm = -1.975
-[start]
-clamp_y_mm = -1.975
-[tensioner]
-tension = 15
-[spindle]
-speed = 100
-[solver]
-tolerance_um = 5
-[traverse]
-mode = 'orthocyclic'
-crossover_deg = 60
-advance_deg = 90
-[winding]
-layers = 2
-[wire]
-";
-const OUTER: f64 = 0.7e-3;
 const BARE: f64 = 0.6e-3;
-const TURNS: usize = 6;
-/// Polar angles between crossovers, degrees.
-const STRAIGHT: std::ops::Range<usize> = 45..200;
 
 fn settings(wire: &str) -> SceneSettings {
-    SceneSettings::from_toml_str(&format!("{BOBBIN}{wire}"), "bobbin.toml", Path::new(""))
-        .expect("reads")
+    SceneSettings::from_toml_str(
+        &format!("{}[wire]\n{wire}", small_bobbin(2, 15.0)),
+        "bobbin.toml",
+        Path::new(""),
+    )
+    .expect("reads")
 }
 
 fn section(wire: &str) -> Section {

@@ -1,44 +1,15 @@
 //! Whole coils between flanges: layers are counted, lie in grooves, and stay out of flange and each other.
 
+#[path = "common/bobbin.rs"]
+mod bobbin;
+
+use bobbin::{DIAMETER, STRAIGHT, TURNS, small_bobbin};
 use coilwind::measure::{DefectKind, STATIONS_PER_TURN, Verdict};
 use coilwind::settings::SceneSettings;
 use coilwind::signals::EventKind;
 use coilwind::simulation::Simulation;
 use std::f64::consts::TAU;
 use std::path::Path;
-
-/// Six turns and half a turn's room on a small bobbin, three layers.
-const BOBBIN: &str = "
-[core]
-shape = 'cylinder'
-radius_mm = 6
-[core.flange]
-inner_distance_mm = 4.65
-height_mm = 3
-thickness_mm = 1
-edge_radius_mm = 0.3
-[nozzle]
-distance_mm = 25
-y_start_mm = -1.975
-[start]
-clamp_y_mm = -1.975
-[tensioner]
-tension = 20
-[spindle]
-speed = 100
-[solver]
-tolerance_um = 5
-[traverse]
-mode = 'orthocyclic'
-crossover_deg = 60
-advance_deg = 90
-[winding]
-layers = 3
-";
-const DIAMETER: f64 = 0.7e-3;
-const TURNS: usize = 6;
-/// Polar angles between crossovers, degrees.
-const STRAIGHT: std::ops::Range<usize> = 45..200;
 
 fn started(text: &str) -> Simulation {
     let settings = SceneSettings::from_toml_str(text, "bobbin.toml", Path::new("")).expect("reads");
@@ -53,7 +24,7 @@ fn wound(sim: &mut Simulation, turns: f64) {
 
 #[test]
 fn three_layers_lie_in_their_grooves_between_the_flanges() {
-    let mut sim = started(BOBBIN);
+    let mut sim = started(&small_bobbin(3, 20.0));
     let law_turns = sim.scene().nozzle_law.turns();
     assert_eq!(law_turns, 18.0);
     // a state on the way, with wire in the corner between core and flange
@@ -134,7 +105,7 @@ fn three_layers_lie_in_their_grooves_between_the_flanges() {
 #[test]
 fn the_nozzle_is_where_its_law_says_however_long_the_steps_are() {
     for turns in [&[0.5, 1.0, 1.5][..], &[1.5]] {
-        let mut sim = started(BOBBIN);
+        let mut sim = started(&small_bobbin(3, 20.0));
         for &end in turns {
             wound(&mut sim, end);
             let law = sim.scene().nozzle_law.position(sim.outputs().spindle_angle);
@@ -193,7 +164,7 @@ fn a_coil_that_grows_into_the_nozzle_ends_the_winding() {
 /// Where a coil was higher than the region in which wire may freeze, its outer layers stayed in the computation for good.
 #[test]
 fn wire_freezes_on_a_coil_of_any_height() {
-    let text = format!("{BOBBIN}[freeze]\nmargin_mm = 0.3\n");
+    let text = format!("{}[freeze]\nmargin_mm = 0.3\n", small_bobbin(3, 20.0));
     let mut sim = started(&text);
     wound(&mut sim, 9.5);
     let outputs = sim.outputs();
