@@ -95,12 +95,14 @@ fn three_layers_lie_in_their_grooves_between_the_flanges() {
         summary.penetration
     );
     assert!(energy.residual_over_dissipated.abs() < 0.005, "{energy:?}");
+    assert!(energy.damping_J > 0.0, "{energy:?}");
     let remeshing = energy.remeshing_J / energy.plastic_J;
     assert!(
         remeshing.abs() < 0.005 && energy.numerical_over_dissipated.abs() < 0.005,
         "{energy:?}"
     );
 }
+
 /// A nozzle that stood after a step across went on as fast as it had come.
 #[test]
 fn the_nozzle_is_where_its_law_says_however_long_the_steps_are() {

@@ -18,6 +18,8 @@ pub struct AcceptedTouch {
     pub surplus: V3,
     /// it began within the step
     pub began: bool,
+    /// the wire came to it from outside within the step
+    pub lands: bool,
     /// speed at which it may open, m/s: what its landing gives back
     pub rebound: f64,
     /// where it is kept

@@ -115,13 +115,22 @@ impl System {
     /// business of the core's.
     pub(crate) fn moment_of(&self, force: impl Fn(usize) -> V3) -> f64 {
         let free = self.free_nodes();
-        let end = free.end.min(self.state.rod.nodes().saturating_sub(3));
+        let end = match self.state.feed {
+            Some(_) => free.end.min(self.state.rod.nodes().saturating_sub(3)),
+            None => free.end,
+        };
         (free.start..end)
             .map(|i| {
                 let (x, f) = (self.state.rod.x[i], force(i));
                 x.z * f.x - x.x * f.z
             })
             .sum()
+    }
+
+    /// Moment of momentum of the same nodes about the core's axis, N m s.
+    pub(crate) fn momentum_about_core(&self) -> f64 {
+        let rod = &self.state.rod;
+        self.moment_of(|i| rod.v[i] * rod.mass(&self.model.section, i))
     }
 
     /// Lets the core hold what Newton's method left of the forces: it is nothing that moves wire in the core's frame.
@@ -150,6 +159,12 @@ impl System {
             let mut arc = self.state.arc0;
             let step = if h > 0.0 { h } else { f64::INFINITY };
             line.scratch.accepted.clear();
+            if commit {
+                line.commit_left(
+                    |k| spin.to_core(ContactPoint::of_number(k).place(&rod.x)),
+                    |k| ContactPoint::of_number(k).length(rod),
+                );
+            }
             for j in 0..rod.edges() {
                 let rest = rod.rest[j];
                 for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {

@@ -30,6 +30,33 @@ impl LineContact<'_> {
         }
     }
 
+    /// Accounts for touches that ended because their point went far from what it touched within the step; call before
+    /// [`Self::commit`] does it for the others. `place` (m) and `length` (m) are those of a point at the step's end.
+    pub fn commit_left(&mut self, place: impl Fn(usize) -> V3, length: impl Fn(usize) -> f64) {
+        let undo = &self.scratch.undo;
+        for (entry, (k, old)) in undo.iter().enumerate() {
+            let k = *k as usize;
+            let now = self.state.points[k].touches();
+            let left = old
+                .touches()
+                .iter()
+                .filter(|t| t.anchored && !now.iter().any(|n| n.anchored && n.anchor == t.anchor));
+            for t in left {
+                // (only the first look within a step saw the accepted instant)
+                if undo[..entry].iter().any(|(other, _)| *other as usize == k) {
+                    continue;
+                }
+                let out = (place(k) - old.last).dot(&t.normal);
+                if out >= t.depth_before {
+                    let before = NormalLaw::at(t.depth_before, self.model.onset);
+                    self.scratch.lifted += self.model.law.stiffness
+                        * length(k)
+                        * work_beyond_stored(before.force, before.energy, out);
+                }
+            }
+        }
+    }
+
     /// Makes `p` (m) the accepted place of point `k` after a step of `step` (s): anchors follow, slip and landings are
     /// added to the losses. Returns the force on the point, core frame, N. Arguments as in [`Self::push`].
     ///
@@ -78,6 +105,7 @@ impl LineContact<'_> {
                 force: t.normal * (stiffness * pressed.force) + friction,
                 surplus,
                 began,
+                lands,
                 rebound: t.rebound,
                 owner: TouchOwner::Point { point: k, slot },
             });

@@ -54,6 +54,7 @@ impl SelfContact {
                 force: n * (stiffness * spring.force) + friction,
                 surplus,
                 began: !pair.touched,
+                lands,
                 rebound: pair.rebound,
                 owner: TouchOwner::Pair(number),
             });

@@ -1,6 +1,7 @@
 //! Taking a converged step over as the new state, with its energy balance.
 
 use super::Implicit;
+use super::impact::Solved;
 use super::scheme::{Scheme, StepFormula};
 use super::tensioner::{NozzleEdge, advance};
 use super::unknowns::Unknowns;
@@ -26,12 +27,14 @@ impl Implicit {
         x0.clone_from(&sys.state.rod.x);
         v0.clone_from(&sys.state.rod.v);
         let kinetic = sys.kinetic();
+        let momentum = sys.momentum_about_core();
         let before = (
             sys.state.spindle,
             sys.state.torque_on_core,
             sys.state.unbalanced,
             sys.state.load.tension.last().copied(),
         );
+        let turning = sys.state.turning;
         w.unknowns.hand_over(sys, self.scheme, step);
         let (fed, grown) = self::feed(sys, step, nozzle, &w.q);
         for i in 0..nodes {
@@ -95,6 +98,13 @@ impl Implicit {
             let force = (sys.state.load.force[n] + w.force[n]) * 0.5;
             sys.state.balance.nozzle -= force.dot(&sys.state.support[1].velocity) * h;
         }
+        if let Some(now) = sys.state.turning {
+            // what has turned the wire's mass is known better by its motion at both ends than by the mean of the moments there
+            let given = (sys.momentum_about_core() - momentum) * turned / h;
+            let over = 0.5 * (turning.unwrap_or(0.0) + now) * turned - given;
+            sys.state.balance.spindle -= over;
+            sys.state.balance.numerical -= over;
+        }
         // what Newton's law and the forces at both ends of the step do not agree on is the method's
         let mut work = 0.0;
         for i in sys.free_nodes() {
@@ -121,7 +131,12 @@ impl Implicit {
         past.h = [h, past.h[0]];
         past.known = (past.known + 1).min(2);
         if self.scheme == Scheme::Bdf2 {
-            w.impacts.stop(sys, step, &w.mass, before.0, self.tolerance);
+            let solved = Solved {
+                mass: &w.mass,
+                star: &w.star[1],
+                force: &w.force,
+            };
+            w.impacts.stop(sys, step, solved, before.0, self.tolerance);
         }
     }
 }

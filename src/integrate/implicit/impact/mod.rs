@@ -8,6 +8,8 @@
 //! A touch that began within the step also rewrites the history of its nodes. After it, the formula of time has to see a wire
 //! that moved all the time as it does now, or it would take the fall for part of the motion.
 
+mod landings;
+
 use super::scheme::StepFormula;
 use crate::contact::AcceptedTouch;
 use crate::math::{Spin, V3, spin_velocity};
@@ -21,6 +23,27 @@ const UNSEEN: f64 = 0.01;
 /// The velocities now, those at the step's start, and the places there.
 const PARTS: usize = 3;
 
+/// The nodes as a step solved for them, without its impulses.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solved<'a> {
+    /// lumped masses, kg
+    pub(super) mass: &'a [f64],
+    /// velocities `v*`, m/s
+    pub(super) star: &'a [V3],
+    /// forces at the step's start, N
+    pub(super) force: &'a [V3],
+}
+
+/// Adds to what friction and blows took, J.
+fn book(sys: &mut System, rubbed: f64, stopped: f64) {
+    sys.state.balance.friction += rubbed;
+    sys.state.balance.damping += stopped;
+    if let Some(line) = sys.line_contact() {
+        line.state.loss.friction += rubbed;
+        line.state.loss.damping += stopped;
+    }
+}
+
 /// Impulses of touches, and what they are computed with.
 #[derive(Debug, Default)]
 pub(super) struct Impacts {
@@ -30,6 +53,8 @@ pub(super) struct Impacts {
     start: [Vec<V3>; PARTS],
     /// velocity that an impulse gives to a node, 1/kg
     mobility: Vec<f64>,
+    /// forces that came with landings, see [`landings`]
+    came: landings::Came,
     impulses: Vec<Impulse>,
 }
 
@@ -110,14 +135,37 @@ impl Impulse {
     }
 }
 
+/// Motion energy, J, and moment of momentum about the core's axis, N m s, before impulses of the core.
+struct Carried {
+    kinetic: f64,
+    momentum: f64,
+}
+
+impl Carried {
+    fn of(sys: &System) -> Self {
+        Self {
+            kinetic: sys.kinetic(),
+            momentum: sys.momentum_about_core(),
+        }
+    }
+
+    /// Motion energy that impulses have brought since then, J, as the turning core sees it; what the core gave with
+    /// them becomes work of the spindle.
+    fn gained(&self, sys: &mut System) -> f64 {
+        let now = Self::of(sys);
+        let work = sys.state.spindle.speed * (now.momentum - self.momentum);
+        sys.state.balance.spindle += work;
+        now.kinetic - self.kinetic - work
+    }
+}
+
 impl Impacts {
-    /// Takes the speed out of what touches, after a step from the motion `old` of the spindle with the lumped `mass` of each
-    /// node, kg.
+    /// Takes the speed out of what touches, after a step from the motion `old` of the spindle with the `solved` nodes.
     pub(super) fn stop(
         &mut self,
         sys: &mut System,
         step: &StepFormula,
-        mass: &[f64],
+        solved: Solved,
         old: Spindle,
         tolerance: f64,
     ) {
@@ -134,13 +182,14 @@ impl Impacts {
         } else {
             1
         };
-        self.look(sys, old, mass, parts);
+        self.look(sys, old, solved.mass, parts);
         self.list(&touches, &sys.state.past.q[0], step, restitution);
         if let Some(line) = sys.line_contact() {
             line.scratch.accepted = touches;
         }
+        self.book_landings(sys, step, solved, old);
         self.give_back_friction(sys, step, parts);
-        let kinetic = sys.kinetic();
+        let before = Carried::of(sys);
         let unseen = UNSEEN * tolerance;
         let bounds = [unseen / step.h, unseen / step.h, unseen];
         for (part, bound) in bounds.into_iter().enumerate().take(parts) {
@@ -152,17 +201,14 @@ impl Impacts {
         }
         self.take_over(sys, step, old, parts);
         let rubbed = self.rubbed();
-        let stopped = kinetic - sys.kinetic() - rubbed;
-        sys.state.balance.friction += rubbed;
-        sys.state.balance.damping += stopped;
-        if let Some(line) = sys.line_contact() {
-            line.state.loss.friction += rubbed;
-            line.state.loss.damping += stopped;
-            if restitution > 0.0 {
-                for impulse in &self.impulses {
-                    let speed = impulse.range[0][1];
-                    line.state.keep_rebound(impulse.touch.owner, speed);
-                }
+        let stopped = -before.gained(sys) - rubbed;
+        book(sys, rubbed, stopped);
+        if restitution > 0.0
+            && let Some(line) = sys.line_contact()
+        {
+            for impulse in &self.impulses {
+                let speed = impulse.range[0][1];
+                line.state.keep_rebound(impulse.touch.owner, speed);
             }
         }
     }
@@ -234,7 +280,7 @@ impl Impacts {
 
     /// Gives back what the solve took too much of friction, or takes what it left, by no more than the wire slides.
     fn give_back_friction(&mut self, sys: &mut System, step: &StepFormula, parts: usize) {
-        let before = sys.kinetic();
+        let before = Carried::of(sys);
         let spin = Spin::new(sys.state.spindle.angle);
         for impulse in &mut self.impulses {
             let of_nodes = impulse.nodes();
@@ -254,7 +300,7 @@ impl Impacts {
                 }
             }
         }
-        sys.state.balance.numerical -= sys.kinetic() - before;
+        sys.state.balance.numerical -= before.gained(sys);
     }
 
     /// Mends the speed, or place, of each touch in turn; returns the largest change along a normal.
