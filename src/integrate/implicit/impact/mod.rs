@@ -65,6 +65,8 @@ struct Impulse {
     /// nodes that it moves, and their weights; those of an older live wire have negative ones
     nodes: [usize; 6],
     weights: [f64; 6],
+    /// change of the nodes' speeds by an impulse there, 1/kg
+    shares: [f64; 6],
     /// how many they are
     count: usize,
     /// direction, whose part along the normal is 1
@@ -86,13 +88,14 @@ impl Impulse {
     /// What pulls along the wire is left to the solve: an edge is so stiff that it moves with all wire that a wave reaches in the step.
     fn of(touch: &AcceptedTouch, gamma: f64, mobility: &[f64], places: &[V3]) -> Option<Self> {
         let pressed = touch.force.dot(&touch.normal);
-        let (mut nodes, mut weights, mut count) = ([0; 6], [0.0; 6], 0);
+        let (mut nodes, mut weights, mut shares) = ([0; 6], [0.0; 6], [0.0; 6]);
+        let mut count = 0;
         for place in [Some(touch.point.weights()), touch.old]
             .into_iter()
             .flatten()
         {
             for (i, w) in place.iter().filter(|(_, w)| *w != 0.0) {
-                (nodes[count], weights[count]) = (i, w);
+                (nodes[count], weights[count], shares[count]) = (i, w, w * mobility[i]);
                 count += 1;
             }
         }
@@ -111,6 +114,7 @@ impl Impulse {
             touch,
             nodes,
             weights,
+            shares,
             count,
             along: touch.normal + of_wire(friction) / pressed,
             given: gamma * pressed,
@@ -122,8 +126,16 @@ impl Impulse {
 
     /// Nodes that the touch moves with, and their weights.
     #[inline]
-    fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + use<> {
-        self.nodes.into_iter().zip(self.weights).take(self.count)
+    fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + use<'_> {
+        let nodes = self.nodes[..self.count].iter().copied();
+        nodes.zip(self.weights[..self.count].iter().copied())
+    }
+
+    /// The same, with the change of each node's speed by an impulse there, 1/kg.
+    #[inline]
+    fn shares(&self) -> impl Iterator<Item = (usize, f64)> + use<'_> {
+        let nodes = self.nodes[..self.count].iter().copied();
+        nodes.zip(self.shares[..self.count].iter().copied())
     }
 
     /// What the touch sees of a motion of the nodes, along its normal.
@@ -290,8 +302,8 @@ impl Impacts {
             if change > slide.norm() {
                 impulse.touch.surplus *= slide.norm() / change;
             }
-            for (i, w) in impulse.nodes() {
-                let speed = impulse.touch.surplus * (w * self.mobility[i] * step.gamma);
+            for (i, share) in impulse.shares() {
+                let speed = impulse.touch.surplus * (share * step.gamma);
                 sys.state.rod.v[i] += spin.to_lab(speed);
                 self.motion[0][i] += speed;
                 self.start[0][i] += speed;
@@ -305,7 +317,7 @@ impl Impacts {
 
     /// Mends the speed, or place, of each touch in turn; returns the largest change along a normal.
     fn sweep(&mut self, part: usize, backwards: bool) -> f64 {
-        let (motion, mobility) = (&mut self.motion[part], &self.mobility);
+        let motion = &mut self.motion[part];
         let count = self.impulses.len();
         let mut largest: f64 = 0.0;
         for k in 0..count {
@@ -324,8 +336,8 @@ impl Impacts {
             };
             let change = allowed - impulse.added[part];
             impulse.added[part] = allowed;
-            for (i, w) in impulse.nodes() {
-                motion[i] += impulse.along * (w * mobility[i] * change);
+            for (i, share) in impulse.shares() {
+                motion[i] += impulse.along * (share * change);
             }
             largest = largest.max((change * impulse.inverse).abs());
         }
@@ -349,15 +361,15 @@ impl Impacts {
         }
         // the way of a touch that opened too fast stays; the speed that it would stand for does not
         for impulse in self.impulses.iter().filter(|i| !i.touch.began) {
-            for (i, w) in impulse.nodes() {
-                let speed = impulse.along * (w * self.mobility[i] * impulse.added[0]);
+            for (i, share) in impulse.shares() {
+                let speed = impulse.along * (share * impulse.added[0]);
                 past.x[i] -= before.to_lab(speed * step.gamma);
             }
         }
         if parts == 1 {
             for impulse in &self.impulses {
-                for (i, w) in impulse.nodes() {
-                    let speed = impulse.touch.surplus * (w * self.mobility[i] * step.gamma);
+                for (i, share) in impulse.shares() {
+                    let speed = impulse.touch.surplus * (share * step.gamma);
                     past.x[i] -= before.to_lab(speed * step.gamma);
                 }
             }
