@@ -35,6 +35,7 @@ kinds!(
     default = Preset::Default;
     capstan,
     frozen_helix,
+    grooved_capstan,
     groove_seat,
     helix_gap,
     live_pair,
@@ -48,6 +49,7 @@ kinds!(
 kinds!(
     paper = Preset::Paper;
     capstan,
+    grooved_capstan,
     groove_seat,
     // counts for this preset only
     penalty_impact,

@@ -180,6 +180,41 @@ pub fn flanged(
     sewn(&rings)
 }
 
+/// Pulley about y with a V groove at y = 0, `bottom_radius` (m) at its lowest, walls that include `angle` (rad) and rise by
+/// `depth` (m), in `segments` flat sides.
+pub fn grooved_pulley(
+    bottom_radius: f64,
+    angle: f64,
+    depth: f64,
+    segments: usize,
+) -> Result<TriMesh, MeshError> {
+    check_positive("bottom_radius", bottom_radius)?;
+    check_positive("depth", depth)?;
+    if !(angle > 0.0 && angle < PI) {
+        return Err(MeshError::Dimension {
+            name: "angle",
+            value: angle,
+            allowed: "above 0 and below pi rad".to_owned(),
+        });
+    }
+    check_count("segments", segments, 3, MOST_SEGMENTS)?;
+    let half_width = depth * libm::tan(0.5 * angle);
+    let rim = bottom_radius + depth;
+    let ring = |y: f64, radius: f64| -> Vec<V3> {
+        let at = |i: usize| {
+            let a = TAU * i as f64 / segments as f64;
+            V3::new(radius * libm::cos(a), y, radius * libm::sin(a))
+        };
+        // From +x towards +z, as `sewn` wants them.
+        (0..segments).map(at).collect()
+    };
+    sewn(&[
+        ring(-half_width, rim),
+        ring(0.0, bottom_radius),
+        ring(half_width, rim),
+    ])
+}
+
 /// The closed surface through rings of as many points each, from low to high y, with a fan round the axis at both ends. Points of a
 /// ring may coincide.
 fn sewn(rings: &[Vec<V3>]) -> Result<TriMesh, MeshError> {

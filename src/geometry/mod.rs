@@ -32,6 +32,7 @@ mod surface;
 mod topology;
 mod touch;
 mod tube;
+mod wall;
 
 #[cfg(feature = "lab")]
 pub use bvh::Bvh;
@@ -50,3 +51,4 @@ pub use touch::Touch;
 #[cfg(feature = "lab")]
 pub use tube::SIDES;
 pub use tube::{FrozenNode, Tube};
+pub use wall::WallFoot;

@@ -101,6 +101,15 @@ impl Shape {
         }
     }
 
+    /// The surface, where it is concave: wire may touch several of its walls at a time.
+    #[inline]
+    pub(crate) fn with_walls(&self) -> Option<&Surface> {
+        match self {
+            Self::Mesh(surface) if !surface.is_convex() => Some(surface),
+            _ => None,
+        }
+    }
+
     /// Signed distance of `p` (core frame, m) from the outline of the core in x-z. A mesh counts as the rectangle that it
     /// fits in.
     #[inline]

@@ -5,7 +5,11 @@ use super::feature::Nearest;
 use super::level::LevelNearest;
 use super::mesh::{self, TriMesh};
 use super::touch::Touch;
+use super::wall::WallFoot;
 use crate::math::V3;
+
+/// Feet nearer to each other than this share of the radius that is searched are one, such as those on two triangles at one vertex.
+const SAME_FOOT: f64 = 1e-9;
 
 /// A closed surface ready for queries. Core frame, lengths in m.
 #[derive(Clone, Debug)]
@@ -78,6 +82,42 @@ impl Surface {
     /// [`Self::nearest`] and its triangle, looked for from a triangle that may be it.
     pub(crate) fn nearest_from(&self, p: V3, guess: u32) -> (Nearest, u32) {
         self.bvh.nearest_from(&self.mesh, p, guess)
+    }
+
+    /// Foot of `p` (core frame, m) on the wall of a triangle, by [`TriMesh::wall_foot`]; none for a number that is no triangle's.
+    pub(crate) fn wall_foot(&self, p: V3, triangle: u32) -> Option<WallFoot> {
+        let known = (triangle as usize) < self.mesh.len();
+        known.then(|| self.mesh.wall_foot(p, triangle)).flatten()
+    }
+
+    /// Feet of `p` (core frame, m) on all walls within `radius` (m), the nearest first. Both lists are emptied first; `found` is
+    /// room for the search.
+    ///
+    /// Walls that a point outside sees from behind, as through a thin flange, do not count. From inside the nearest alone does.
+    pub(crate) fn walls(&self, p: V3, radius: f64, found: &mut Vec<u32>, feet: &mut Vec<WallFoot>) {
+        self.near(p, radius, found);
+        feet.clear();
+        for &triangle in &*found {
+            let Some(foot) = self.mesh.wall_foot(p, triangle) else {
+                continue;
+            };
+            let known = |other: &WallFoot| {
+                other.triangle == foot.triangle
+                    || (other.point - foot.point).norm() < SAME_FOOT * radius
+            };
+            if !feet.iter().any(known) {
+                feet.push(foot);
+            }
+        }
+        feet.sort_by(|a, b| {
+            let order = a.distance.abs().total_cmp(&b.distance.abs());
+            order.then(a.triangle.cmp(&b.triangle))
+        });
+        if feet.first().is_some_and(|nearest| nearest.distance < 0.0) {
+            feet.truncate(1);
+        } else {
+            feet.retain(|foot| foot.distance >= 0.0);
+        }
     }
 
     /// The section at the level of `p` (core frame, m) that is nearest, and its triangle.

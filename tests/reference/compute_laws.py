@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the reference files of `wave_damping`, `rolling_path`, `helix_gap`, `frozen_helix` and `live_pair`.
+"""Writes the reference files of `wave_damping`, `rolling_path`, `helix_gap`, `frozen_helix`,
+`live_pair` and `grooved_capstan`.
 
     tests/reference/compute_laws.py [folder]
 
@@ -190,6 +191,24 @@ def live_pair(press, mu, stiffness=1e10, onset=1e-6):
     return {"approach_m": depth, "slip_exponent": mu}
 
 
+def grooved_capstan(radius, hold, mu, wrap, groove):
+    """Ratio of end forces of stiff wire that slips in a V groove, as in `capstan` with mu over the sine of half its angle."""
+    bend = mpmath.mpf(radius) + mpmath.mpf(WIRE["r"])
+    rate = mpmath.mpf(mu) / mpmath.sin(mpmath.mpf(groove) / 2)
+    stiff = mpmath.mpf(WIRE["EI"]) / (2 * bend * bend)
+    lift_off = lambda force: mpmath.acos(1 - stiff / force)  # noqa: E731
+    first = lift_off(hold)
+    begin = hold * (mpmath.cos(first) + rate * mpmath.sin(first))
+
+    def balance(force):
+        last = lift_off(force)
+        laid = begin * mpmath.exp(rate * (wrap - first - last))
+        return force * (mpmath.cos(last) - rate * mpmath.sin(last)) - laid
+
+    force = mpmath.findroot(balance, hold * mpmath.exp(rate * wrap))
+    return {"string_ratio": float(mpmath.exp(rate * wrap)), "stiff_ratio": float(force / hold)}
+
+
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
     d = WIRE["d"]
@@ -243,6 +262,15 @@ def main():
         (f"R{radius * 1e3:g}mm_T{pull:g}_q{press:g}_mu{mu:g}", {"R_m": radius, "T0_N": pull, "press_N_per_m": press, "mu": mu, "drawn_m": drawn}, live_pair(press, mu))
         for radius, pull, press, mu, drawn in ((0.01, 60.0, 3000.0, 0.17, 6e-4), (0.01, 60.0, 6000.0, 0.1, 6e-4))
     ])
+    write(folder, "grooved_capstan", (
+        "Wire on the point of slipping in a V groove of a pulley, with bending stiffness",
+        "as capstan; each wall presses with n / (2 sin(groove/2)) for a line load n, so friction is that of mu / sin(groove/2)",
+        "V-belt formula; stiff rod as in capstan", "1e-12 relative", "1% of the ratio",
+        "elastic law only; static = kinetic = mu; the pulley is a triangle mesh, its groove as deep as two wire diameters and such that the centreline is bent to R + r",
+    ), {"stiff_ratio": {"rel": 0.01}}, [
+        (f"mu{mu:g}_wrap{degrees}_R{radius * 1e3:g}mm_F{hold:g}_V{groove}", {"mu": mu, "wrap_rad": math.radians(degrees), "R_m": radius, "F0_N": hold, "groove_rad": math.radians(groove)}, grooved_capstan(radius, hold, mu, math.radians(degrees), math.radians(groove)))
+        for mu, degrees, radius, hold, groove in ((0.17, 180, 0.05, 5.0, 90), (0.17, 90, 0.05, 20.0, 60), (0.1, 180, 0.05, 10.0, 120))
+    ], implicit=False)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 use super::saved_touches;
 use super::touch::TouchState;
+use crate::geometry::{Surface, WallFoot};
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
 
@@ -9,7 +10,8 @@ use serde::{Deserialize, Serialize};
 /// one to spare.
 pub(super) const PASSAGES: usize = 4;
 
-/// Slot of the touch with what wire is wound on, and of that with the flange nearer to the point.
+/// Slot of the touch with what wire is wound on, and of that with the flange nearer to the point. On a concave mesh they are
+/// the two walls nearest to the point, in any order.
 pub(super) const CORE: usize = 0;
 pub(super) const FLANGE: usize = 1;
 /// Slot of the first passage, and number of all slots.
@@ -86,11 +88,50 @@ impl PointState {
         &mut self.touch[..WIRE + self.passages]
     }
 
-    /// Whether a touch before `slot` is with the passage at `segment` already.
+    /// Whether a touch before `slot` is with the passage at `segment`, or the wall at that triangle, already.
     ///
-    /// Inside a sharp bend two feet merge as the point moves; they are one touch then.
+    /// Inside a sharp bend two feet merge as the point moves; they are one touch then. So do the feet on two walls where the
+    /// edge between them ends.
     #[inline]
-    pub(super) fn has_passage_before(&self, slot: usize, segment: u32) -> bool {
-        self.touch[WIRE..slot].iter().any(|t| t.start == segment)
+    pub(super) fn has_before(&self, slot: usize, segment: u32) -> bool {
+        match slot {
+            CORE => false,
+            FLANGE => {
+                let one = &self.touch[CORE];
+                self.core_near && one.start == segment && segment != TouchState::UNUSED.start
+            }
+            _ => self.touch[WIRE..slot].iter().any(|t| t.start == segment),
+        }
+    }
+
+    /// Gives the two nearest walls of a concave core a slot each, from their feet at `p` (m), the nearest first. A wall keeps the
+    /// slot that it has, and the friction in it.
+    pub(super) fn keep_walls(&mut self, p: V3, surface: &Surface, feet: &[WallFoot]) {
+        let mut left = [feet.first(), feet.get(1)];
+        let mut kept = [false; 2];
+        for slot in [CORE, FLANGE] {
+            let touch = &mut self.touch[slot];
+            let Some(here) = surface.wall_foot(p, touch.start) else {
+                continue;
+            };
+            let same = |foot: &Option<&WallFoot>| foot.is_some_and(|f| f.triangle == here.triangle);
+            if let Some(found) = left.iter().position(same) {
+                touch.start = here.triangle;
+                left[found] = None;
+                kept[slot] = true;
+            }
+        }
+        let mut left = left.into_iter().flatten();
+        for slot in [CORE, FLANGE] {
+            if kept[slot] {
+                continue;
+            }
+            self.touch[slot] = TouchState::UNUSED;
+            if let Some(foot) = left.next() {
+                self.touch[slot].start = foot.triangle;
+                kept[slot] = true;
+            }
+        }
+        (self.core_near, self.flange_near) = (kept[CORE], kept[FLANGE]);
     }
 }

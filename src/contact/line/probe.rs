@@ -2,6 +2,7 @@
 
 use super::point::{CORE, FLANGE};
 use super::state::LineState;
+use super::touch::TouchState;
 use crate::math::V3;
 
 /// What a touch is with.
@@ -11,6 +12,8 @@ pub enum HeldBy {
     Core,
     /// a flange
     Flange,
+    /// the wall of a mesh that this triangle belongs to
+    Wall(u32),
     /// frozen wire, near this segment of it
     Wire(u32),
 }
@@ -36,6 +39,7 @@ impl LineState {
                 point,
                 anchor: t.anchor,
                 with: match slot {
+                    CORE | FLANGE if t.start != TouchState::UNUSED.start => HeldBy::Wall(t.start),
                     CORE => HeldBy::Core,
                     FLANGE => HeldBy::Flange,
                     _ => HeldBy::Wire(t.start),

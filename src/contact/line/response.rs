@@ -2,7 +2,6 @@
 
 use super::line_contact::LineContact;
 use super::near::NearPoint;
-use super::point::WIRE;
 use super::search::depth_at;
 use super::touch::{Conditions, TouchState};
 use crate::contact::friction::{ContactResponse, LimitFrom};
@@ -78,7 +77,7 @@ impl LineContact<'_> {
         for slot in point.slots() {
             let (depth, normal, segment) = depth_at(model, tube, slot, point.touch[slot].start, p);
             point.touch[slot].start = segment;
-            let double = slot >= WIRE && point.has_passage_before(slot, segment);
+            let double = point.has_before(slot, segment);
             let touch = &mut point.touch[slot];
             if double {
                 (touch.depth, touch.limit.current) = (0.0, 0.0);
@@ -128,7 +127,7 @@ impl LineContact<'_> {
         let mut sum = ContactResponse::default();
         for slot in point.slots() {
             let touch = point.touch[slot];
-            if slot >= WIRE && point.has_passage_before(slot, touch.start) {
+            if point.has_before(slot, touch.start) {
                 continue;
             }
             let (depth, normal, _) = depth_at(self.model, &self.scratch.tube, slot, touch.start, p);

@@ -4,7 +4,7 @@ use super::near::NearPoint;
 use super::point::PointState;
 use crate::contact::accepted_touch::AcceptedTouch;
 use crate::contact::self_contact::PairScratch;
-use crate::geometry::SplineTube;
+use crate::geometry::{SplineTube, WallFoot};
 use std::sync::Arc;
 
 /// Work arrays of contact along the wire, and the search among frozen wire. None of it is saved.
@@ -24,6 +24,8 @@ pub struct LineScratch {
     pub(super) undo: Vec<(u32, PointState)>,
     /// room for the segments that a search finds
     pub(super) found: Vec<u32>,
+    /// room for the walls of a concave core that a search finds
+    pub(super) feet: Vec<WallFoot>,
 }
 
 impl LineScratch {
@@ -37,6 +39,7 @@ impl LineScratch {
             near: Vec::new(),
             undo: Vec::with_capacity(256),
             found: Vec::with_capacity(64),
+            feet: Vec::with_capacity(16),
         }
     }
 
@@ -50,6 +53,7 @@ impl LineScratch {
             near,
             undo,
             found,
+            feet,
         } = self;
         tube.clone_from(&other.tube);
         *lifted = other.lifted;
@@ -58,5 +62,6 @@ impl LineScratch {
         near.clear();
         undo.clear();
         found.clear();
+        feet.clear();
     }
 }

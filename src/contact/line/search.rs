@@ -3,6 +3,7 @@
 use super::line_contact::LineContact;
 use super::model::LineModel;
 use super::point::{CORE, FLANGE, PASSAGES, WIRE};
+use super::scratch::LineScratch;
 use super::touch::TouchState;
 use crate::geometry::SplineTube;
 use crate::math::V3;
@@ -24,6 +25,15 @@ pub(super) fn depth_at(
     start: u32,
     p: V3,
 ) -> (f64, V3, u32) {
+    if slot < WIRE
+        && let Some(surface) = model.shape.with_walls()
+    {
+        return match surface.wall_foot(p, start) {
+            Some(foot) => (model.radius - foot.distance, foot.normal, foot.triangle),
+            // looked at again after that way
+            None => (-2.0 * SKIN * model.radius, V3::zeros(), start),
+        };
+    }
     match slot {
         CORE => {
             let (near, triangle) = model.shape.nearness_from(p, start);
@@ -130,18 +140,27 @@ impl LineContact<'_> {
         };
         let core_room = core - self.model.radius;
         point.core_near = core_room < skin;
-        if point.core_near {
-            point.touch[CORE].start = triangle;
-        } else {
-            point.touch[CORE] = TouchState::UNUSED;
-        }
         let flange_room = match self.model.flange(p) {
             Some(flange) => flange.distance - self.model.radius,
             None => f64::INFINITY,
         };
         point.flange_near = flange_room < skin;
-        if !point.flange_near {
-            point.touch[FLANGE] = TouchState::UNUSED;
+        if let Some(surface) = self.model.shape.with_walls() {
+            let LineScratch { found, feet, .. } = &mut *self.scratch;
+            feet.clear();
+            if point.core_near {
+                surface.walls(p, self.model.radius + skin, found, feet);
+            }
+            point.keep_walls(p, surface, feet);
+        } else {
+            if point.core_near {
+                point.touch[CORE].start = triangle;
+            } else {
+                point.touch[CORE] = TouchState::UNUSED;
+            }
+            if !point.flange_near {
+                point.touch[FLANGE] = TouchState::UNUSED;
+            }
         }
         let wire = self.model.radius + self.scratch.tube.radius();
         // above all frozen wire there is nothing to search for; elsewhere the search ball must stay small

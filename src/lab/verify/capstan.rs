@@ -32,7 +32,7 @@ const STIFFNESS: f64 = 1e10;
 const LONGEST: f64 = 0.1;
 
 /// Facets of the cylinder.
-const FACETS: usize = 4096;
+pub(super) const FACETS: usize = 4096;
 
 /// Parts of a time that the production method is told to stop at.
 const PARTS: usize = 200;
@@ -47,10 +47,25 @@ const MEAN_EDGES: f64 = 3.0;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
+    ratio_on(ctx, |radius, r| match ctx.integrator {
+        Integrator::Implicit => Ok(Shape::Cylinder {
+            radius,
+            half_y: 20.0 * r,
+        }),
+        _ => mesh(cylinder(radius, 40.0 * r, FACETS)).map(|core| Shape::Mesh(Arc::new(core))),
+    })
+}
+
+/// Force ratio on what `drum(R, r)` makes for wire of radius r, m, whose centreline it bends to R + r.
+pub(super) fn ratio_on(
+    ctx: &Context,
+    drum: impl FnOnce(f64, f64) -> Result<Shape, VerifyError>,
+) -> Result<Answers, VerifyError> {
     let (mu, wrap) = (ctx.number("mu")?, ctx.number("wrap_rad")?);
     let (radius, hold) = (ctx.number("R_m")?, ctx.number("F0_N")?);
     let section = ctx.elastic();
-    let mut capstan = Capstan::new(ctx, &section, mu, wrap, radius, hold)?;
+    let drum = drum(radius, section.radius())?;
+    let mut capstan = Capstan::new(ctx, &section, mu, wrap, radius, hold, drum)?;
     capstan.settle()?;
     let mut ratios = capstan.draw()?;
     let (first, second) = (ratios.remove(0), ratios.remove(0));
@@ -86,6 +101,7 @@ impl Capstan {
         wrap: f64,
         radius: f64,
         hold: f64,
+        drum: Shape,
     ) -> Result<Self, VerifyError> {
         let bend = radius + section.radius();
         let bending = (section.ei / hold).sqrt();
@@ -127,17 +143,17 @@ impl Capstan {
         let r = section.radius();
         let wave = (hold / section.mass_per_length()).sqrt();
         let step = if implicit {
-            let core = Shape::Cylinder {
-                radius,
-                half_y: 10.0 * section.diameter,
-            };
-            let line = LineModel::new(core, law, r);
+            let line = LineModel::new(drum, law, r);
             sys.touch_along(line);
             Stepper::implicit(ctx.tolerance, LONGEST)
         } else {
-            let core = Arc::new(mesh(cylinder(radius, 20.0 * section.diameter, FACETS))?);
+            let Shape::Mesh(surface) = drum else {
+                return Err(VerifyError::NoAnswer(
+                    "the explicit method wants a mesh".to_owned(),
+                ));
+            };
             sys.touch_at_nodes(NodalModel {
-                surface: core,
+                surface,
                 law,
                 radius: r,
                 diameter: section.diameter,

@@ -96,6 +96,7 @@ const PACKED: &[(&str, &str)] = packed![
     "corner_edge",
     "square_loop",
     "capstan",
+    "grooved_capstan",
     "twist_buckling",
     "shoulder_static",
     "groove_seat",

@@ -3,9 +3,10 @@
 use super::case::{Answers, Context, VerifyError};
 use super::{
     axial_wave, bending_modes, bulge_linear, capstan, corner_edge, cyclic_bending,
-    elastica_cantilever, end_couple, frozen_helix, groove_seat, hanging_wire, helix, helix_gap,
-    live_pair, mandrel_springback, penalty_impact, rolling_path, shoulder_drop, shoulder_static,
-    spinning_ring, square_loop, torsion, twist_buckling, wave_damping, winding_feed,
+    elastica_cantilever, end_couple, frozen_helix, groove_seat, grooved_capstan, hanging_wire,
+    helix, helix_gap, live_pair, mandrel_springback, penalty_impact, rolling_path, shoulder_drop,
+    shoulder_static, spinning_ring, square_loop, torsion, twist_buckling, wave_damping,
+    winding_feed,
 };
 
 /// Computes the answers of one case.
@@ -74,6 +75,7 @@ pub const KINDS: &[Kind] = kinds! {
     corner_edge: None, Wind::All;
     square_loop: None, Wind::All;
     capstan: None, Wind::All;
+    grooved_capstan: None, Wind::All;
     twist_buckling: None, Wind::All;
     shoulder_static: None, Wind::All;
     groove_seat: None, Wind::All;

@@ -18,6 +18,7 @@ mod equilibrium;
 mod file;
 mod frozen_helix;
 mod groove_seat;
+mod grooved_capstan;
 mod hanging_wire;
 mod helix;
 mod helix_gap;

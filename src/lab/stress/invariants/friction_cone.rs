@@ -75,6 +75,21 @@ fn normal_force(depth: f64, onset: f64) -> f64 {
     }
 }
 
+/// How far the wall of a mesh is that `triangle` belongs to; a convex mesh is one wall.
+fn near_wall(model: &LineModel, p: V3, triangle: u32) -> Nearness {
+    let foot = model
+        .shape
+        .with_walls()
+        .and_then(|s| s.wall_foot(p, triangle));
+    foot.map_or_else(
+        || model.shape.nearness(p),
+        |foot| Nearness {
+            distance: foot.distance,
+            normal: foot.normal,
+        },
+    )
+}
+
 fn all_held(sim: &Simulation) -> Vec<Held> {
     let sys = sim.system();
     let (Some(model), Some(line), Some(scratch)) = (
@@ -96,6 +111,7 @@ fn all_held(sim: &Simulation) -> Vec<Held> {
         let solid = |near: Nearness| (near.distance + model.radius, near.normal, None);
         let (distance, normal, on_wire) = match (touch.with, model.flange(p)) {
             (HeldBy::Flange, Some(flange)) => solid(flange),
+            (HeldBy::Wall(triangle), _) => solid(near_wall(model, p, triangle)),
             (HeldBy::Core | HeldBy::Flange, _) => solid(model.shape.nearness(p)),
             (HeldBy::Wire(segment), _) => {
                 let away = away_from_spline(frozen, segment as usize, p);
