@@ -1,0 +1,60 @@
+//! Nodes are as near each other as the corners of the core ask.
+
+use coilwind::settings::SceneSettings;
+use coilwind::simulation::Simulation;
+
+/// Copper of 0.1 mm on a box with corners of 0.2 mm.
+fn fine_wire(changes: &[(&str, &str)]) -> SceneSettings {
+    let mut settings = SceneSettings::load("fig8").expect("packed");
+    let fine = [
+        ("wire.material", "copper"),
+        ("wire.diameter_mm", "0.1"),
+        ("traverse.per_turn_mm", "0.1"),
+        ("tensioner.tension", "0.7"),
+        ("core.corner_radius_mm", "0.2"),
+        ("spindle.speed", "100"),
+        ("spindle.turns", "2.4"),
+    ];
+    for (name, value) in fine.iter().chain(changes) {
+        settings.set_text(name, value).expect("a valid setting");
+    }
+    settings
+}
+
+/// Largest height over the core of the last settled turn, diameters.
+fn height(settings: &SceneSettings) -> f64 {
+    let mut sim = Simulation::new(&settings.build().expect("a scene")).expect("starts");
+    let end = sim.motion_profile().end();
+    while sim.time() < end {
+        let left = end - sim.time();
+        sim.advance_profile(left.min(1e-3)).expect("goes on");
+    }
+    assert!(sim.outputs().turns_settled > 1.0);
+    sim.outputs().bulge_height / settings.wire.diameter
+}
+
+/// Nodes three diameters apart had fine wire stand off the faces twice as far as it does, every turn a bulge.
+#[test]
+fn fine_wire_on_tight_corners_is_no_bulge() {
+    let height = height(&fine_wire(&[]));
+    // at a sixth of that spacing; 0.95 at 0.3 mm
+    assert!((height - 0.41).abs() < 0.05, "{height} d");
+}
+
+#[test]
+fn stiff_wire_and_round_corners_keep_their_spacing() {
+    let near = |settings: &SceneSettings| {
+        let solver = settings.build().expect("a scene").solver;
+        (solver.spacing_near, solver.spacing_free)
+    };
+    let mut fig8 = SceneSettings::load("fig8").expect("packed");
+    let usual = near(&fig8);
+    fig8.set_text("core.corner_radius", "0")
+        .expect("a sharp core");
+    assert_eq!(near(&fig8), usual, "the wire is bent more widely than that");
+    let (near, free) = near(&fine_wire(&[]));
+    assert_eq!(near, 0.25 * usual.0);
+    assert_eq!(free, usual.1, "the free span has no corners");
+    let given = fine_wire(&[("solver.spacing_near_mm", "0.2")]);
+    assert_eq!(given.build().expect("a scene").solver.spacing_near, 0.2e-3);
+}
