@@ -80,9 +80,14 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
             surface.radius_max() + radius
         )));
     }
-    // the core begins turned towards the nozzle
+    // the core begins turned towards the nozzle, the way round on which its spindle lays wire
     let aside = libm::atan2(-nozzle.z, nozzle.x);
-    let angle0 = crate::settings::Start::core_angle(half, radius, distance) + aside;
+    let turned = crate::settings::Start::core_angle(half, radius, distance);
+    let angle0 = aside
+        + match inputs.spindle_speed < 0.0 {
+            true => -turned,
+            false => turned,
+        };
     let clamp_core = V3::new(half + radius, scene.start.clamp_y, 0.0);
     let clamp = Spin::new(angle0).to_lab(clamp_core);
     let points = line_of_nodes(scene, &surface, clamp, nozzle, angle0);
