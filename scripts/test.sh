@@ -169,7 +169,7 @@ rust() {
 fmu() {
     build_command
     build_fmu
-    local python missing needs importers=
+    local python missing needs importers= machine=
     missing=$(scripts/missing_tools.sh portable)
     if [ -z "$missing" ]; then
         # From here on the FMU is the portable one.
@@ -191,11 +191,14 @@ fmu() {
         if [ -n "$missing" ]; then skip "tests that need: $needs" "$missing"; fi
     done
     # Where their packages cannot run they need not be fetched; the tests say so.
-    if [ -z "$(scripts/missing_tools.sh importers)" ]; then importers=$(scripts/venv.sh importers); fi
+    if [ -z "$(scripts/missing_tools.sh importers)" ]; then
+        importers=$(scripts/venv.sh importers)
+        machine=$(scripts/venv.sh machine)
+    fi
     say_what_was_skipped fmu
     # -rs names the tests that were skipped, with the reason.
     COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_IMPORTERS_PYTHON=$importers \
-        "$python" -m pytest -q -rs tests/fmpy
+        COILWIND_MACHINE_PYTHON=$machine "$python" -m pytest -q -rs tests/fmpy
 }
 
 echo "Stages, with minutes from nothing on two cores (less where target/ holds builds):"
