@@ -74,6 +74,7 @@ For connecting the FMU: every input, output and parameter with its unit, start v
 - Every value is in the unit of its column. `modelDescription.xml` gives importers the display unit as well.
 - *fixed* parameters are set before `fmi2ExitInitializationMode`. *tunable* ones may also change at a communication point.
 - A parameter that the importer sets wins over `scene.file`, which wins over the default.
+- A text with choices has a twin that takes the number of the choice, `core.shape_number` for `core.shape`; scene files have the text only.
 - Keys of `[spindle]` and `output.history_interval` do not exist here: the spindle is an input. `traverse.mode` says whether the nozzle is one.
 
 [Stepping](stepping.md) says when an input counts. [Reading defects](../guide/reading-defects.md) explains the measures.
@@ -127,7 +128,7 @@ def read_variables(command):
 
 def scene_page(variables):
     """Every key of a scene file, a table per section."""
-    parameters = [v for v in variables if v["causality"] == "parameter" and v["name"] != "scene.file"]
+    parameters = [v for v in variables if v["causality"] == "parameter" and v["name"] != "scene.file" and not v["fmuOnly"]]
     top = [v for v in parameters if "." not in v["name"]]
     parts = [HEADER, "", SCENE_INTRO, "## Top level", "", *key_table(top)]
     for section in dict.fromkeys(v["name"].split(".")[0] for v in parameters if "." in v["name"]):

@@ -17,6 +17,10 @@ pub struct Inputs {
     pub nozzle_offset_x: f64,
     /// nozzle beside the plane of the scene's nozzle and the core axis, along z, m
     pub nozzle_offset_z: f64,
+    /// torque that holds the tensioner's wheel back, N m; over the wheel's radius it adds to `tension_setpoint`
+    pub brake_torque: f64,
+    /// damper on the tensioner beside that of the scene, N s/m
+    pub tensioner_damping: f64,
 }
 
 impl Inputs {
@@ -27,6 +31,8 @@ impl Inputs {
         tension_setpoint: 0.0,
         nozzle_offset_x: 0.0,
         nozzle_offset_z: 0.0,
+        brake_torque: 0.0,
+        tensioner_damping: 0.0,
     };
 
     /// Where these inputs are after `dt` (s) at these rates, per s.
@@ -37,6 +43,8 @@ impl Inputs {
             tension_setpoint: self.tension_setpoint + rates.tension_setpoint * dt,
             nozzle_offset_x: self.nozzle_offset_x + rates.nozzle_offset_x * dt,
             nozzle_offset_z: self.nozzle_offset_z + rates.nozzle_offset_z * dt,
+            brake_torque: self.brake_torque + rates.brake_torque * dt,
+            tensioner_damping: self.tensioner_damping + rates.tensioner_damping * dt,
         }
     }
 }
@@ -145,6 +153,22 @@ pub struct Outputs {
     pub spindle_torque_total: f64,
     /// unstretched wire from the clamp to where it broke, m; 0 for whole wire
     pub break_position: f64,
+    /// double turns found so far
+    pub defect_count_double_turn: i32,
+    /// skipped grooves found so far
+    pub defect_count_skipped_groove: i32,
+    /// early layer jumps found so far
+    pub defect_count_early_jump: i32,
+    /// late layer jumps found so far
+    pub defect_count_late_jump: i32,
+    /// loose turns found so far
+    pub defect_count_loose_turn: i32,
+    /// overstretched turns found so far
+    pub defect_count_overstretch: i32,
+    /// collisions of coil and nozzle found so far
+    pub defect_count_collision: i32,
+    /// times that wire shot out of the nozzle found so far
+    pub defect_count_runaway: i32,
     /// time steps taken
     pub solver_steps: f64,
     /// time steps rejected

@@ -197,3 +197,111 @@ fn a_break_tells_where_the_wire_parted() {
         o.break_position
     );
 }
+
+/// A brake on the wheel pulls as the set tension does, and inputs read back as they were given.
+#[test]
+fn a_brake_pulls_by_its_torque_over_the_radius_of_its_wheel() {
+    let wound = |set: f64, torque: f64| {
+        let mut run = Simulation::new(&fig8(&[("tensioner.radius", "0.25")])).expect("starts");
+        run.step_beyond(true);
+        let rates = Inputs {
+            tension_setpoint: if torque > 0.0 { 0.0 } else { 20.0 },
+            brake_torque: if torque > 0.0 { 5.0 } else { 0.0 },
+            ..Inputs::HELD
+        };
+        let mut now = Inputs {
+            spindle_speed: 100.0,
+            tension_setpoint: set,
+            brake_torque: torque,
+            ..run.inputs()
+        };
+        run.set_start(Inputs {
+            spindle_speed: 0.0,
+            ..now
+        })
+        .expect("starts");
+        for _ in 0..40 {
+            run.advance_ramped(now, rates, 1e-3).expect("goes on");
+            now = now.after(&rates, 1e-3);
+            assert_eq!(run.inputs(), now);
+        }
+        *run.outputs()
+    };
+    let (by_force, by_brake) = (wound(15.0, 0.0), wound(13.0, 0.5));
+    // (2 N more from the start, and 20 N/s)
+    assert!(by_brake.wire_tension > 14.0, "{}", by_brake.wire_tension);
+    assert!((by_force.wire_tension - by_brake.wire_tension).abs() < 1e-9);
+    assert!((by_force.fed_length - by_brake.fed_length).abs() < 1e-12);
+    assert!(by_force.turns_wound > 0.3, "{}", by_force.turns_wound);
+}
+
+/// A damper that the machine adds is one that the scene has.
+#[test]
+fn a_damper_from_outside_is_a_damper_of_the_scene() {
+    let wound = |scene: &str, outside: f64| {
+        let changes = [("tensioner.damping", scene), ("spindle.speed", "100")];
+        let mut run = Simulation::new(&fig8(&changes)).expect("starts");
+        run.step_beyond(true);
+        for k in 0..40 {
+            let now = Inputs {
+                spindle_speed: (10.0 * f64::from(k)).min(100.0),
+                tensioner_damping: outside,
+                ..run.inputs()
+            };
+            run.advance(now, 1e-3).expect("goes on");
+        }
+        assert_eq!(run.inputs().tensioner_damping, outside);
+        *run.outputs()
+    };
+    let (scene, outside, both) = (wound("3", 0.0), wound("0", 3.0), wound("1", 2.0));
+    assert!(scene.wire_tension > 15.5, "{}", scene.wire_tension);
+    for other in [outside, both] {
+        let apart = (other.wire_tension - scene.wire_tension).abs();
+        assert!(apart < 0.05, "{apart}");
+        assert!((other.fed_length - scene.fed_length).abs() < 1e-5);
+    }
+}
+
+/// A place that was measured where a step begins has the nozzle a step late, unless it is told so.
+#[test]
+fn a_nozzle_measured_at_the_start_of_a_step_is_as_late_as_the_page_says() {
+    let step = 1e-3;
+    // place of a carriage over time, its rate, and the largest lag allowed at the end of a step
+    let even: [fn(f64) -> f64; 2] = [|t| 0.1 * t, |_| 0.1];
+    let faster: [fn(f64) -> f64; 2] = [|t| 5.0 * t * t, |t| 10.0 * t];
+    let lag = |at_start: &str, [place, rate]: [fn(f64) -> f64; 2], with_rate: bool| {
+        let mut run =
+            Simulation::new(&fig8(&[("nozzle.position_at_start", at_start)])).expect("starts");
+        let start = run.inputs();
+        let mut most = 0.0_f64;
+        for k in 0..20 {
+            let time = f64::from(k) * step;
+            let now = Inputs {
+                nozzle_position: start.nozzle_position + place(time),
+                ..start
+            };
+            let rates = Inputs {
+                nozzle_position: if with_rate { rate(time) } else { 0.0 },
+                ..Inputs::HELD
+            };
+            run.advance_ramped(now, rates, step).expect("goes on");
+            if k > 1 {
+                let is = run.outputs().nozzle_y - start.nozzle_position;
+                most = most.max((is - place(time + step)).abs());
+            }
+        }
+        most
+    };
+    let close = |got: f64, want: f64| assert!((got - want).abs() < 1e-9, "{got} {want}");
+    close(lag("false", even, false), 0.1 * step);
+    close(lag("true", even, false), 0.0);
+    close(lag("false", even, true), 0.0);
+    close(lag("true", even, true), 0.0);
+    // speeding up: v dt, a dt^2, a dt^2 / 2
+    close(
+        lag("false", faster, false),
+        5.0 * (0.02_f64.powi(2) - 0.019_f64.powi(2)),
+    );
+    close(lag("true", faster, false), 10.0 * step * step);
+    close(lag("false", faster, true), 5.0 * step * step);
+}

@@ -172,3 +172,40 @@ fn a_set_tension_of_zero_has_derivatives() {
         .unwrap();
     assert!(slope.tensioner_speed < 0.0, "{}", slope.tensioner_speed);
 }
+
+/// A brake is a pull, and a damper is one where wire passes.
+#[test]
+fn brake_and_damper_have_derivatives() {
+    let (mut checked, mut met) = (0, 0);
+    wind(100.0, 1e-4, 0.4, |k, before, inputs| {
+        if k % 25 != 20 {
+            return;
+        }
+        let slope = |along: Inputs| {
+            let got = before.step_derivative(inputs, Inputs::HELD, 1e-4, along);
+            smooth(&got.unwrap())
+        };
+        let pull = slope(along(2, 1.0));
+        let brake = slope(Inputs {
+            brake_torque: before.scene().tensioner.radius,
+            ..Inputs::HELD
+        });
+        let damper = slope(Inputs {
+            tensioner_damping: 1.0,
+            ..Inputs::HELD
+        });
+        // (the tensioner's speed over the step)
+        let speed = before.outputs().tensioner_speed;
+        let tension = Outputs::SMOOTH
+            .iter()
+            .position(|name| *name == "tensioner_speed")
+            .unwrap();
+        assert!(speed > 0.01, "{speed}");
+        let (torque, damped) = (brake[tension], damper[tension] / speed);
+        met += u32::from((torque / pull[tension] - 1.0).abs() < 1e-3);
+        met += u32::from((damped / pull[tension] - 1.0).abs() < 0.1);
+        checked += 2;
+    });
+    // (where wire lands, the last digit of a pull is enough for another slope)
+    assert!(checked > 8 && 5 * met >= 4 * checked, "{met} of {checked}");
+}

@@ -211,7 +211,7 @@ fn outputs_with_derivatives_declare_their_dependencies() {
     let text = coilwind_model_description::model_description().expect("valid");
     let structure = &text[text.find("<Outputs>").expect("a structure")
         ..text.find("<InitialUnknowns>").expect("the next")];
-    let declared = structure.matches(r#"dependencies="1 2 3 4 5""#).count();
+    let declared = structure.matches(r#"dependencies="1 2 3 4 5 6 7""#).count();
     assert_eq!(declared, Outputs::SMOOTH.len());
     assert!(!text.contains("layers closed"));
 }
@@ -393,6 +393,90 @@ fn the_nozzle_follows_a_law_where_the_importer_asks_for_one() {
     assert!(mode == "orthocyclic" && at > -6.3e-3, "{mode} {at}");
     let (_, helical, told) = wound(Some("helical"));
     assert!(helical > at && told >= 1, "{helical} {told}");
+}
+
+/// Importers that set no texts choose by number; a number wins over the text, and 0 leaves it.
+#[test]
+fn a_choice_can_be_made_by_its_number() {
+    let number = |value: i32| {
+        move |i: &mut Instance| {
+            i.set(&[reference("core.shape_number")], [value])
+                .expect("a choice");
+        }
+    };
+    let shape = |i: &mut Instance| {
+        i.get::<String>(&[reference("core.shape")])
+            .expect("a shape")[0]
+            .clone()
+    };
+    let (mut instance, messages) = started(0.0, number(2));
+    assert_eq!(shape(&mut instance), "cylinder");
+    assert_eq!(
+        instance
+            .get::<i32>(&[reference("core.shape_number")])
+            .expect("a number"),
+        [2]
+    );
+    assert!(warnings(&messages).is_empty());
+    let (mut instance, _) = started(0.0, number(0));
+    assert_eq!(shape(&mut instance), "rounded-box");
+    // in whatever order, and it is told
+    for text_first in [true, false] {
+        let (mut instance, messages) = started(0.0, |i| {
+            if text_first {
+                set_text(i, "core.shape", "rounded-box");
+            }
+            number(2)(i);
+            set_text(i, "core.shape", "rounded-box");
+        });
+        assert_eq!(shape(&mut instance), "cylinder");
+        let told = warnings(&messages).join("\n");
+        assert!(
+            told.contains("core.shape = cylinder was set by core.shape_number = 2"),
+            "{told}"
+        );
+    }
+    for wrong in [-1, 4] {
+        let mut instance = Instance::for_tests();
+        let refused = instance.set(&[reference("core.shape_number")], [wrong]);
+        assert!(
+            refused
+                .expect_err("no such choice")
+                .to_string()
+                .contains("0 to 3")
+        );
+    }
+}
+
+/// Numbers and texts are the same choices, in the order of the text's.
+#[test]
+fn every_choice_has_a_number() {
+    use coilwind::variables::{Access, Value, choice, table};
+    for row in table().iter().filter(|row| !row.choices.is_empty()) {
+        let number = table()
+            .iter()
+            .find(|other| matches!(other.access, Access::Choice(text) if text == row.name));
+        let number = number.unwrap_or_else(|| panic!("{} has no number", row.name));
+        assert_eq!(
+            number.max,
+            Some(row.choices.len() as f64),
+            "{}",
+            number.name
+        );
+        for (place, text) in (1..).zip(row.choices) {
+            let (row_of, value) = choice(number, &Value::Integer(place)).expect("a choice");
+            assert_eq!(
+                (row_of.name, value),
+                (row.name, Value::String((*text).to_owned()))
+            );
+            assert!(
+                number.description.contains(&format!("{place} {text}")),
+                "{}",
+                number.name
+            );
+        }
+        assert!(choice(number, &Value::Integer(0)).is_none());
+    }
 }
 
 #[test]

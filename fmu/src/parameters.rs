@@ -6,7 +6,7 @@ use coilwind::measure::DefectLimits;
 use coilwind::scene::{Scene, Warning};
 use coilwind::settings::{BY_INPUT, Friction, Origin, SceneSettings};
 use coilwind::signals::Inputs;
-use coilwind::variables::{Access, Value, Variable, by_name, by_reference};
+use coilwind::variables::{Access, Value, Variable, by_name, by_reference, choice};
 use coilwind_model_description::DEFAULT_TOLERANCE;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -163,13 +163,17 @@ impl Parameters {
             Access::Parameter { .. } if variable.name == SCENE_FILE => {
                 Some(Value::String(self.file.clone()))
             }
-            Access::Parameter { get, .. } => match self.explicit.get(&variable.reference) {
-                Some(value) => Some(value.clone()),
-                None => Some(match variable.fmu_start {
+            Access::Parameter { get, .. } => {
+                let set = with_choices(&self.explicit).remove(&variable.reference);
+                Some(set.unwrap_or_else(|| match variable.fmu_start {
                     Some(start) => Value::String(start.to_owned()),
                     None => get(&self.settings),
-                }),
-            },
+                }))
+            }
+            Access::Choice(_) => {
+                let number = self.explicit.get(&variable.reference);
+                Some(number.cloned().unwrap_or(Value::Integer(0)))
+            }
             Access::Input { .. } | Access::Output(_) => None,
         }
     }
@@ -200,7 +204,8 @@ impl Parameters {
     ///
     /// Importers that write every start value overrule the file without meaning to.
     pub(crate) fn contradictions(&self) -> Vec<String> {
-        let differing = self.explicit.iter().filter_map(|(reference, value)| {
+        let chosen = with_choices(&self.explicit);
+        let differing = chosen.iter().filter_map(|(reference, value)| {
             let variable = by_reference(*reference)?;
             let Access::Parameter { get, .. } = variable.access else {
                 return None;
@@ -216,7 +221,16 @@ impl Parameters {
                 )
             })
         });
-        differing.collect()
+        let overruled = self.explicit.iter().filter_map(|(reference, value)| {
+            let number = by_reference(*reference)?;
+            let (row, text) = choice(number, value)?;
+            let other = self.explicit.get(&row.reference).filter(|x| **x != text)?;
+            let (name, by) = (row.name, number.name);
+            Some(format!(
+                "{name} = {text} was set by {by} = {value} and holds; {name} was set to {other} too"
+            ))
+        });
+        differing.chain(overruled).collect()
     }
 
     /// Returns a text if a `value` of an input at the start is another than the scene's parameter for it.
@@ -283,17 +297,16 @@ fn laid_over(
     resources: Option<&Path>,
 ) -> Result<SceneSettings, Error> {
     let mut settings = base.clone();
-    for (reference, value) in explicit {
-        let reference = *reference;
+    for (reference, value) in with_choices(explicit) {
         let variable = by_reference(reference).ok_or(Error::UnknownReference { reference })?;
-        if leaves_to_input(variable, value) {
+        if leaves_to_input(variable, &value) {
             continue;
         }
         let value = match value {
             Value::String(file) if [MESH_FILE, TRAVERSE_FILE].contains(&variable.name) => {
-                Value::String(resources::file(file, resources))
+                Value::String(resources::file(&file, resources))
             }
-            value => value.clone(),
+            value => value,
         };
         settings.set(variable.name, value)?;
     }
@@ -305,6 +318,21 @@ fn laid_over(
         settings.solver.tolerance = row.nearest(scaled.min(most));
     }
     Ok(settings)
+}
+
+/// Returns what was set explicitly with the texts that numbers stand for; a number wins over the text.
+fn with_choices(explicit: &BTreeMap<u32, Value>) -> BTreeMap<u32, Value> {
+    let mut all = explicit.clone();
+    for (reference, value) in explicit {
+        let number = by_reference(*reference);
+        if number.is_some_and(|row| matches!(row.access, Access::Choice(_))) {
+            all.remove(reference);
+        }
+        if let Some((row, text)) = number.and_then(|row| choice(row, value)) {
+            all.insert(row.reference, text);
+        }
+    }
+    all
 }
 
 /// Tells whether a value leaves the nozzle to its input. The scene then keeps the mode of its own motion, whose layers say

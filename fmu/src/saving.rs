@@ -133,8 +133,8 @@ fn other_bytes_are_refused_with_the_reason() {
     assert!(matches!(
         changed(8),
         BytesError::Version {
-            found: 5,
-            expected: 4
+            found: 4,
+            expected: 5
         }
     ));
     assert!(matches!(changed(20), BytesError::Guid { .. }));

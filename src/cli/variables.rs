@@ -5,7 +5,7 @@ use super::terminal::print;
 use clap::Args;
 use coilwind::scene::unit_suffixes;
 use coilwind::settings::SceneSettings;
-use coilwind::variables::{Value, Variable, table};
+use coilwind::variables::{Access, Value, Variable, table};
 use serde_json::json;
 
 /// Arguments of `variables`.
@@ -71,6 +71,7 @@ fn as_json(v: &Variable, defaults: &SceneSettings) -> serde_json::Value {
         "keySuffixes": unit_suffixes(v),
         "fmuStart": v.fmu_start,
         "nativeOnly": v.native_only,
+        "fmuOnly": matches!(v.access, Access::Choice(_)),
         "description": v.description,
     })
 }

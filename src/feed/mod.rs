@@ -24,7 +24,7 @@ use serde::{Deserialize, Serialize};
 pub struct FeedSpec {
     /// equivalent mass, kg (0: the set force acts at the nozzle)
     pub mass: f64,
-    /// damper of the tensioner, N s/m
+    /// damper of the tensioner, N s/m, beside that of [`Feed::damping`]
     pub damping: f64,
     /// line stiffness, N/m (infinite: the tensioner's mass sits at the nozzle)
     pub line_stiffness: f64,
@@ -49,6 +49,8 @@ pub struct Feed {
     pub paid_rate: f64,
     /// tension in the line, N
     pub line_tension: f64,
+    /// damper that the machine adds to the tensioner's own, N s/m
+    pub damping: f64,
 }
 
 impl Feed {
@@ -65,7 +67,13 @@ impl Feed {
             paid,
             paid_rate: 0.0,
             line_tension: tension,
+            damping: 0.0,
         }
+    }
+
+    /// All dampers on the tensioner, N s/m.
+    pub fn damping_on(&self, spec: &FeedSpec) -> f64 {
+        spec.damping + self.damping
     }
 
     /// Advances by `dt` with the last edge of unstretched length `rest` now `length` long; returns the unstretched
@@ -88,9 +96,10 @@ impl Feed {
         let grip =
             libm::exp(spec.exit_friction * deflection * if self.rate >= 0.0 { 1.0 } else { -1.0 });
         let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
+        let damping = self.damping_on(spec);
         let line = |grown: f64| -> (f64, f64) {
             // line tension and its slope with the wire grown in this step
-            let drag = spec.damping / dt;
+            let drag = damping / dt;
             if spec.mass == 0.0 {
                 return (set + drag * grown, drag);
             }
@@ -133,7 +142,7 @@ impl Feed {
         if elastic_line {
             self.paid += dt * self.paid_rate;
             self.paid_rate += dt * (tension - set) / spec.mass;
-            self.paid_rate /= 1.0 + dt * spec.damping / spec.mass;
+            self.paid_rate /= 1.0 + dt * damping / spec.mass;
         } else {
             self.paid = self.fed;
             self.paid_rate = self.rate;

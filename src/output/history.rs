@@ -147,7 +147,7 @@ impl History {
                 Value::Boolean(flag) => i32::from(flag).to_string(),
                 value => value.to_string(),
             },
-            Access::Parameter { .. } => String::new(),
+            Access::Parameter { .. } | Access::Choice(_) => String::new(),
         });
         let time = Value::Real(time).to_string();
         let mut bytes = 0;
@@ -216,6 +216,6 @@ fn open_alone(path: &Path) -> std::io::Result<File> {
 fn columns() -> impl Iterator<Item = (&'static str, Access)> {
     table()
         .iter()
-        .filter(|v| !matches!(v.access, Access::Parameter { .. }))
+        .filter(|v| matches!(v.access, Access::Input { .. } | Access::Output(_)))
         .map(|v| (v.name, v.access))
 }

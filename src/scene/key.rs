@@ -2,9 +2,7 @@
 
 use super::SceneError;
 use crate::settings::Origin;
-use crate::variables::{
-    Causality, Kind, Scale, Variable, by_name, split_suffix, suffixes_of, table,
-};
+use crate::variables::{Access, Kind, Scale, Variable, by_name, split_suffix, suffixes_of, table};
 
 /// Similarity (Jaro-Winkler) from which a guess helps more than it misleads; chosen.
 const SIMILAR: f64 = 0.8;
@@ -45,17 +43,19 @@ pub(super) fn resolve(name: &str, value: &str, origin: &Origin) -> Result<Key, S
     Err(unknown(name, value, origin, split))
 }
 
+/// Whether a variable is a leaf of a scene.
+fn is_leaf(variable: &Variable) -> bool {
+    matches!(variable.access, Access::Parameter { .. })
+}
+
 fn parameter(name: &str) -> Option<&'static Variable> {
-    by_name(name).filter(|v| v.causality == Causality::Parameter)
+    by_name(name).filter(|v| is_leaf(v))
 }
 
 /// The sections of a scene file, in the order of the table.
 pub(super) fn sections() -> Vec<&'static str> {
     let mut sections = Vec::new();
-    for variable in table()
-        .iter()
-        .filter(|v| v.causality == Causality::Parameter)
-    {
+    for variable in table().iter().filter(|v| is_leaf(v)) {
         if let Some((section, _)) = variable.name.split_once('.')
             && section != "scene"
             && !sections.contains(&section)
@@ -81,11 +81,7 @@ fn unknown(
     origin: &Origin,
     split: Option<(&str, &'static str, Scale)>,
 ) -> SceneError {
-    let parameters = || {
-        table()
-            .iter()
-            .filter(|v| v.causality == Causality::Parameter)
-    };
+    let parameters = || table().iter().filter(|v| is_leaf(v));
     let (section, leaf) = name.split_once('.').unwrap_or(("", name));
     let in_section = |v: &&Variable| {
         v.name
@@ -135,7 +131,7 @@ fn unknown(
 
 /// The unit suffixes that a key of this variable may carry, for listings.
 pub fn unit_suffixes(variable: &Variable) -> Vec<&'static str> {
-    if variable.kind != Kind::Real || variable.causality != Causality::Parameter {
+    if variable.kind != Kind::Real || !is_leaf(variable) {
         return Vec::new();
     }
     suffixes_of(variable.unit).map(|s| s.0).collect()

@@ -18,7 +18,7 @@ impl Serialize for SceneSettings {
             Access::Parameter { get, .. } => {
                 Some((v.reference, get(self), self.origins.get(v.name).cloned()))
             }
-            Access::Input { .. } | Access::Output(_) => None,
+            Access::Input { .. } | Access::Output(_) | Access::Choice(_) => None,
         });
         let saved: Saved = (self.name.clone(), self.file.clone(), leaves.collect());
         saved.serialize(serializer)

@@ -271,6 +271,7 @@ impl Default for SceneSettings {
                 distance: 60e-3,
                 y_start: 0.0,
                 exit_friction: 0.0,
+                position_at_start: false,
             },
             tensioner: Tensioner {
                 tension: 15.0,
@@ -278,6 +279,7 @@ impl Default for SceneSettings {
                 line_length: 0.5,
                 line_damping_ratio: 0.1,
                 damping: 0.0,
+                radius: 50e-3,
             },
             start: Start { clamp_y: 0.0 },
             spindle: Spindle {

@@ -9,6 +9,8 @@ pub struct Nozzle {
     pub y_start: f64,
     /// friction force at the exit as a share of tension per rad of deflection
     pub exit_friction: f64,
+    /// whether inputs without a rate say where the nozzle is at the start of a communication step, not at its end
+    pub position_at_start: bool,
 }
 
 /// Constant pull through an equivalent mass and an elastic line.
@@ -24,6 +26,8 @@ pub struct Tensioner {
     pub line_damping_ratio: f64,
     /// damper on the tensioner, N s/m
     pub damping: f64,
+    /// radius of the wheel on which a brake acts, m
+    pub radius: f64,
 }
 
 /// Where the wire begins: clamped to the middle of the +x face, tangent to it, straight to the

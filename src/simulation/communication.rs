@@ -12,6 +12,7 @@ use super::motion_profile::ROUNDING;
 use super::outputs::keep_told;
 use super::rates::rates_of;
 use super::talk::{LONGEST_WAIT, Served};
+use super::told::{Told, as_meant};
 use super::{SimError, Simulation, Winding};
 use crate::signals::{Inputs, Outputs};
 
@@ -38,7 +39,8 @@ impl Simulation {
     /// Advances by `dt`, s, with inputs that start at `inputs` and change evenly, at `rates` per s.
     ///
     /// The nozzle moves evenly from where it is to where its input is at the end, or with the core by the scene's law
-    /// ([`Self::starting_by_law`]). Steps below a nanosecond only add up until they are worth solving for.
+    /// ([`Self::starting_by_law`]). With `nozzle.position_at_start`, an input of its place without a rate is where it is at the start,
+    /// and goes on as between the last two. Steps below a nanosecond only add up until they are worth solving for.
     ///
     /// # Errors
     ///
@@ -49,7 +51,24 @@ impl Simulation {
         rates: Inputs,
         dt: f64,
     ) -> Result<(), SimError> {
-        if !self.may_step_beyond(&inputs.after(&rates, dt)) || dt.is_nan() || dt <= 0.0 {
+        check_finite(&inputs, self.time())?;
+        check_finite(&inputs.after(&rates, dt), self.time())?;
+        let told = Told::new(inputs, &rates, dt);
+        let before = self.talk.told.replace(told);
+        let meant = as_meant(self.scene(), inputs, rates, before.as_ref());
+        let gone = self.advance_as_meant(meant, dt);
+        if gone.is_err() {
+            self.talk.told = before;
+        }
+        gone
+    }
+
+    fn advance_as_meant(
+        &mut self,
+        (inputs, rates): (Inputs, Inputs),
+        dt: f64,
+    ) -> Result<(), SimError> {
+        if !self.may_step_beyond(&inputs, &rates, dt) || dt.is_nan() || dt <= 0.0 {
             return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
         }
         check_finite(&inputs, self.time())?;
@@ -83,7 +102,7 @@ impl Simulation {
     /// See [`Self::advance`].
     pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
         self.settle()?;
-        (self.talk.course, self.talk.travel) = (None, None);
+        (self.talk.course, self.talk.travel, self.talk.told) = (None, None, None);
         self.step_to_the_point(|winding| winding.advance_profile(dt))
     }
 
@@ -133,14 +152,17 @@ impl Simulation {
         gone
     }
 
-    /// Whether a step may reach beyond the communication point at all, when the inputs there are `end`.
-    fn may_step_beyond(&self, end: &Inputs) -> bool {
+    /// Whether a step may reach beyond the communication point at all, when the inputs of a step of `dt`, s, change at `rates`.
+    fn may_step_beyond(&self, inputs: &Inputs, rates: &Inputs, dt: f64) -> bool {
         let method = &self.now.stepper;
-        let now = self.inputs();
+        let (now, end) = (self.inputs(), inputs.after(rates, dt));
         let aside = (end.nozzle_offset_x - now.nozzle_offset_x)
             .hypot(end.nozzle_offset_z - now.nozzle_offset_z);
-        // (courses know of no way aside, and of no law of the nozzle)
+        let damped =
+            inputs.tensioner_damping == now.tensioner_damping && rates.tensioner_damping == 0.0;
+        // (courses know of no way aside, of no law of the nozzle, and of one damper)
         !self.now.run.nozzle_by_law
+            && damped
             && aside <= NOZZLE * self.now.scene.solver.tolerance
             && self.steps_beyond
             && method.is_implicit()

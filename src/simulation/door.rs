@@ -56,6 +56,9 @@ impl Winding {
         let statistics_before = self.statistics();
         let gone = match &source {
             Source::Inputs { inputs, rates } => {
+                // (its mean over the step)
+                self.sys
+                    .damp_tensioner(inputs.after(rates, 0.5 * dt).tensioner_damping);
                 let drive = self.drive_of(*inputs, rates, [dt, span], owed);
                 match self.run.nozzle_by_law {
                     true => self.follow_by_law(&drive),
@@ -80,6 +83,7 @@ impl Winding {
             let end = inputs.after(rates, dt);
             self.sys.state.spindle.speed = end.spindle_speed;
             self.sys.state.set_tension = end.tension_setpoint;
+            self.sys.damp_tensioner(end.tensioner_damping);
             self.sys.state.support[1].point = self.nozzle_at_end(&end);
         }
         self.run.acceleration = (self.sys.state.spindle.speed - speed_before) / span;
@@ -191,6 +195,8 @@ pub(super) fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {
         ("tension_setpoint", inputs.tension_setpoint),
         ("nozzle_offset_x", inputs.nozzle_offset_x),
         ("nozzle_offset_z", inputs.nozzle_offset_z),
+        ("brake_torque", inputs.brake_torque),
+        ("tensioner_damping", inputs.tensioner_damping),
     ] {
         if !value.is_finite() {
             return Err(SimError {
@@ -200,15 +206,18 @@ pub(super) fn check_finite(inputs: &Inputs, time: f64) -> Result<(), SimError> {
             });
         }
     }
-    if inputs.tension_setpoint < 0.0 {
-        return Err(SimError {
-            time,
-            node: None,
-            reason: format!(
-                "input tension_setpoint = {} N; allowed: 0 N or more",
-                inputs.tension_setpoint
-            ),
-        });
+    for (name, value, unit) in [
+        ("tension_setpoint", inputs.tension_setpoint, "N"),
+        ("brake_torque", inputs.brake_torque, "N.m"),
+        ("tensioner_damping", inputs.tensioner_damping, "N.s/m"),
+    ] {
+        if value < 0.0 {
+            return Err(SimError {
+                time,
+                node: None,
+                reason: format!("input {name} = {value} {unit}; allowed: 0 {unit} or more"),
+            });
+        }
     }
     Ok(())
 }

@@ -34,6 +34,7 @@ mod step_derivatives;
 mod stepping;
 mod summary;
 mod talk;
+mod told;
 mod traverse;
 mod winding;
 

@@ -143,21 +143,36 @@ impl Winding {
         let count = self.coil.defect_count() as usize + self.run.faults.len();
         let last_defect = self.last_defect();
         let raised = self.coil.raised();
-        let breaks = self.faults_of(DefectKind::Break);
-        let slacks = self.faults_of(DefectKind::Slack);
+        let faults = [
+            DefectKind::Break,
+            DefectKind::Slack,
+            DefectKind::Collision,
+            DefectKind::Runaway,
+        ]
+        .map(|kind| self.faults_of(kind) as i32);
         let nozzle_angle = self.nozzle_angle();
         let machine = self.for_the_machine(&layon);
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
         o.wire_tension = tension;
-        o.defect_break = breaks > 0;
+        o.defect_break = faults[0] > 0;
         o.defect_count = count as i32;
         let raised = |kind: DefectKind| raised[kind as usize] as i32;
         o.defect_count_bulge = raised(DefectKind::Bulge);
         o.defect_count_gap = raised(DefectKind::Gap);
         o.defect_count_overlap = raised(DefectKind::Overlap);
-        o.defect_count_break = breaks as i32;
-        o.defect_count_slack = slacks as i32;
+        o.defect_count_double_turn = raised(DefectKind::DoubleTurn);
+        o.defect_count_skipped_groove = raised(DefectKind::SkippedGroove);
+        o.defect_count_early_jump = raised(DefectKind::EarlyJump);
+        o.defect_count_late_jump = raised(DefectKind::LateJump);
+        o.defect_count_loose_turn = raised(DefectKind::LooseTurn);
+        o.defect_count_overstretch = raised(DefectKind::Overstretch);
+        [
+            o.defect_count_break,
+            o.defect_count_slack,
+            o.defect_count_collision,
+            o.defect_count_runaway,
+        ] = faults;
         if let Some(last) = last_defect {
             o.defect_kind = last.kind.code();
             o.defect_turn = f64::from(last.turn);

@@ -1,8 +1,10 @@
 //! The handle of a run: its winding, the step ahead of it, and what was said at communication points.
 
 use super::ahead::Ahead;
+use super::door::check_finite;
 use super::pool::Pool;
 use super::talk::Talk;
+use super::told::{Told, with_brake};
 use super::{SimError, Winding};
 use crate::scene::Scene;
 use crate::signals::{Event, Inputs, Outputs};
@@ -61,7 +63,9 @@ impl Simulation {
     ///
     /// As for [`Self::new`].
     pub fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
-        Winding::starting_with(scene, inputs).map(Self::from)
+        check_finite(&inputs, 0.0)?;
+        Winding::starting_with(scene, with_brake(scene, inputs))
+            .map(|run| Self::started(run, inputs))
     }
 
     /// Starts a run whose nozzle follows [`Scene::nozzle_law`]; `nozzle_position` is not looked at in such a run.
@@ -70,7 +74,15 @@ impl Simulation {
     ///
     /// As for [`Self::new`].
     pub fn starting_by_law(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
-        Winding::starting_by_law(scene, inputs).map(Self::from)
+        check_finite(&inputs, 0.0)?;
+        Winding::starting_by_law(scene, with_brake(scene, inputs))
+            .map(|run| Self::started(run, inputs))
+    }
+
+    fn started(winding: Winding, inputs: Inputs) -> Self {
+        let mut run = Self::from(winding);
+        run.talk.told = Some(Told::new(inputs, &Inputs::HELD, 0.0));
+        run
     }
 
     /// Starts over with other inputs; only before the first step.
@@ -119,7 +131,11 @@ impl Simulation {
     /// Input values at the communication point.
     pub fn inputs(&self) -> Inputs {
         let served = self.talk.served.as_ref();
-        served.map_or_else(|| self.now.inputs(), |served| served.inputs)
+        let inputs = served.map_or_else(|| self.now.inputs(), |served| served.inputs);
+        match &self.talk.told {
+            Some(told) => told.pull_of(inputs),
+            None => inputs,
+        }
     }
 
     /// Outputs at the communication point.

@@ -136,6 +136,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         line_length: t.line_length,
     };
     sys.set_feed(spec, Feed::at_rest(&spec, tension));
+    sys.damp_tensioner(inputs.tensioner_damping);
     sys.state.line_wire = LineWire::at_rest(plastic);
     let law = ContactLaw {
         stiffness: scene.contact.stiffness,

@@ -15,10 +15,12 @@ const TURN: f64 = 3e-5;
 const SPEED: f64 = 0.01;
 /// ... of the nozzle's position, m, for wire of 0.7 mm, ...
 const WAY: f64 = 1e-6;
-/// ... and of the set tension, as a share of it.
+/// ... and of the pull, as a share of it, by tension, brake or damper.
 const PULL: f64 = 3e-3;
-/// Least change of the set tension, N, for wire of 0.7 mm.
+/// Least change of the pull, N, for wire of 0.7 mm.
 const LEAST_PULL: f64 = 1e-3;
+/// Least speed of the wire, m/s, at which a change of a damper shows in its pull.
+const SLOW: f64 = 0.1;
 /// Sizes of a difference over those above. A landing, or a step of the solver more or less, makes some of them jump; the
 /// middle of the slopes is then another one. Chosen.
 const SIZES: [f64; 3] = [0.3, 1.0, 3.0];
@@ -45,7 +47,7 @@ impl Simulation {
             run.advance_ramped(inputs.after(&along, by), rates, dt)?;
             Ok(*run.outputs())
         };
-        let reach = reach(self.scene(), &inputs, &along, dt);
+        let reach = reach(self, &inputs, &along, dt);
         let mut slopes = Vec::with_capacity(SIZES.len());
         let mut refused = None;
         for size in SIZES {
@@ -75,7 +77,8 @@ impl Simulation {
             let run = Self::starting_with(scene, inputs.after(&along, by))?;
             Ok(*run.outputs())
         };
-        let slope = slope(&outcome, reach(scene, &inputs, &along, 1.0))?;
+        let start = Self::starting_with(scene, inputs)?;
+        let slope = slope(&outcome, reach(&start, &inputs, &along, 1.0))?;
         Ok(Outputs::default().with_smooth(slope))
     }
 }
@@ -84,20 +87,23 @@ impl Simulation {
 type Smooth = [f64; Outputs::SMOOTH.len()];
 
 /// How far to go in the direction `along`, so that no input of a step of `dt`, s, changes by more than its share.
-fn reach(scene: &Scene, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
+fn reach(run: &Simulation, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
+    let scene = run.scene();
     let (diameter, bare) = (scene.wire.diameter, scene.wire.bare_diameter);
     let least = scaled(scaled(LEAST_PULL, bare), bare);
     let turn = TURN / dt;
     let share = (SPEED * inputs.spindle_speed.abs()).max(0.1 * turn);
+    let radius = scene.tensioner.radius;
+    let pull = (PULL * (inputs.tension_setpoint + inputs.brake_torque / radius)).max(least);
+    let passing = run.outputs().tensioner_speed.abs().max(SLOW);
     let most = [
         (along.spindle_speed, turn.min(share)),
         (along.nozzle_position, scaled(WAY, diameter)),
         (along.nozzle_offset_x, scaled(WAY, diameter)),
         (along.nozzle_offset_z, scaled(WAY, diameter)),
-        (
-            along.tension_setpoint,
-            (PULL * inputs.tension_setpoint).max(least),
-        ),
+        (along.tension_setpoint, pull),
+        (along.brake_torque, pull * radius),
+        (along.tensioner_damping, pull / passing),
     ];
     most.iter()
         .filter(|(along, _)| *along != 0.0)

@@ -6,6 +6,7 @@ use super::course::Course;
 use super::door::check_finite;
 use super::motion_profile::ROUNDING;
 use super::outputs::{keep_told, raise_as};
+use super::told::Told;
 use crate::signals::{Event, Inputs, Outputs};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,8 @@ pub(super) const LONGEST_WAIT: u32 = 64;
 /// What has been said at communication points, and what the inputs are taken to go on as.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Talk {
+    /// inputs of the last communication step as a master gave them; none where it did not
+    pub(super) told: Option<Told>,
     /// what the inputs are taken to go on as
     pub(super) course: Option<Course>,
     /// mean velocity of the nozzle over the last communication step, m/s, and its length, s
@@ -57,7 +60,8 @@ impl Talk {
             None => !ahead,
         };
         let course = self.course.as_ref().map_or(!ahead, Course::is_sound);
-        served && course && self.wait <= LONGEST_WAIT && self.waited <= LONGEST_WAIT
+        let told = self.told.as_ref().is_none_or(Told::is_sound);
+        served && course && told && self.wait <= LONGEST_WAIT && self.waited <= LONGEST_WAIT
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Winding {
 }
 
 impl Winding {
-    /// Input values at the winding's time.
+    /// Input values at the winding's time; all that holds the tensioner back is in `tension_setpoint`.
     pub(super) fn inputs(&self) -> Inputs {
         Inputs {
             spindle_speed: self.sys.state.spindle.speed,
@@ -38,6 +38,8 @@ impl Winding {
             tension_setpoint: self.sys.state.set_tension,
             nozzle_offset_x: self.sys.state.support[1].point.x - self.scene.nozzle.distance,
             nozzle_offset_z: self.sys.state.support[1].point.z,
+            brake_torque: 0.0,
+            tensioner_damping: self.sys.state.feed.map_or(0.0, |feed| feed.damping),
         }
     }
 

@@ -78,6 +78,13 @@ impl System {
         (self.model.feed, self.state.feed) = (Some(spec), Some(feed));
     }
 
+    /// Puts a damper on the tensioner beside its own, N s/m.
+    pub(crate) fn damp_tensioner(&mut self, damping: f64) {
+        if let Some(feed) = &mut self.state.feed {
+            feed.damping = damping;
+        }
+    }
+
     /// Set pull of the tensioner `dt` from now, N; it never pushes.
     pub fn set_tension_after(&self, dt: f64) -> f64 {
         (self.state.set_tension + self.state.set_rate * dt).max(0.0)

@@ -11,6 +11,7 @@
 //! | 100 | outputs |
 //! | 200 | diagnostics (local) |
 //! | 1000 | parameters, a hundred per section of the scene file |
+//! | 3000 | numbers of choices, for importers that set no texts |
 
 mod rows;
 mod unit;
@@ -36,6 +37,19 @@ pub fn by_reference(reference: u32) -> Option<&'static Variable> {
     rows.binary_search_by_key(&reference, |v| v.reference)
         .ok()
         .map(|row| &rows[row])
+}
+
+/// The text that the number of a choice stands for, with its row: `None` where `number` is no such variable, and for 0,
+/// which leaves the text as it is.
+pub fn choice(number: &Variable, value: &Value) -> Option<(&'static Variable, Value)> {
+    let (Access::Choice(text), Value::Integer(place)) = (number.access, value) else {
+        return None;
+    };
+    let row = by_name(text)?;
+    let text = row
+        .choices
+        .get(usize::try_from(*place).ok()?.checked_sub(1)?)?;
+    Some((row, Value::String((*text).to_owned())))
 }
 
 #[cfg(test)]

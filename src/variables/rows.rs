@@ -225,6 +225,25 @@ macro_rules! fmu_text {
     ($start:literal, $($cell:tt)*) => { Variable { fmu_start: Some($start), ..text!($($cell)*) } };
 }
 
+/// Number of a text's choice, for importers of the FMU that set no texts. A scene has the text only.
+macro_rules! number_of {
+    ($reference:literal, $name:literal, $text:literal, $count:literal, $description:literal) => {
+        Variable {
+            min: Some(0.0),
+            max: Some($count),
+            ..row!(
+                $reference,
+                $name,
+                Integer,
+                Parameter,
+                Fixed,
+                Access::Choice($text),
+                $description
+            )
+        }
+    };
+}
+
 macro_rules! table {
     ($($row:ident ( $($cell:tt)* ) ;)*) => {
         pub(super) static TABLE: &[Variable] = &[$($row!($($cell)*)),*];
@@ -237,6 +256,8 @@ table! {
     input(2, tension_setpoint, "N", "", 0.0, 1e4, 10.0, "pull of the tensioner");
     input(3, nozzle_offset_x, "m", "mm", -10.0, 10.0, 1e-2, "nozzle farther from the core axis than nozzle.distance, along x");
     input(4, nozzle_offset_z, "m", "mm", -10.0, 10.0, 1e-2, "nozzle beside where the scene has it, along z");
+    input(5, brake_torque, "N.m", "N.mm", 0.0, 1e4, 0.1, "torque that holds the tensioner's wheel back; over tensioner.radius it adds to tension_setpoint");
+    input(6, tensioner_damping, "N.s/m", "", 0.0, 1e4, 1.0, "damper on the tensioner beside tensioner.damping: pull per speed of the wire that it lets go");
 
     output(100, wire_tension, "N", "", -1e4, 1e5, 10.0, "tension in the free span at the nozzle exit");
     output(101, wire_tension_min, "N", "", -1e4, 1e5, 10.0, "smallest wire_tension since the last communication point");
@@ -291,6 +312,15 @@ table! {
     output(148, spindle_torque_total, "N.m", "N.mm", -1e6, 1e6, 0.1, "spindle_torque less coil_inertia times the mean acceleration of the last step; the core's own inertia is the drive's");
     output(149, break_position, "m", "", 0.0, 1e6, 1.0, "unstretched wire from the clamp to where it broke; 0: it is whole");
 
+    count(Output, 150, defect_count_double_turn, "double turns found so far");
+    count(Output, 151, defect_count_skipped_groove, "skipped grooves found so far");
+    count(Output, 152, defect_count_early_jump, "early layer jumps found so far");
+    count(Output, 153, defect_count_late_jump, "late layer jumps found so far");
+    count(Output, 154, defect_count_loose_turn, "loose turns found so far");
+    count(Output, 155, defect_count_overstretch, "overstretched turns found so far");
+    count(Output, 156, defect_count_collision, "collisions of coil and nozzle found so far");
+    count(Output, 157, defect_count_runaway, "times that wire shot out of the nozzle found so far");
+
     local(200, solver_steps, "1", "", 0.0, 1e18, 1e5, "time steps taken");
     local(201, solver_rejects, "1", "", 0.0, 1e18, 1.0, "time steps rejected");
     count(Local, 202, live_nodes, "nodes still computed");
@@ -339,12 +369,14 @@ table! {
     fixed(1200, "nozzle.distance", nozzle.distance, "m", "mm", 1e-3, 10.0, 0.1, "nozzle exit from the core axis, on +x");
     fixed(1201, "nozzle.y_start", nozzle.y_start, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis at the start");
     fixed(1202, "nozzle.exit_friction", nozzle.exit_friction, "1", "", 0.0, 2.0, 0.1, "friction at the exit, share of tension per rad of deflection");
+    switch(1203, "nozzle.position_at_start", nozzle.position_at_start, "what a place of the nozzle means that comes without its rate; false: where the nozzle is at the end of the step; true: where it is at the start, from where it goes on as between the last two places");
 
     fixed(1300, "tensioner.tension", tensioner.tension, "N", "", 0.0, 1e4, 10.0, "set pull; start value of tension_setpoint");
     fixed(1301, "tensioner.mass", tensioner.mass, "kg", "g", 0.0, 100.0, 1e-3, "equivalent mass of the tensioner; 0: constant pull at the nozzle");
     fixed(1302, "tensioner.line_length", tensioner.line_length, "m", "", 0.0, 100.0, 1.0, "wire between tensioner and nozzle");
     fixed(1303, "tensioner.line_damping_ratio", tensioner.line_damping_ratio, "1", "", 0.0, 10.0, 0.1, "damping ratio of the mass on the line");
     fixed(1304, "tensioner.damping", tensioner.damping, "N.s/m", "", 0.0, 1e4, 1.0, "damper on the tensioner: pull per speed of the wire that it lets go");
+    fixed(1305, "tensioner.radius", tensioner.radius, "m", "mm", 1e-3, 10.0, 0.1, "radius of the tensioner's wheel, on which brake_torque acts");
 
     fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face");
 
@@ -416,4 +448,20 @@ table! {
 
     text(2300, "scene.file", (file), [], "packed name or path of a scene; empty: default");
     text(2301, "preset", (preset), ["default", "paper"], "default: the best this version has; paper: the paper's method (rk4)");
+
+    number_of(3000, "wire.material_number", "wire.material", 7.0, "number of wire.material; 0: as wire.material says, 1 copper, 2 table1, 3 custom, 4 copper-soft, 5 copper-half-hard, 6 copper-hard, 7 aluminium");
+    number_of(3001, "core.shape_number", "core.shape", 3.0, "number of core.shape; 0: as core.shape says, 1 rounded-box, 2 cylinder, 3 mesh");
+    number_of(3002, "core.unit_number", "core.unit", 4.0, "number of core.unit; 0: as core.unit says, 1 m, 2 mm, 3 um, 4 inch");
+    number_of(3003, "traverse.mode_number", "traverse.mode", 5.0, "number of traverse.mode; 0: as traverse.mode says, 1 by-input, 2 by-angle, 3 orthocyclic, 4 helical, 5 table");
+    number_of(3004, "winding.direction_number", "winding.direction", 2.0, "number of winding.direction; 0: as winding.direction says, 1 +y, 2 -y");
+    number_of(3005, "solver.integrator_number", "solver.integrator", 4.0, "number of solver.integrator; 0: as solver.integrator says, 1 auto, 2 implicit, 3 rk4, 4 verlet");
+    number_of(3006, "solver.twist_number", "solver.twist", 4.0, "number of solver.twist; 0: as solver.twist says, 1 auto, 2 off, 3 quasi-static, 4 dynamic");
+    number_of(3007, "solver.live_contact_number", "solver.live_contact", 3.0, "number of solver.live_contact; 0: as solver.live_contact says, 1 auto, 2 on, 3 off");
+    number_of(3008, "solver.plasticity_number", "solver.plasticity", 3.0, "number of solver.plasticity; 0: as solver.plasticity says, 1 auto, 2 on, 3 off");
+    number_of(3009, "solver.friction_number", "solver.friction", 3.0, "number of solver.friction; 0: as solver.friction says, 1 auto, 2 on, 3 off");
+    number_of(3010, "solver.inertia_number", "solver.inertia", 3.0, "number of solver.inertia; 0: as solver.inertia says, 1 auto, 2 on, 3 off");
+    number_of(3011, "solver.coarse_span_number", "solver.coarse_span", 3.0, "number of solver.coarse_span; 0: as solver.coarse_span says, 1 auto, 2 on, 3 off");
+    number_of(3012, "solver.coarse_settled_number", "solver.coarse_settled", 3.0, "number of solver.coarse_settled; 0: as solver.coarse_settled says, 1 auto, 2 on, 3 off");
+    number_of(3013, "solver.steps_beyond_number", "solver.steps_beyond", 3.0, "number of solver.steps_beyond; 0: as solver.steps_beyond says, 1 auto, 2 on, 3 off");
+    number_of(3014, "preset_number", "preset", 2.0, "number of preset; 0: as preset says, 1 default, 2 paper");
 }

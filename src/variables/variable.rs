@@ -141,6 +141,8 @@ pub enum Access {
         /// writes the leaf
         set: fn(&mut SceneSettings, Value),
     },
+    /// the number of a choice of the text of this name, from 1; 0: as the text says
+    Choice(&'static str),
 }
 
 /// One row of the table.
@@ -186,6 +188,7 @@ impl Variable {
             Access::Input { get, .. } => Some(Value::Real(get(&settings.start_inputs()))),
             Access::Output(_) => None,
             Access::Parameter { get, .. } => Some(get(settings)),
+            Access::Choice(_) => Some(Value::Integer(0)),
         }
     }
 
@@ -207,7 +210,11 @@ impl Variable {
                     && self.min.is_none_or(|min| *x >= min)
                     && self.max.is_none_or(|max| *x <= max)
             }
-            Value::Integer(_) | Value::Boolean(_) => true,
+            Value::Integer(i) => {
+                let x = f64::from(*i);
+                self.min.is_none_or(|min| x >= min) && self.max.is_none_or(|max| x <= max)
+            }
+            Value::Boolean(_) => true,
             Value::String(s) => self.choices.is_empty() || self.choices.contains(&s.as_str()),
         }
     }
@@ -235,6 +242,7 @@ impl Variable {
                 .trim_end()
                 .to_owned(),
             (Kind::Real, None, None) => "a finite number".to_owned(),
+            (Kind::Integer, Some(min), Some(max)) => format!("{min} to {max}"),
             (Kind::Integer, ..) => "a whole number".to_owned(),
             (Kind::Boolean, ..) => "true or false".to_owned(),
             (Kind::String, ..) if self.choices.is_empty() => "a text".to_owned(),

@@ -86,7 +86,7 @@ impl Instance {
         Ok(match variable.access {
             Access::Input { get, .. } => Value::Real(get(&run.inputs)),
             Access::Output(get) => get(run.simulation.outputs()),
-            Access::Parameter { .. } => {
+            Access::Parameter { .. } | Access::Choice(_) => {
                 return Err(Error::Calculated {
                     name: variable.name,
                 });

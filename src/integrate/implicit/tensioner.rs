@@ -220,7 +220,8 @@ fn line_over_fed(
     let g = step.gamma;
     let fed = step.blend(feed.fed, past.fed[0]);
     // T = pull + c_t (fed - fed*) / g where the damper moves as the wire does
-    let drag = spec.damping / g;
+    let damping = feed.damping_on(spec);
+    let drag = damping / g;
     if spec.mass == 0.0 {
         return (pull - drag * fed, drag);
     }
@@ -233,16 +234,16 @@ fn line_over_fed(
     let paid = step.blend(feed.paid, past.paid);
     let (k, c) = (spec.line_stiffness, spec.line_damping);
     // T = k (fed - s) + c (fed' - u) with s = s* + g u, u damped = u* + g (T - pull) / m
-    let brake = (k * g + c) / damped(spec, g);
+    let brake = (k * g + c) / damped(damping, spec, g);
     let soft = 1.0 + brake * g / spec.mass;
     let slope = (k + c / g) / soft;
     let t0 = (-k * paid - c * fed / g - brake * (rate - g * pull / spec.mass)) / soft;
     (t0, slope)
 }
 
-/// By how much the damper of a tensioner with mass lowers its speed in a step with this gamma, s.
-fn damped(spec: &FeedSpec, gamma: f64) -> f64 {
-    1.0 + gamma * spec.damping / spec.mass
+/// By how much a damper, N s/m, of a tensioner with mass lowers its speed in a step with this gamma, s.
+fn damped(damping: f64, spec: &FeedSpec, gamma: f64) -> f64 {
+    1.0 + gamma * damping / spec.mass
 }
 
 /// The feed after a step that let the edge grow by `grown` under the line tension `line`.
@@ -259,7 +260,7 @@ pub(super) fn advance(
     let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
     let (paid, paid_rate) = if elastic_line {
         let undamped = step.blend(feed.paid_rate, past.paid_rate) + g * (line - pull) / spec.mass;
-        let u = undamped / damped(spec, g);
+        let u = undamped / damped(feed.damping_on(spec), spec, g);
         (step.blend(feed.paid, past.paid) + g * u, u)
     } else {
         (fed, rate)
@@ -270,6 +271,7 @@ pub(super) fn advance(
         paid,
         paid_rate,
         line_tension: line,
+        damping: feed.damping,
     }
 }
 
@@ -293,6 +295,7 @@ mod tests {
             paid: 0.012 - 14.0 / 97_800.0,
             paid_rate: 2.9,
             line_tension: 14.0,
+            damping: 0.3,
         };
         let past = Past {
             known: 1,
@@ -326,7 +329,7 @@ mod tests {
         // the tensioner's own
         let began = step.blend(feed.paid_rate, past.paid_rate);
         let inertia = spec.mass * (next.paid_rate - began) / step.gamma;
-        let force = line - 15.0 - spec.damping * next.paid_rate;
+        let force = line - 15.0 - feed.damping_on(&spec) * next.paid_rate;
         assert!((inertia - force).abs() < 1e-9, "{inertia} {force}");
         let h = 1e-9;
         let d =
@@ -433,8 +436,8 @@ mod tests {
 
     #[test]
     fn without_mass_and_damping_the_set_force_acts() {
-        let (mut spec, feed, past, step) = setting();
-        (spec.mass, spec.damping) = (0.0, 0.0);
+        let (mut spec, mut feed, past, step) = setting();
+        (spec.mass, spec.damping, feed.damping) = (0.0, 0.0, 0.0);
         let edge = NozzleEdge::new(
             &spec,
             &feed,

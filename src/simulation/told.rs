@@ -1,0 +1,83 @@
+//! What a master tells of the machine, and what it means for nozzle and tensioner.
+
+use super::door::check_finite;
+use crate::scene::Scene;
+use crate::signals::Inputs;
+use serde::{Deserialize, Serialize};
+
+/// Inputs of a communication step as they were given.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Told {
+    /// at its start
+    start: Inputs,
+    /// at its end
+    end: Inputs,
+    /// its length, s; 0 for the start of the run
+    dt: f64,
+}
+
+impl Told {
+    /// A step of `dt`, s, from `inputs` on at `rates`, per s.
+    pub(super) fn new(inputs: Inputs, rates: &Inputs, dt: f64) -> Self {
+        Self {
+            start: inputs,
+            end: inputs.after(rates, dt),
+            dt,
+        }
+    }
+
+    /// These inputs with what was given at the end for the pull of the tensioner.
+    pub(super) fn pull_of(&self, inputs: Inputs) -> Inputs {
+        Inputs {
+            tension_setpoint: self.end.tension_setpoint,
+            brake_torque: self.end.brake_torque,
+            ..inputs
+        }
+    }
+
+    /// Whether it is one at all; bytes from elsewhere may say anything.
+    pub(super) fn is_sound(&self) -> bool {
+        let sound = |inputs: &Inputs| check_finite(inputs, 0.0).is_ok();
+        sound(&self.start) && sound(&self.end) && self.dt.is_finite() && self.dt >= 0.0
+    }
+
+    /// Rate of an input that is `now` and for which none was given, per s: that between the last two values.
+    fn rate_to(&self, now: f64, input: impl Fn(&Inputs) -> f64) -> f64 {
+        if self.dt > 0.0 {
+            (now - input(&self.start)) / self.dt
+        } else {
+            0.0
+        }
+    }
+}
+
+/// Inputs, or their rates, with all that holds the tensioner back in `tension_setpoint`.
+pub(super) fn with_brake(scene: &Scene, inputs: Inputs) -> Inputs {
+    Inputs {
+        tension_setpoint: inputs.tension_setpoint + inputs.brake_torque / scene.tensioner.radius,
+        brake_torque: 0.0,
+        ..inputs
+    }
+}
+
+/// Inputs and rates of a step as the winding takes them, where those of the step `before` are known.
+pub(super) fn as_meant(
+    scene: &Scene,
+    inputs: Inputs,
+    mut rates: Inputs,
+    before: Option<&Told>,
+) -> (Inputs, Inputs) {
+    if let Some(before) = before.filter(|_| scene.nozzle.position_at_start) {
+        let places: [(fn(&Inputs) -> f64, &mut f64); 3] = [
+            (|i| i.nozzle_position, &mut rates.nozzle_position),
+            (|i| i.nozzle_offset_x, &mut rates.nozzle_offset_x),
+            (|i| i.nozzle_offset_z, &mut rates.nozzle_offset_z),
+        ];
+        for (place, rate) in places {
+            if *rate == 0.0 {
+                *rate = before.rate_to(place(&inputs), place);
+            }
+        }
+    }
+    (with_brake(scene, inputs), with_brake(scene, rates))
+}
