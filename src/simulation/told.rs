@@ -68,16 +68,14 @@ pub(super) fn as_meant(
     before: Option<&Told>,
 ) -> (Inputs, Inputs) {
     if let Some(before) = before.filter(|_| scene.nozzle.position_at_start) {
-        let places: [(fn(&Inputs) -> f64, &mut f64); 3] = [
-            (|i| i.nozzle_position, &mut rates.nozzle_position),
-            (|i| i.nozzle_offset_x, &mut rates.nozzle_offset_x),
-            (|i| i.nozzle_offset_z, &mut rates.nozzle_offset_z),
-        ];
-        for (place, rate) in places {
+        let go_on = |place: fn(&Inputs) -> f64, rate: &mut f64| {
             if *rate == 0.0 {
                 *rate = before.rate_to(place(&inputs), place);
             }
-        }
+        };
+        go_on(|i| i.nozzle_position, &mut rates.nozzle_position);
+        go_on(|i| i.nozzle_offset_x, &mut rates.nozzle_offset_x);
+        go_on(|i| i.nozzle_offset_z, &mut rates.nozzle_offset_z);
     }
     (with_brake(scene, inputs), with_brake(scene, rates))
 }
