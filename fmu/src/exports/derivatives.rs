@@ -7,7 +7,7 @@ use crate::pointers;
 use libc::size_t;
 
 /// `fmi2GetDirectionalDerivative`: the change of outputs that a change of inputs makes over the
-/// solver's next step, in the units of the variables.
+/// last communication step, in the units of the variables.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: fmi2Component,
