@@ -1,7 +1,7 @@
 //! Taking a converged step over as the new state, with its energy balance.
 
 use super::Implicit;
-use super::impact::Solved;
+use super::landings::Solved;
 use super::scheme::{Scheme, StepFormula};
 use super::tensioner::{NozzleEdge, advance};
 use super::unknowns::Unknowns;

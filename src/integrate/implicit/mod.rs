@@ -10,6 +10,8 @@ mod conjugate;
 mod dispatch;
 mod error;
 mod impact;
+mod impulse;
+mod landings;
 mod lengths;
 mod model;
 mod newton;

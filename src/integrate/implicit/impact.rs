@@ -8,8 +8,8 @@
 //! A touch that began within the step also rewrites the history of its nodes. After it, the formula of time has to see a wire
 //! that moved all the time as it does now, or it would take the fall for part of the motion.
 
-mod landings;
-
+use super::impulse::{Impulse, PARTS};
+use super::landings::{Came, Solved};
 use super::scheme::StepFormula;
 use crate::contact::AcceptedTouch;
 use crate::math::{Spin, V3, spin_velocity};
@@ -19,20 +19,6 @@ use crate::system::{Spindle, System};
 const SWEEPS: usize = 50;
 /// Way in a step that no sweep has to mend, as a share of the tolerance.
 const UNSEEN: f64 = 0.01;
-
-/// The velocities now, those at the step's start, and the places there.
-const PARTS: usize = 3;
-
-/// The nodes as a step solved for them, without its impulses.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Solved<'a> {
-    /// lumped masses, kg
-    pub(super) mass: &'a [f64],
-    /// velocities `v*`, m/s
-    pub(super) star: &'a [V3],
-    /// forces at the step's start, N
-    pub(super) force: &'a [V3],
-}
 
 /// Adds to what friction and blows took, J.
 fn book(sys: &mut System, rubbed: f64, stopped: f64) {
@@ -53,98 +39,9 @@ pub(super) struct Impacts {
     start: [Vec<V3>; PARTS],
     /// velocity that an impulse gives to a node, 1/kg
     mobility: Vec<f64>,
-    /// forces that came with landings, see [`landings`]
-    came: landings::Came,
+    /// forces that came with landings, see [`Came`]
+    came: Came,
     impulses: Vec<Impulse>,
-}
-
-/// The impulse of one touch.
-#[derive(Clone, Copy, Debug)]
-struct Impulse {
-    touch: AcceptedTouch,
-    /// nodes that it moves, and their weights; those of an older live wire have negative ones
-    nodes: [usize; 6],
-    weights: [f64; 6],
-    /// change of the nodes' speeds by an impulse there, 1/kg
-    shares: [f64; 6],
-    /// how many they are
-    count: usize,
-    /// direction, whose part along the normal is 1
-    along: V3,
-    /// what the solve gave along the normal, N s
-    given: f64,
-    /// change of speed along the normal by an impulse there, 1/kg
-    inverse: f64,
-    /// least and largest speed, m/s, or place, m, along the normal
-    range: [[f64; 2]; PARTS],
-    /// the impulse added, N s, and N s^2 for the places
-    added: [f64; PARTS],
-}
-
-impl Impulse {
-    /// None yet, of a touch of the wire at `places` (m) in a step that ends with forces acting over `gamma` (s); `None` where
-    /// nothing pushes or can move.
-    ///
-    /// What pulls along the wire is left to the solve: an edge is so stiff that it moves with all wire that a wave reaches in the step.
-    fn of(touch: &AcceptedTouch, gamma: f64, mobility: &[f64], places: &[V3]) -> Option<Self> {
-        let pressed = touch.force.dot(&touch.normal);
-        let (mut nodes, mut weights, mut shares) = ([0; 6], [0.0; 6], [0.0; 6]);
-        let mut count = 0;
-        for place in [Some(touch.point.weights()), touch.old]
-            .into_iter()
-            .flatten()
-        {
-            for (i, w) in place.iter().filter(|(_, w)| *w != 0.0) {
-                (nodes[count], weights[count], shares[count]) = (i, w, w * mobility[i]);
-                count += 1;
-            }
-        }
-        let mobile = |(i, w): (usize, f64)| w * w * mobility[i];
-        let parts = nodes.into_iter().zip(weights).take(count);
-        let inverse: f64 = parts.map(mobile).sum();
-        let young = touch.point.weights().nodes;
-        let tangent = (places[young[2]] - places[young[0]]).normalize();
-        let of_wire = |v: V3| v - tangent * v.dot(&tangent);
-        let touch = AcceptedTouch {
-            surplus: of_wire(touch.surplus),
-            ..*touch
-        };
-        let friction = touch.force - touch.normal * pressed;
-        (pressed > 0.0 && inverse > 0.0).then(|| Self {
-            touch,
-            nodes,
-            weights,
-            shares,
-            count,
-            along: touch.normal + of_wire(friction) / pressed,
-            given: gamma * pressed,
-            inverse,
-            range: [[0.0; 2]; PARTS],
-            added: [0.0; PARTS],
-        })
-    }
-
-    /// Nodes that the touch moves with, and their weights.
-    #[inline]
-    fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + use<'_> {
-        let nodes = self.nodes[..self.count].iter().copied();
-        nodes.zip(self.weights[..self.count].iter().copied())
-    }
-
-    /// The same, with the change of each node's speed by an impulse there, 1/kg.
-    #[inline]
-    fn shares(&self) -> impl Iterator<Item = (usize, f64)> + use<'_> {
-        let nodes = self.nodes[..self.count].iter().copied();
-        nodes.zip(self.shares[..self.count].iter().copied())
-    }
-
-    /// What the touch sees of a motion of the nodes, along its normal.
-    #[inline]
-    fn along_normal(&self, motion: &[V3]) -> f64 {
-        let normal = self.touch.normal;
-        let part = |(i, w): (usize, f64)| w * motion[i].dot(&normal);
-        self.nodes().map(part).sum()
-    }
 }
 
 /// Motion energy, J, and moment of momentum about the core's axis, N m s, before impulses of the core.
@@ -199,7 +96,11 @@ impl Impacts {
         if let Some(line) = sys.line_contact() {
             line.scratch.accepted = touches;
         }
-        self.book_landings(sys, step, solved, old);
+        let [blow, rubbed] =
+            self.came
+                .in_landings(sys, step, (solved, old), (&self.impulses, &self.start[0]));
+        sys.state.balance.numerical -= blow + rubbed;
+        book(sys, rubbed, blow);
         self.give_back_friction(sys, step, parts);
         let before = Carried::of(sys);
         let unseen = UNSEEN * tolerance;

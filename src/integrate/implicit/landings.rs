@@ -8,13 +8,24 @@
 //! the inertia of the wire holds, as far as bending carries a blow within the step, and only where the wire came in
 //! faster than its way in the step says.
 
-use super::{Impacts, Impulse, Solved, book};
-use crate::integrate::implicit::scheme::StepFormula;
+use super::impulse::Impulse;
+use super::scheme::StepFormula;
 use crate::math::{Spin, V3, spin_velocity};
 use crate::system::{Spindle, System};
 
 /// How far a blow goes to either side: lengths over which the bending of a step falls to 1/e.
 const REACH: f64 = 3.0;
+
+/// The nodes as a step solved for them, without its impulses.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solved<'a> {
+    /// lumped masses, kg
+    pub(super) mass: &'a [f64],
+    /// velocities `v*`, m/s
+    pub(super) star: &'a [V3],
+    /// forces at the step's start, N
+    pub(super) force: &'a [V3],
+}
 
 /// Forces on each node that came within a step, core frame, N.
 #[derive(Debug, Default)]
@@ -25,28 +36,29 @@ pub(super) struct Came {
     landed: Vec<V3>,
 }
 
-impl Impacts {
-    /// Accounts for the landings of a step from the motion `old` of the spindle.
-    pub(super) fn book_landings(
+impl Came {
+    /// What blows and friction took in the landings of a step from the motion `old` of the spindle, J, beyond half the force
+    /// over the way. `after` are the velocities that the solve left, core frame, m/s.
+    pub(super) fn in_landings(
         &mut self,
-        sys: &mut System,
+        sys: &System,
         step: &StepFormula,
-        solved: Solved,
-        old: Spindle,
-    ) {
+        (solved, old): (Solved, Spindle),
+        (impulses, after): (&[Impulse], &[V3]),
+    ) -> [f64; 2] {
         let lands = |impulse: &&Impulse| impulse.touch.lands;
-        if !self.impulses.iter().any(|i| lands(&i)) {
-            return;
+        if !impulses.iter().any(|i| lands(&i)) {
+            return [0.0; 2];
         }
         let now = sys.state.spindle;
         let (spin, before) = (Spin::new(now.angle), Spin::new(old.angle));
-        let Came { all, landed } = &mut self.came;
+        let (all, landed) = (&mut self.all, &mut self.landed);
         all.clear();
         let forces = sys.state.load.force.iter().zip(solved.force);
         all.extend(forces.map(|(now, old)| spin.to_core(*now) - before.to_core(*old)));
         landed.clear();
         landed.resize(all.len(), V3::zeros());
-        for impulse in self.impulses.iter().filter(lands) {
+        for impulse in impulses.iter().filter(lands) {
             for (i, w) in impulse.nodes().filter(|(_, w)| *w > 0.0) {
                 landed[i] += impulse.touch.force * w;
             }
@@ -56,11 +68,11 @@ impl Impacts {
         let reach = REACH * (2.0 * stiff * step.gamma).sqrt();
         let (places, x) = (&sys.state.past.q, &sys.state.rod.x);
         let (mut blow, mut rubbed) = (0.0, 0.0);
-        for impulse in self.impulses.iter().filter(lands) {
+        for impulse in impulses.iter().filter(lands) {
             // what the way of the step says more than the impulse
             let of_node = |(i, w): (usize, f64)| {
                 let speed = spin.to_core(solved.star[i] - spin_velocity(now.speed, x[i]));
-                let mean = (speed + self.start[0][i]) * 0.5;
+                let mean = (speed + after[i]) * 0.5;
                 ((places[0][i] - places[1][i]) * 0.5 - mean * step.gamma) * w
             };
             let beyond: V3 = impulse.nodes().map(of_node).sum();
@@ -69,18 +81,13 @@ impl Impacts {
             if along_normal <= 0.0 {
                 continue;
             }
-            let share = self
-                .came
-                .share_of_inertia(impulse, &sys.state.rod.rest, reach);
+            let share = self.share_of_inertia(impulse, &sys.state.rod.rest, reach);
             blow += share * along_normal;
             rubbed += share * (force.dot(&beyond) - along_normal);
         }
-        sys.state.balance.numerical -= blow + rubbed;
-        book(sys, rubbed, blow);
+        [blow, rubbed]
     }
-}
 
-impl Came {
     /// Share of a landing's force that is held by inertia of the wire within `reach` (m); `rest` are the lengths of the
     /// edges, m.
     fn share_of_inertia(&self, impulse: &Impulse, rest: &[f64], reach: f64) -> f64 {
