@@ -102,7 +102,7 @@ lab() {
     "$command" verify --preset paper
 
     step random scenes
-    # 127: wire that yields with twist off takes more steps than are enough
+    # 127: wire that yields with twist off is driven by its time steps
     "$command" stress --count 200 --seed 1 --known 127 --quiet --out "$target/stress" | tail -n 1
 
     step "scenes with a known defect, a sample"

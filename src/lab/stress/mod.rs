@@ -7,8 +7,10 @@
 mod case;
 pub mod case_files;
 mod case_random;
+mod coils;
 pub mod draw;
 pub mod invariants;
+mod parts;
 pub mod refined;
 pub mod region;
 pub mod shrink;

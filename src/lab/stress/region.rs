@@ -18,7 +18,7 @@ const AXES: &[Axis] = &[
     Axis {
         name: "wire diameter, mm",
         ends: &[0.1, 0.3, 1.0],
-        parts: &["0.05 to 0.1", "0.1 to 0.3", "0.3 to 1", "1 to 3"],
+        parts: &["to 0.1", "0.1 to 0.3", "0.3 to 1", "1 to 3"],
         of: |_, s| s.wire.diameter * 1e3,
     },
     Axis {
@@ -64,12 +64,19 @@ const AXES: &[Axis] = &[
     },
     Axis {
         name: "core",
-        ends: &[0.5, 1.5, 2.5],
-        parts: &["rounded box", "cylinder", "convex mesh", "bobbin"],
+        ends: &[0.5, 1.5, 2.5, 3.5],
+        parts: &[
+            "rounded box",
+            "cylinder",
+            "convex mesh",
+            "bobbin",
+            "hollow prism",
+        ],
         of: |c, _| match (&c.mesh, c.settings.core.shape.as_str()) {
             (_, "rounded-box") => 0.0,
             (_, "cylinder") => 1.0,
             (Some(Mesh::Bobbin(_)), _) => 3.0,
+            (Some(Mesh::Prism(prism)), _) if prism.dent > 0.0 => 4.0,
             _ => 2.0,
         },
     },
@@ -78,6 +85,28 @@ const AXES: &[Axis] = &[
         ends: &[1.5, 2.5, 3.5],
         parts: &["1", "2", "3", "4"],
         of: |c, _| f64::from(c.layers.count),
+    },
+    Axis {
+        name: "flanges",
+        ends: &[0.5],
+        parts: &["none, or a mesh", "beside the core"],
+        of: |c, _| f64::from(u8::from(c.settings.core.flange.inner_distance > 0.0)),
+    },
+    Axis {
+        name: "enamel",
+        ends: &[0.5],
+        parts: &["bare", "enamelled"],
+        of: |c, _| f64::from(u8::from(c.settings.wire.enamelled_diameter > 0.0)),
+    },
+    Axis {
+        name: "traverse",
+        ends: &[0.5, 1.5],
+        parts: &["by angle", "orthocyclic", "helical"],
+        of: |c, _| match c.settings.traverse.mode.as_str() {
+            "orthocyclic" => 1.0,
+            "helical" => 2.0,
+            _ => 0.0,
+        },
     },
     Axis {
         name: "wire and twist",
@@ -273,7 +302,7 @@ mod tests {
             .filter(|l| l.starts_with("| all"))
             .count();
         assert_eq!(rows, 1);
-        for (kind, part) in Kind::ALL.iter().zip(AXES[8].parts) {
+        for (kind, part) in Kind::ALL.iter().zip(AXES[AXES.len() - 1].parts) {
             assert_eq!(kind.as_str(), *part);
         }
     }

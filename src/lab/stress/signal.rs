@@ -11,12 +11,14 @@ const MOST: usize = 6000;
 /// Samples of a standstill, at most.
 const MOST_STILL: f64 = 1200.0;
 
-/// Communication step, s, and the inputs of each, the last of which only ends the run.
+/// Communication step, s, and the inputs of each, the last of which only ends the run. The nozzle goes `by_law` of the
+/// scene, or to and fro in `layers`.
 pub(super) fn draw(
     case_random: &mut CaseRandom,
     kind: Kind,
     scene: &Scene,
     layers: Layers,
+    by_law: bool,
 ) -> (f64, Vec<Inputs>) {
     let top = scene.spindle.speed;
     // a controller looks every 0.3 to 6 degrees of its core
@@ -38,8 +40,11 @@ pub(super) fn draw(
             let passed = plan.jumps.iter().filter(|j| turned > j.0);
             jumped = passed.map(|j| j.1).sum();
         }
-        let mut nozzle =
-            scene.nozzle.y_start + scene.traverse.per_turn * layers.way(angle / TAU) + jumped;
+        let mut nozzle = jumped
+            + match by_law {
+                true => scene.nozzle_law.position(angle),
+                false => scene.nozzle.y_start + scene.traverse.per_turn * layers.way(angle / TAU),
+            };
         if angle + speed * step < 0.0 {
             // unwound: farther back the wire would fold at its clamp, which looks the other way
             break;

@@ -37,6 +37,10 @@ pub struct Measures {
     pub numerical: f64,
     /// what changes of the mesh took over what was dissipated, at the end
     pub remeshing: f64,
+    /// what blows or friction gave over plastic work and the work that draws in a diameter of wire, at worst
+    pub given: f64,
+    /// numerical energy and that of changes of the mesh over what is allowed, at worst
+    pub own: [f64; 2],
     /// deepest contact as the method sees it, diameters
     pub depth: f64,
     /// deepest place of the centreline in the core, as measured beside it, diameters
@@ -60,7 +64,7 @@ impl Measures {
     }
 
     /// Names of [`Self::row`]'s columns.
-    pub const COLUMNS: &'static str = "turns,time,looks,fed,defects,steps,rejects,newton_failures,evaluations,nodes,work,energy,dissipated,through,motion,numerical,remeshing,depth,sunk,crossed,cone,cone_on_frozen,cone_on_live,plastic,pushed";
+    pub const COLUMNS: &'static str = "turns,time,looks,fed,defects,steps,rejects,newton_failures,evaluations,nodes,work,energy,dissipated,through,motion,numerical,remeshing,depth,sunk,crossed,cone,cone_on_frozen,cone_on_live,plastic,pushed,given,own_numerical,own_remeshing";
 
     /// The numbers, separated by commas.
     pub fn row(&self) -> String {
@@ -89,6 +93,9 @@ impl Measures {
             live,
             self.plastic,
             self.pushed,
+            self.given,
+            self.own[0],
+            self.own[1],
         ]
         .map(|x| format!("{x:.4e}"));
         let (turns, time, looks, fed) = (self.turns, self.time, self.looks, self.fed);

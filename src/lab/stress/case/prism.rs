@@ -1,4 +1,4 @@
-//! A convex core: a regular prism with rounded edges, one flat side on +x.
+//! A core: a regular prism with rounded edges, one side on +x, its sides flat or hollow.
 
 use super::stl_text::StlText;
 use std::f64::consts::{PI, TAU};
@@ -17,6 +17,8 @@ pub struct Prism {
     pub flat: f64,
     /// along y, m
     pub length: f64,
+    /// how far the middle of each side lies inside its edges, m; 0: flat and convex
+    pub dent: f64,
 }
 
 impl Prism {
@@ -48,6 +50,11 @@ impl Prism {
                     self.edge_axis() * libm::cos(to_edge) + self.corner_radius * libm::cos(angle),
                     self.edge_axis() * libm::sin(to_edge) + self.corner_radius * libm::sin(angle),
                 ]);
+            }
+            if self.dent > 0.0 {
+                let to_side = turn * f64::from(side + 1);
+                let out = self.edge_axis() * libm::cos(0.5 * turn) + self.corner_radius - self.dent;
+                points.push([out * libm::cos(to_side), out * libm::sin(to_side)]);
             }
         }
         points
@@ -83,6 +90,7 @@ mod tests {
                 corner_radius: 1.3e-3,
                 flat: 7e-3,
                 length: 20e-3,
+                dent: 0.0,
             };
             let bytes = prism.stl().into_bytes();
             let mesh = stl::read(&mut std::io::Cursor::new(bytes), 1e-3).unwrap();
@@ -94,6 +102,18 @@ mod tests {
             let area = polygon + n * prism.flat * r + PI * r * r;
             let off = mesh.volume() / (area * prism.length) - 1.0;
             assert!(off < 0.0 && off > -2e-3, "{sides} sides: {off}");
+
+            let hollow = Prism {
+                dent: 1e-3,
+                ..prism
+            };
+            let bytes = hollow.stl().into_bytes();
+            let dented = stl::read(&mut std::io::Cursor::new(bytes), 1e-3).unwrap();
+            assert!(!dented.is_convex());
+            // a triangle less at each side
+            let less = 0.5 * n * prism.flat * hollow.dent * prism.length;
+            let off = (mesh.volume() - dented.volume()) / less - 1.0;
+            assert!(off.abs() < 1e-3, "{sides} sides: {off}");
         }
     }
 }
