@@ -74,8 +74,12 @@ impl Simulation {
         along: Inputs,
     ) -> Result<Outputs, SimError> {
         let outcome = |by: f64| {
-            let run = Self::starting_with(scene, inputs.after(&along, by))?;
-            Ok(*run.outputs())
+            let mut there = inputs.after(&along, by);
+            // which way round the wire lies is no smooth function of the speed
+            if (there.spindle_speed < 0.0) != (inputs.spindle_speed < 0.0) {
+                there.spindle_speed = inputs.spindle_speed;
+            }
+            Ok(*Self::starting_with(scene, there)?.outputs())
         };
         let start = Self::starting_with(scene, inputs)?;
         let slope = slope(&outcome, reach(&start, &inputs, &along, 1.0))?;
