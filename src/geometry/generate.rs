@@ -182,6 +182,7 @@ pub fn flanged(
 
 /// Pulley about y with a V groove at y = 0, `bottom_radius` (m) at its lowest, walls that include `angle` (rad) and rise by
 /// `depth` (m), in `segments` flat sides.
+#[cfg(any(feature = "lab", test))]
 pub fn grooved_pulley(
     bottom_radius: f64,
     angle: f64,
