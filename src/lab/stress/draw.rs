@@ -53,7 +53,7 @@ pub fn case(seed: u64, number: u64) -> Result<Case, String> {
     ))
 }
 
-/// Seeds from here on draw coils, see [`coils`]: those below stay what they were, with runs that are recorded.
+/// Seeds from here on draw coils, see `coils`: those below stay what they were, with runs that are recorded.
 pub const COILS_FROM: u64 = 1000;
 
 /// Part of the space that a number draws from. Two of ten numbers have one of their own; the scenes of the others are those
