@@ -32,7 +32,7 @@ def build(planted, root):
         start = settings.index("\nnav:\n")
         pages["mkdocs.yml"] = f"{settings[:start]}\nnav:\n  - index.md\n  - other/*.md\n{project}"
         folder = planted(pages, linked=("venv-docs", "node-docs"))
-        for name in ["docs.sh", "venv.sh", "missing_tools.sh", "docs"]:
+        for name in ["docs.sh", "node_modules.sh", "venv.sh", "missing_tools.sh", "docs"]:
             source = root / "scripts" / name
             copy = shutil.copytree if source.is_dir() else shutil.copy
             (folder / "scripts").mkdir(exist_ok=True)
