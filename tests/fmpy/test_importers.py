@@ -13,7 +13,7 @@ DRIVERS = ROOT / "tests/importers"
 sys.path.insert(0, str(DRIVERS))
 from short_wind import OUTPUTS, SCENE, STEP, STEPS, as_text, inputs_at
 
-PYTHON = os.environ.get("COILWIND_IMPORTERS_PYTHON", "")
+PYTHON = os.environ.get("COILWIND_IMPORTERS_PYTHON") and os.path.abspath(os.environ["COILWIND_IMPORTERS_PYTHON"])
 """Python of the environment that `scripts/venv.sh importers` makes."""
 
 

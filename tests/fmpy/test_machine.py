@@ -9,7 +9,7 @@ import zipfile
 import pytest
 from conftest import ROOT
 
-PYTHON = os.environ.get("COILWIND_MACHINE_PYTHON", "")
+PYTHON = os.environ.get("COILWIND_MACHINE_PYTHON") and os.path.abspath(os.environ["COILWIND_MACHINE_PYTHON"])
 """Python of the environment that `scripts/venv.sh machine` makes."""
 INERTIA, TORQUE_LIMIT, FULL_SPEED = 2e-4, 0.5, 100.0
 """Of the spindle drive: kg m2, N m, rad/s."""
