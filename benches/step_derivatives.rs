@@ -4,6 +4,10 @@
 //!     cargo bench --bench step_derivatives              200 instants for each speed and step, 10,000 calls
 //!     cargo bench --bench step_derivatives -- 20        fewer instants, as many calls for each
 
+#[path = "../tests/common/along.rs"]
+mod along;
+
+use along::along;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
 use coilwind::signals::{Inputs, Outputs};
@@ -88,16 +92,6 @@ impl Wind {
             }
         }
         true
-    }
-}
-
-fn along(input: usize, by: f64) -> Inputs {
-    let of = |k: usize| if k == input { by } else { 0.0 };
-    Inputs {
-        spindle_speed: of(0),
-        nozzle_position: of(1),
-        tension_setpoint: of(2),
-        ..Inputs::HELD
     }
 }
 

@@ -1,4 +1,4 @@
-//! The same scene in other clothes: results go with the scene.
+//! The same scene in other placement: results go with the scene.
 //!
 //! All lengths, times and masses of a scene are multiplied such that density and elastic moduli stay: lengths and times by a
 //! power of four, masses by its cube. A power of four rounds nothing, not even where a square root is drawn, so that
@@ -131,13 +131,13 @@ fn traverse_to_either_side() {
 
 /// A wind that a machine drives, turned about the axis of the core by `turned` (rad), in a mirror along y and in one along z.
 #[derive(Clone, Copy)]
-struct Clothes {
+struct Placement {
     turned: f64,
     other_side: bool,
     other_way: bool,
 }
 
-const PLAIN: Clothes = Clothes {
+const PLAIN: Placement = Placement {
     turned: 0.0,
     other_side: false,
     other_way: false,
@@ -145,11 +145,11 @@ const PLAIN: Clothes = Clothes {
 
 /// Wire fed, free length, lay-on place, bulge and gap after each millisecond of 1.6 turns, as those of the plain scene, and
 /// turns laid.
-fn driven(settings: &SceneSettings, clothes: Clothes) -> Vec<([f64; 5], f64)> {
+fn driven(settings: &SceneSettings, placement: Placement) -> Vec<([f64; 5], f64)> {
     let scene = settings.build().expect("a scene");
     let sign = |other: bool| if other { -1.0 } else { 1.0 };
-    let (side, way) = (sign(clothes.other_side), sign(clothes.other_way));
-    let (sin, cos) = clothes.turned.sin_cos();
+    let (side, way) = (sign(placement.other_side), sign(placement.other_way));
+    let (sin, cos) = placement.turned.sin_cos();
     let distance = scene.nozzle.distance;
     let inputs = |angle: f64, speed: f64| Inputs {
         spindle_speed: way * speed,
@@ -184,14 +184,14 @@ fn driven(settings: &SceneSettings, clothes: Clothes) -> Vec<([f64; 5], f64)> {
 /// Difference of coils of which one was not begun wrongly, diameters; a wrong start makes it 47.
 const BEGUN_ALIKE: f64 = 1.0;
 
-/// Winds the scene in both clothes: the same to rounding until wire is bent round the first corner.
-fn winds_the_same_coil(changes: &[(&str, &str)], clothes: Clothes) {
+/// Winds the scene in both placements: the same to rounding until wire is bent round the first corner.
+fn winds_the_same_coil(changes: &[(&str, &str)], placement: Placement) {
     let mut scene = settings(changes);
     // no millisecond of the start is like another
     scene
         .set_text("traverse.per_turn_mm", "0.8")
         .expect("a traverse");
-    let (plain, other) = (driven(&scene, PLAIN), driven(&scene, clothes));
+    let (plain, other) = (driven(&scene, PLAIN), driven(&scene, placement));
     let ways = plain.iter().zip(&other).enumerate();
     for (i, ((a, turns), (b, _))) in ways {
         // Beyond the first corner the coils part by up to 0.07 diameters, for a reason that is not known. So only the end is
@@ -216,7 +216,7 @@ const CHANGES: [(&str, &str); 1] = [("spindle.speed", "100")];
 #[test]
 fn a_box_turned_about_its_axis() {
     for turned in [0.7, std::f64::consts::PI] {
-        winds_the_same_coil(&CHANGES, Clothes { turned, ..PLAIN });
+        winds_the_same_coil(&CHANGES, Placement { turned, ..PLAIN });
     }
 }
 
@@ -224,17 +224,17 @@ fn a_box_turned_about_its_axis() {
 fn a_sharp_box_turned_about_its_axis() {
     let changes = [CHANGES[0], ("core.corner_radius", "0")];
     let turned = -1.3;
-    winds_the_same_coil(&changes, Clothes { turned, ..PLAIN });
+    winds_the_same_coil(&changes, Placement { turned, ..PLAIN });
 }
 
 /// Wire lay along the wrong half of the face where the spindle turns backwards, 47 diameters of wire too long.
 #[test]
 fn a_spindle_that_turns_the_other_way() {
     let (other_way, other_side) = (true, true);
-    winds_the_same_coil(&CHANGES, Clothes { other_way, ..PLAIN });
+    winds_the_same_coil(&CHANGES, Placement { other_way, ..PLAIN });
     winds_the_same_coil(
         &CHANGES,
-        Clothes {
+        Placement {
             other_way,
             other_side,
             turned: 2.1,

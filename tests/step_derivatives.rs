@@ -1,5 +1,9 @@
 //! Derivatives of the outputs by the inputs of a communication step, against differences of steps from the same state.
 
+#[path = "common/along.rs"]
+mod along;
+
+use along::along;
 use coilwind::settings::SceneSettings;
 use coilwind::signals::{Inputs, Outputs};
 use coilwind::simulation::Simulation;
@@ -11,16 +15,6 @@ const PITCH: f64 = 0.7e-3 / TAU;
 fn fig8() -> Simulation {
     let settings = SceneSettings::load("fig8").unwrap();
     Simulation::new(&settings.build().unwrap()).unwrap()
-}
-
-fn along(input: usize, by: f64) -> Inputs {
-    let of = |k: usize| if k == input { by } else { 0.0 };
-    Inputs {
-        spindle_speed: of(0),
-        nozzle_position: of(1),
-        tension_setpoint: of(2),
-        ..Inputs::HELD
-    }
 }
 
 fn smooth(o: &Outputs) -> Vec<f64> {

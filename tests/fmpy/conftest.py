@@ -3,6 +3,7 @@
 import ctypes
 import os
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
@@ -21,7 +22,26 @@ sys.path.insert(0, str(ROOT / "scripts"))
 FMU = Path(os.environ.get("COILWIND_FMU", ROOT / "target/fmu/CoilWinding.fmu"))
 COMMAND = Path(os.environ.get("COILWIND_COMMAND", ROOT / "target/release/coilwind"))
 
+# Importers change the working directory.
+STARTED_IN = Path.cwd()
+
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
+
+
+def need(stage):
+    """Skips a test, with the reason, on machines where its tools cannot be had."""
+    words = [ROOT / "scripts/missing_tools.sh", stage]
+    said = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    if said:
+        pytest.skip(f"{stage}: " + " ".join(said.split()))
+
+
+def python_of(variable, environment):
+    """The Python that an environment variable names, as `scripts/venv.sh ENVIRONMENT` prints it."""
+    need("importers")
+    path = os.environ.get(variable)
+    assert path, f"set {variable} to what scripts/venv.sh {environment} prints"
+    return str(STARTED_IN / path)
 
 
 class Slave:

@@ -8,7 +8,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, need
 
 SOURCE = ROOT / "tests/c/drive.c"
 STUB = ROOT / "tests/c/bcryptprimitives.c"
@@ -16,15 +16,6 @@ CYCLES = 1000
 """Instances made, run and freed while the address sanitizer counts every byte."""
 WIND_STEPS = 120
 """A third of a turn: two landings, contact, friction."""
-
-
-def need(stage):
-    """Skips a test, with the reason, on machines where its tools cannot be had."""
-    said = subprocess.run(
-        [ROOT / "scripts/missing_tools.sh", stage], capture_output=True, text=True, check=True
-    ).stdout
-    if said:
-        pytest.skip(f"{stage}: " + " ".join(said.split()))
 
 
 def run(command, **options):

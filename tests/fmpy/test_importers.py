@@ -1,31 +1,22 @@
 """Importers and checkers by other people accept the FMU and get from it what fmpy gets."""
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, python_of
 
 DRIVERS = ROOT / "tests/importers"
 sys.path.insert(0, str(DRIVERS))
 from short_wind import OUTPUTS, SCENE, STEP, STEPS, as_text, inputs_at
 
-PYTHON = os.environ.get("COILWIND_IMPORTERS_PYTHON") and os.path.abspath(os.environ["COILWIND_IMPORTERS_PYTHON"])
-"""Python of the environment that `scripts/venv.sh importers` makes."""
-
 
 @pytest.fixture(scope="session")
 def importers_python():
-    missing = subprocess.run(
-        [ROOT / "scripts/missing_tools.sh", "importers"], capture_output=True, text=True, check=True
-    ).stdout
-    if missing:
-        pytest.skip(missing.strip())
-    assert PYTHON, "set COILWIND_IMPORTERS_PYTHON to what scripts/venv.sh importers prints"
-    return PYTHON
+    """Python of the environment that `scripts/venv.sh importers` makes."""
+    return python_of("COILWIND_IMPORTERS_PYTHON", "importers")
 
 
 @pytest.fixture

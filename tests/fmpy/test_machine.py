@@ -2,15 +2,12 @@
 
 import csv
 import math
-import os
 import subprocess
 import zipfile
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, python_of
 
-PYTHON = os.environ.get("COILWIND_MACHINE_PYTHON") and os.path.abspath(os.environ["COILWIND_MACHINE_PYTHON"])
-"""Python of the environment that `scripts/venv.sh machine` makes."""
 INERTIA, TORQUE_LIMIT, FULL_SPEED = 2e-4, 0.5, 100.0
 """Of the spindle drive: kg m2, N m, rad/s."""
 
@@ -18,15 +15,10 @@ INERTIA, TORQUE_LIMIT, FULL_SPEED = 2e-4, 0.5, 100.0
 @pytest.fixture(scope="session")
 def machine(fmu_path, tmp_path_factory):
     """The folder that the one command leaves, and what it says."""
-    missing = subprocess.run(
-        [ROOT / "scripts/missing_tools.sh", "importers"], capture_output=True, text=True, check=True
-    ).stdout
-    if missing:
-        pytest.skip(missing.strip())
-    assert PYTHON, "set COILWIND_MACHINE_PYTHON to what scripts/venv.sh machine prints"
+    python = python_of("COILWIND_MACHINE_PYTHON", "machine")
     out = tmp_path_factory.mktemp("machine")
     ran = subprocess.run(
-        [PYTHON, ROOT / "examples/machine/run.py", "--fmu", fmu_path, "--out", out],
+        [python, ROOT / "examples/machine/run.py", "--fmu", fmu_path, "--out", out],
         capture_output=True, text=True, timeout=600, check=False,
     )
     assert ran.returncode == 0, ran.stderr[-4000:]

@@ -8,6 +8,14 @@ use super::{Bobbin, Layers, Mesh, Prism};
 use crate::settings::SceneSettings;
 use std::f64::consts::PI;
 
+/// What is to be wound: outer diameter of the wire and width of the winding, m, and layers.
+#[derive(Clone, Copy)]
+struct Coil {
+    outer: f64,
+    window: f64,
+    count: u32,
+}
+
 /// A core: the largest radius that it sweeps and the way round it, m, and its file.
 type Core = (f64, f64, Option<Mesh>);
 
@@ -25,16 +33,21 @@ pub(super) fn scene(case_random: &mut CaseRandom) -> (SceneSettings, Option<Mesh
     let turns = case_random.even(1.0, most + 1.0).floor().min(most.ceil());
     let pitch = outer * case_random.even(1.0, 1.06);
     let window = pitch * (turns - 0.5) + outer + outer * case_random.even(0.0, 0.2);
+    let coil = Coil {
+        outer,
+        window,
+        count,
+    };
     let (radius, perimeter, mesh) = match case_random.even(0.0, 1.0) {
         x if x < 0.4 => {
             s.core.shape = "cylinder".to_owned();
             s.core.radius = sized(case_random, outer, 4.0);
-            flanges(case_random, &mut s, outer, window, count);
+            flanges(case_random, &mut s, coil);
             let rim = s.core.radius + s.core.flange.height;
             (rim, 2.0 * PI * s.core.radius, None)
         }
-        x if x < 0.75 => rounded_box(case_random, &mut s, outer, window, count),
-        x if x < 0.9 => bobbin(case_random, &mut s, outer, window, count),
+        x if x < 0.75 => rounded_box(case_random, &mut s, coil),
+        x if x < 0.9 => bobbin(case_random, &mut s, coil),
         _ => hollow(case_random, &mut s, outer),
     };
     s.core.length_y = s.core.length_y.max(window + 8.0 * outer);
@@ -92,13 +105,12 @@ fn sized(case_random: &mut CaseRandom, outer: f64, least: f64) -> f64 {
     (outer * case_random.log(least, 60.0)).clamp(0.5e-3, 15e-3)
 }
 
-fn flanges(
-    case_random: &mut CaseRandom,
-    s: &mut SceneSettings,
-    outer: f64,
-    window: f64,
-    count: u32,
-) {
+fn flanges(case_random: &mut CaseRandom, s: &mut SceneSettings, coil: Coil) {
+    let Coil {
+        outer,
+        window,
+        count,
+    } = coil;
     let f = &mut s.core.flange;
     f.inner_distance = window;
     f.height = outer * (f64::from(count) + case_random.even(0.5, 2.5));
@@ -110,18 +122,13 @@ fn flanges(
     }
 }
 
-fn rounded_box(
-    case_random: &mut CaseRandom,
-    s: &mut SceneSettings,
-    outer: f64,
-    window: f64,
-    count: u32,
-) -> Core {
+fn rounded_box(case_random: &mut CaseRandom, s: &mut SceneSettings, coil: Coil) -> Core {
+    let outer = coil.outer;
     let r = outer * case_random.log(1.0, 8.0);
     s.core.corner_radius = r;
     s.core.width_x = 2.0 * r + sized(case_random, outer, 2.0);
     s.core.height_z = 2.0 * r + sized(case_random, outer, 2.0);
-    flanges(case_random, s, outer, window, count);
+    flanges(case_random, s, coil);
     let flat = [0.5 * s.core.width_x - r, 0.5 * s.core.height_z - r];
     let around = 4.0 * (flat[0] + flat[1]) + 2.0 * PI * r;
     (
@@ -131,13 +138,12 @@ fn rounded_box(
     )
 }
 
-fn bobbin(
-    case_random: &mut CaseRandom,
-    s: &mut SceneSettings,
-    outer: f64,
-    window: f64,
-    count: u32,
-) -> Core {
+fn bobbin(case_random: &mut CaseRandom, s: &mut SceneSettings, coil: Coil) -> Core {
+    let Coil {
+        outer,
+        window,
+        count,
+    } = coil;
     let barrel = sized(case_random, outer, 4.0);
     let bobbin = Bobbin {
         barrel,

@@ -169,7 +169,11 @@ impl Worst {
             } else {
                 numbers.join(", ")
             };
-            text += &format!("\n**{}**, {} scenes: {all}.\n", row.name, numbers.len());
+            let count = numbers.len();
+            text += &format!(
+                "\n**{}**, {count} scenes:\n\n```text\n{all}\n```\n",
+                row.name
+            );
         }
         text
     }
@@ -204,6 +208,10 @@ mod tests {
             line.contains("| 3 | 8.00 % (8), 7.00 % (7), 6.00 % (6), 5.00 % (5)"),
             "{line}"
         );
-        assert!(worst.beyond().contains("3 scenes: 6, 7, 8."));
+        assert!(
+            worst
+                .beyond()
+                .contains("3 scenes:\n\n```text\n6, 7, 8\n```")
+        );
     }
 }
