@@ -305,3 +305,118 @@ fn a_nozzle_measured_at_the_start_of_a_step_is_as_late_as_the_page_says() {
     close(lag("true", faster, false), 10.0 * step * step);
     close(lag("false", faster, true), 5.0 * step * step);
 }
+
+/// A brake asked for more than it has holds by the most it has, at a rate too.
+#[test]
+fn a_brake_holds_by_its_largest_torque_at_most() {
+    let pull = |asked: f64, rate: f64| {
+        let scene = fig8(&[
+            ("tensioner.tension", "10"),
+            ("tensioner.brake_torque_max", "0.2"),
+        ]);
+        let still = Inputs {
+            tension_setpoint: 10.0,
+            nozzle_position: scene.nozzle_law.start(),
+            brake_torque: asked,
+            ..Inputs::HELD
+        };
+        let rates = Inputs {
+            brake_torque: rate,
+            ..Inputs::HELD
+        };
+        let mut run = Simulation::starting_with(&scene, still).expect("starts");
+        for _ in 0..20 {
+            run.advance_ramped(still, rates, 1e-3).expect("goes on");
+        }
+        assert_eq!(run.inputs().brake_torque, asked + 1e-3 * rate);
+        run.outputs().wire_tension
+    };
+    // 0.2 N m on a wheel of 50 mm
+    for (asked, rate, tension) in [
+        (0.1, 0.0, 12.0),
+        (0.2, 0.0, 14.0),
+        (0.9, 0.0, 14.0),
+        (0.2, 40.0, 14.0),
+    ] {
+        let found = pull(asked, rate);
+        assert!((found - tension).abs() < 0.02, "{asked}: {found}");
+    }
+}
+
+/// With inertia in the line and a pulley, a run goes on from its bytes as if it had not stopped.
+#[test]
+fn a_chain_behind_the_nozzle_is_saved_and_goes_on_to_the_bit() {
+    let scene = fig8(&[
+        ("tensioner.line_inertia", "true"),
+        ("tensioner.pulley_mass", "2e-3"),
+        ("tensioner.pulley_friction", "2"),
+        ("tensioner.pulley_place", "0.3"),
+    ]);
+    let at_rest = Inputs {
+        tension_setpoint: scene.tensioner.tension,
+        nozzle_position: scene.nozzle_law.start(),
+        ..Inputs::HELD
+    };
+    let mut run = Simulation::starting_with(&scene, at_rest).expect("starts");
+    assert!((run.outputs().wire_tension - 15.0).abs() < 1e-6);
+    let wind = |run: &mut Simulation, from: u32, to: u32| {
+        for k in from..to {
+            let now = Inputs {
+                spindle_speed: (4.0 * f64::from(k)).min(100.0),
+                ..at_rest
+            };
+            run.advance(now, 1e-3).expect("goes on");
+        }
+    };
+    wind(&mut run, 0, 40);
+    let bytes = run.to_bytes().expect("bytes");
+    let mut again = Simulation::from_bytes(&scene, &bytes).expect("a state");
+    wind(&mut run, 40, 70);
+    wind(&mut again, 40, 70);
+    assert_eq!(run.outputs(), again.outputs());
+    let mean = run.outputs().wire_tension;
+    assert!(
+        run.outputs().fed_length > 0.05 && mean > 5.0 && mean < 40.0,
+        "{mean}"
+    );
+}
+
+#[test]
+fn a_chain_where_it_cannot_be_is_refused_with_what_is_lacking() {
+    use coilwind::settings::SceneSettings;
+    for (changes, key, why) in [
+        (
+            vec![
+                ("tensioner.pulley_mass", "1e-3"),
+                ("solver.integrator", "rk4"),
+            ],
+            "tensioner.pulley_mass",
+            "explicit",
+        ),
+        (
+            vec![("tensioner.pulley_friction", "1"), ("tensioner.mass", "0")],
+            "tensioner.pulley_friction",
+            "tensioner.mass",
+        ),
+        (
+            vec![
+                ("tensioner.line_inertia", "true"),
+                ("tensioner.line_length", "0"),
+            ],
+            "tensioner.line_inertia",
+            "line_length",
+        ),
+    ] {
+        let mut settings = SceneSettings::load("fig8").expect("packed");
+        for (name, value) in changes {
+            settings.set_text(name, value).expect(name);
+        }
+        let error = settings.build().expect_err(key).to_string();
+        assert!(error.contains(key) && error.contains(why), "{error}");
+    }
+    let mut settings = SceneSettings::load("fig8").expect("packed");
+    let error = settings
+        .set_text("tensioner.pulley_mass", "-1e-3")
+        .expect_err("negative");
+    assert!(error.to_string().contains("0 to 100 kg"), "{error}");
+}

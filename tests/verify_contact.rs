@@ -34,6 +34,7 @@ macro_rules! kinds {
 kinds!(
     default = Preset::Default;
     capstan,
+    feed_tension,
     frozen_helix,
     grooved_capstan,
     groove_seat,

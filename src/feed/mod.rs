@@ -12,10 +12,15 @@
 //! ```
 //!
 //! A slack line cannot push: below zero the last edge is free of tension and the wire waits.
+//!
+//! The line's wire may have its mass, and a pulley may guide it: half of a span's mass goes to either end. The implicit
+//! method knows both, as a [`Curve`] of tension over wire passed.
 
+mod curve;
 mod line_wire;
 
 use crate::rod::Law;
+pub use curve::{Curve, MOST_CORNERS};
 pub use line_wire::LineWire;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +39,48 @@ pub struct FeedSpec {
     pub exit_friction: f64,
     /// length of the line, m: that much wire is as tight as the line
     pub line_length: f64,
+    /// mass of the line's wire, kg (0: it does not count); needs a tensioner with mass and a line of some length
+    pub line_mass: f64,
+    /// a pulley that guides the line; needs the same
+    pub pulley: Option<Pulley>,
+}
+
+/// A pulley that guides the line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pulley {
+    /// moment of inertia over the square of its radius, kg
+    pub mass: f64,
+    /// friction of its bearing, as a force on the wire, N
+    pub friction: f64,
+    /// share of the line between nozzle and pulley, above 0 and below 1
+    pub share: f64,
+}
+
+/// A stretch of the line without anything on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Span {
+    /// its stiffness, N/m
+    pub stiffness: f64,
+    /// its dashpot, N s/m
+    pub damping: f64,
+    /// half the mass of its wire, kg
+    pub half_mass: f64,
+}
+
+impl FeedSpec {
+    /// The part of the line that has this share of its length.
+    pub fn span(&self, share: f64) -> Span {
+        Span {
+            stiffness: self.line_stiffness / share,
+            damping: self.line_damping / share,
+            half_mass: 0.5 * self.line_mass * share,
+        }
+    }
+
+    /// Whether the line has anything with mass or friction between nozzle and tensioner.
+    pub fn has_chain(&self) -> bool {
+        self.pulley.is_some() || self.line_mass > 0.0
+    }
 }
 
 /// State of the feed.
@@ -47,7 +94,11 @@ pub struct Feed {
     pub paid: f64,
     /// its rate, m/s
     pub paid_rate: f64,
-    /// tension in the line, N
+    /// wire that has come over the pulley beyond what preloads the span before it, m; of no meaning without a pulley
+    pub guided: f64,
+    /// its rate, m/s
+    pub guided_rate: f64,
+    /// tension in the line at the nozzle, N
     pub line_tension: f64,
     /// damper that the machine adds to the tensioner's own, N s/m
     pub damping: f64,
@@ -66,9 +117,18 @@ impl Feed {
             rate: 0.0,
             paid,
             paid_rate: 0.0,
+            guided: spec.pulley.map_or(0.0, |pulley| pulley.share * paid),
+            guided_rate: 0.0,
             line_tension: tension,
             damping: 0.0,
         }
+    }
+
+    /// Takes `wire`, m, as passed everywhere, so that each span pulls as before.
+    pub fn shift(&mut self, wire: f64) {
+        self.fed += wire;
+        self.paid += wire;
+        self.guided += wire;
     }
 
     /// All dampers on the tensioner, N s/m.
@@ -168,6 +228,8 @@ mod tests {
             line_damping: 0.2 * (k * m).sqrt(),
             exit_friction: 0.0,
             line_length: 0.5,
+            line_mass: 0.0,
+            pulley: None,
         }
     }
 

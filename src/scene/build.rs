@@ -79,6 +79,7 @@ impl SceneSettings {
             ("verlet", _) => Integrator::Verlet,
             _ => Integrator::Implicit,
         };
+        self.check_line(integrator, &mut problems);
         let mut decisions = Decisions::default();
         self.plasticity(&mut wire, &mut decisions);
         let twist = problems.note(self.twist(integrator, &wire, &mut decisions));

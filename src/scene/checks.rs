@@ -114,6 +114,33 @@ impl SceneSettings {
         }
     }
 
+    /// What guides the line, or has mass in it, needs a line with a mass at its end and the method that solves for them.
+    pub(super) fn check_line(&self, integrator: Integrator, problems: &mut Problems) {
+        let t = &self.tensioner;
+        let keys = [
+            ("tensioner.line_inertia", t.line_inertia),
+            ("tensioner.pulley_mass", t.pulley_mass > 0.0),
+            ("tensioner.pulley_friction", t.pulley_friction > 0.0),
+        ];
+        for (key, _) in keys.into_iter().filter(|(_, there)| *there) {
+            let lacking = if integrator != Integrator::Implicit {
+                "the explicit methods have nothing between tensioner and nozzle"
+            } else if t.mass == 0.0 {
+                "without tensioner.mass the pull acts at the nozzle"
+            } else if t.line_length == 0.0 {
+                "without tensioner.line_length the tensioner is at the nozzle"
+            } else {
+                continue;
+            };
+            let off = if key == "tensioner.line_inertia" {
+                "false"
+            } else {
+                "0"
+            };
+            problems.add(self.impossible(key, lacking, off));
+        }
+    }
+
     pub(super) fn check_motion_and_friction(
         &self,
         law: Option<&NozzleLaw>,

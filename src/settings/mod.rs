@@ -280,6 +280,11 @@ impl Default for SceneSettings {
                 line_damping_ratio: 0.1,
                 damping: 0.0,
                 radius: 50e-3,
+                brake_torque_max: 1e4,
+                line_inertia: false,
+                pulley_mass: 0.0,
+                pulley_friction: 0.0,
+                pulley_place: 0.5,
             },
             start: Start { clamp_y: 0.0 },
             spindle: Spindle {

@@ -28,6 +28,23 @@ pub struct Tensioner {
     pub damping: f64,
     /// radius of the wheel on which a brake acts, m
     pub radius: f64,
+    /// largest torque of that brake, N m
+    pub brake_torque_max: f64,
+    /// whether the wire between tensioner and nozzle has its mass
+    pub line_inertia: bool,
+    /// moment of inertia of the guide pulley over the square of its radius, kg
+    pub pulley_mass: f64,
+    /// friction of the guide pulley's bearing, as a force on the wire, N
+    pub pulley_friction: f64,
+    /// share of the line between nozzle and guide pulley
+    pub pulley_place: f64,
+}
+
+impl Tensioner {
+    /// Whether a pulley guides the line.
+    pub fn has_pulley(&self) -> bool {
+        self.pulley_mass > 0.0 || self.pulley_friction > 0.0
+    }
 }
 
 /// Where the wire begins: clamped to the middle of the +x face, tangent to it, straight to the

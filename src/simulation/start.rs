@@ -8,7 +8,7 @@ use super::nozzle_way::Traverse;
 use super::run_state::RunState;
 use super::{MotionProfile, SimError, Winding};
 use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
-use crate::feed::{Feed, FeedSpec, LineWire};
+use crate::feed::{Feed, FeedSpec, LineWire, Pulley};
 use crate::geometry::Surface;
 use crate::integrate::{
     Explicit, ExplicitMethod, Implicit, Scheme, Stepper, highest_frequency, longest_step,
@@ -134,6 +134,16 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         },
         exit_friction: scene.nozzle.exit_friction,
         line_length: t.line_length,
+        line_mass: if t.line_inertia {
+            section.mass_per_length() * t.line_length
+        } else {
+            0.0
+        },
+        pulley: t.has_pulley().then_some(Pulley {
+            mass: t.pulley_mass,
+            friction: t.pulley_friction,
+            share: t.pulley_place,
+        }),
     };
     sys.set_feed(spec, Feed::at_rest(&spec, tension));
     sys.damp_tensioner(inputs.tensioner_damping);

@@ -51,10 +51,24 @@ impl Told {
     }
 }
 
-/// Inputs, or their rates, with all that holds the tensioner back in `tension_setpoint`.
+/// Inputs with all that holds the tensioner back in `tension_setpoint`: the brake holds by its largest torque at most.
 pub(super) fn with_brake(scene: &Scene, inputs: Inputs) -> Inputs {
+    let torque = inputs.brake_torque.min(scene.tensioner.brake_torque_max);
+    adding(scene, inputs, torque)
+}
+
+/// The same of the `rates` of these inputs, per s: a brake at its largest torque gets no stronger.
+pub(super) fn rates_with_brake(scene: &Scene, inputs: &Inputs, rates: Inputs) -> Inputs {
+    let most = scene.tensioner.brake_torque_max;
+    let at_most =
+        inputs.brake_torque > most || inputs.brake_torque == most && rates.brake_torque > 0.0;
+    let rate = if at_most { 0.0 } else { rates.brake_torque };
+    adding(scene, rates, rate)
+}
+
+fn adding(scene: &Scene, inputs: Inputs, brake: f64) -> Inputs {
     Inputs {
-        tension_setpoint: inputs.tension_setpoint + inputs.brake_torque / scene.tensioner.radius,
+        tension_setpoint: inputs.tension_setpoint + brake / scene.tensioner.radius,
         brake_torque: 0.0,
         ..inputs
     }
@@ -77,5 +91,8 @@ pub(super) fn as_meant(
         go_on(|i| i.nozzle_offset_x, &mut rates.nozzle_offset_x);
         go_on(|i| i.nozzle_offset_z, &mut rates.nozzle_offset_z);
     }
-    (with_brake(scene, inputs), with_brake(scene, rates))
+    (
+        with_brake(scene, inputs),
+        rates_with_brake(scene, &inputs, rates),
+    )
 }

@@ -1,5 +1,6 @@
 //! Accepted instants before the present one, as the implicit method's formulas need them.
 
+use crate::feed::Feed;
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
 
@@ -20,10 +21,16 @@ pub struct Past {
     pub spin: Vec<f64>,
     /// wire passed by one and two instants back, m
     pub fed: [f64; 2],
+    /// its rate one instant back, m/s
+    pub fed_rate: f64,
     /// tensioner's way, m, and speed, m/s, one instant back
     pub paid: f64,
     /// see `paid`
     pub paid_rate: f64,
+    /// the pulley's way, m, and speed, m/s, one instant back
+    pub guided: f64,
+    /// see `guided`
+    pub guided_rate: f64,
     /// lengths of the last two steps, s
     pub h: [f64; 2],
 }
@@ -32,6 +39,25 @@ impl Past {
     /// Forgets everything before the present instant: the next step starts afresh.
     pub fn forget(&mut self) {
         self.known = 0;
+    }
+
+    /// Takes the present feed as that of one instant back.
+    pub(crate) fn keep_feed(&mut self, feed: &Feed) {
+        self.fed = [feed.fed, self.fed[0]];
+        self.fed_rate = feed.rate;
+        (self.paid, self.paid_rate) = (feed.paid, feed.paid_rate);
+        (self.guided, self.guided_rate) = (feed.guided, feed.guided_rate);
+    }
+
+    /// Takes `wire`, m, as passed everywhere.
+    pub(crate) fn shift_feed(&mut self, wire: f64) {
+        for place in self
+            .fed
+            .iter_mut()
+            .chain([&mut self.paid, &mut self.guided])
+        {
+            *place += wire;
+        }
     }
 
     /// Rolls before the present instant are not known.

@@ -15,8 +15,8 @@ impl System {
             self.state.past.q[0].clear();
             self.state.past.q[0].extend(self.state.rod.x.iter().map(|x| spin.to_core(*x)));
             if let Some(f) = &self.state.feed {
+                self.state.past.keep_feed(f);
                 self.state.past.fed = [f.fed; 2];
-                (self.state.past.paid, self.state.past.paid_rate) = (f.paid, f.paid_rate);
             }
             if self.model.twist.is_carried() {
                 self.state.past.forget_rolls(self.state.rod.edges());

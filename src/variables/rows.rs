@@ -377,6 +377,11 @@ table! {
     fixed(1303, "tensioner.line_damping_ratio", tensioner.line_damping_ratio, "1", "", 0.0, 10.0, 0.1, "damping ratio of the mass on the line");
     fixed(1304, "tensioner.damping", tensioner.damping, "N.s/m", "", 0.0, 1e4, 1.0, "damper on the tensioner: pull per speed of the wire that it lets go");
     fixed(1305, "tensioner.radius", tensioner.radius, "m", "mm", 1e-3, 10.0, 0.1, "radius of the tensioner's wheel, on which brake_torque acts");
+    fixed(1306, "tensioner.brake_torque_max", tensioner.brake_torque_max, "N.m", "N.mm", 0.0, 1e4, 0.1, "largest torque of the brake: brake_torque above it counts as this");
+    switch(1307, "tensioner.line_inertia", tensioner.line_inertia, "whether wire between tensioner and nozzle has its mass: half of each span's goes to either end");
+    fixed(1308, "tensioner.pulley_mass", tensioner.pulley_mass, "kg", "g", 0.0, 100.0, 1e-3, "guide pulley: moment of inertia over the square of its radius; 0 with pulley_friction = 0: no pulley");
+    fixed(1309, "tensioner.pulley_friction", tensioner.pulley_friction, "N", "", 0.0, 1e4, 1.0, "guide pulley: friction of its bearing, as a force on the wire");
+    fixed(1310, "tensioner.pulley_place", tensioner.pulley_place, "1", "", 0.01, 0.99, 1.0, "guide pulley: share of the line between nozzle and pulley");
 
     fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face");
 

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Writes the reference files of `wave_damping`, `rolling_path`, `helix_gap`, `frozen_helix`,
-`live_pair` and `grooved_capstan`.
+`live_pair`, `grooved_capstan` and `feed_tension`.
 
     tests/reference/compute_laws.py [folder]
 
-Needs Python with mpmath (1.3 was used). The other files of this folder are the project's given references.
+Needs Python with mpmath (1.3 was used) and numpy (1.26). The other files of this folder are the project's given references.
 Nothing here knows the program: each number is a closed form, an eigenvalue or an integration of its own.
 """
 
@@ -14,6 +14,7 @@ import sys
 from pathlib import Path
 
 import mpmath
+import numpy
 
 HERE = Path(__file__).resolve().parent
 # friction with which no wire slides on its way to rest: the steady state asks for 0.4
@@ -328,6 +329,76 @@ def grooved_capstan(radius, hold, mu, wrap, groove):
     return {"string_ratio": float(mpmath.exp(rate * wrap)), "stiff_ratio": float(force / hold)}
 
 
+def moment_arm(box, distance, count):
+    """Moment arm of a taut line from a nozzle to a rounded box that turns, m, at `count` angles of a turn.
+
+    The line with its normal at phi touches the box at the angle theta where h(phi - theta) = D cos phi, h its support function.
+    """
+    width, height, corner = box
+    theta = numpy.linspace(0.0, 2 * math.pi, count, endpoint=False)
+
+    def support(angle):
+        flat = (width / 2 - corner) * abs(numpy.cos(angle)) + (height / 2 - corner) * abs(numpy.sin(angle))
+        return flat + corner + WIRE["r"]
+
+    low, high = numpy.zeros(count), numpy.full(count, math.pi / 2)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        beyond = distance * numpy.cos(middle) < support(middle - theta)
+        low, high = numpy.where(beyond, low, middle), numpy.where(beyond, middle, high)
+    return distance * numpy.cos(0.5 * (low + high))
+
+
+def feed_tension(box, distance, speed, line, masses, pulley):
+    """Least, largest and mean tension at the nozzle, N, in steady winding, and the root mean square of what it is off its mean.
+
+    Tensioner, spans and pulley are a chain of impedances; half the mass of each span's wire is at either of its ends. The
+    velocity omega p of the wire is a Fourier series; what its kinks leave at the nozzle, the mass there, is added in time.
+    """
+    count = 1 << 16
+    arm = moment_arm(box, distance, count)
+    pull, stiffness, ratio = line
+    tensioner, wire = masses
+    damping = 2 * ratio * math.sqrt(stiffness * tensioner)
+    frequency = 1j * speed * numpy.arange(1, count // 2 + 1)
+
+    def through(impedance, share):
+        return 1 / (1 / impedance + 1 / ((damping + stiffness / frequency) / share))
+
+    if pulley is None:
+        share, friction = 1.0, 0.0
+        chain = through(frequency * (tensioner + wire / 2), 1.0)
+    else:
+        mass, friction, share = pulley
+        chain = through(frequency * (tensioner + wire * (1 - share) / 2), 1 - share)
+        chain = through(chain + frequency * (mass + wire / 2), share)
+    velocity = numpy.fft.rfft(speed * arm)
+    force = numpy.zeros_like(velocity)
+    force[1:] = chain * velocity[1:]
+    tension = pull + friction + numpy.fft.irfft(force, count)
+    # p is smooth but for kinks: from here to the next angle on either side of one
+    growing = (numpy.roll(arm, -1) - arm) * count / (2 * math.pi)
+    tension = tension + wire * share / 2 * speed**2 * growing
+    expected = {"tension_max_N": float(tension.max()), "tension_mean_N": float(tension.mean()), "tension_rms_N": float(tension.std())}
+    # mass at the nozzle also feels how a flat slaps on the core, which the string of the reference does not
+    return expected if wire > 0.0 else {"tension_min_N": float(tension.min()), **expected}
+
+
+def feed_case(core, speed, tensioner, wire, pulley):
+    """A case of `feed_tension`: 15 N, a line of 97.8 kN/m with a damping ratio of 0.1."""
+    width, height, corner, distance = core
+    inputs = {
+        "core_w_m": width, "core_h_m": height, "corner_radius_m": corner, "nozzle_distance_m": distance, "T0_N": 15.0,
+        "line_stiffness_N_per_m": 97800.0, "line_damping_ratio": 0.1, "omega_rad_per_s": speed, "tensioner_mass_kg": tensioner, "line_mass_kg": wire,
+    }
+    mass, friction, share = pulley or (0.0, 0.0, 0.5)
+    inputs.update({"pulley_mass_kg": mass, "pulley_friction_N": friction, "pulley_place": share})
+    name = f"core{width * 1e3:g}x{height * 1e3:g}_om{speed}_m{tensioner * 1e3:g}g_line{wire * 1e3:g}g"
+    if pulley:
+        name += f"_pulley{mass * 1e3:g}g_{friction:g}N"
+    return name, inputs, feed_tension((width, height, corner), distance, speed, (15.0, 97800.0, 0.1), (tensioner, wire), pulley)
+
+
 def main():
     folder = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
     d = WIRE["d"]
@@ -390,6 +461,19 @@ def main():
         (f"mu{mu:g}_wrap{degrees}_R{radius * 1e3:g}mm_F{hold:g}_V{groove}", {"mu": mu, "wrap_rad": math.radians(degrees), "R_m": radius, "F0_N": hold, "groove_rad": math.radians(groove)}, grooved_capstan(radius, hold, mu, math.radians(degrees), math.radians(groove)))
         for mu, degrees, radius, hold, groove in ((0.17, 180, 0.05, 5.0, 90), (0.17, 90, 0.05, 20.0, 60), (0.1, 180, 0.05, 10.0, 120))
     ], implicit=False)
+    oblong, square = (0.012, 0.03, 0.002, 0.06), (0.02, 0.02, 0.003, 0.06)
+    write(folder, "feed_tension", (
+        "Tension at the nozzle while a rounded rectangle takes up wire through a line and a guide pulley",
+        "wire speed omega p as in winding_feed; chain of impedances: tensioner i w m, span (c + k/(i w)) over its share, pulley i w m; half of a span's wire at either end; bearing friction adds its force",
+        "Fourier series of 32768 terms", "1e-3 N", "1% of the extremes, 3% of the rms",
+        "wire that is nearly inextensible, without stiffness in bending and with a hundredth of its mass, so that waves of the free span do not count; the wire never goes back; line mass and pulley are free numbers",
+    ), {"tension_min_N": {"rel": 0.01}, "tension_max_N": {"rel": 0.01}, "tension_mean_N": {"rel": 0.002}, "tension_rms_N": {"rel": 0.03}}, [
+        feed_case(core, speed, tensioner, wire, pulley)
+        for core, speed, tensioner, wire, pulley in (
+            (oblong, 100, 2e-3, 0.0, None), (oblong, 300, 2e-3, 0.0, None), (square, 300, 5e-4, 0.0, None), (square, 300, 1e-3, 1.7e-3, None),
+            (square, 300, 1e-3, 0.0, (2e-3, 3.0, 0.4)), (oblong, 100, 1e-3, 1.7e-3, (5e-3, 1.0, 0.7)),
+        )
+    ])
 
 
 if __name__ == "__main__":

@@ -2,8 +2,9 @@
 
 use super::Implicit;
 use super::landings::Solved;
+use super::nozzle_edge::NozzleEdge;
 use super::scheme::{Scheme, StepFormula};
-use super::tensioner::{NozzleEdge, advance};
+use super::tensioner::advance;
 use super::unknowns::Unknowns;
 use super::work::Work;
 use crate::math::{Spin, V3};
@@ -158,8 +159,6 @@ fn feed(
     let line = nozzle.line(length);
     let set = sys.set_tension_after(step.share * step.h);
     let next = advance(spec, feed, &sys.state.past, step, (grown, line, set));
-    let past = &mut sys.state.past;
-    past.fed = [feed.fed, past.fed[0]];
-    (past.paid, past.paid_rate) = (feed.paid, feed.paid_rate);
+    sys.state.past.keep_feed(feed);
     (Some(next), grown)
 }

@@ -15,6 +15,7 @@ mod landings;
 mod lengths;
 mod model;
 mod newton;
+mod nozzle_edge;
 mod places;
 mod places_and_rolls;
 mod predictor;

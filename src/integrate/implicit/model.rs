@@ -1,8 +1,8 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
 use super::lengths::voronoi;
+use super::nozzle_edge::NozzleEdge;
 use super::scheme::StepFormula;
-use super::tensioner::NozzleEdge;
 use super::unknowns::Unknowns;
 use super::work::{Axial, Work};
 use crate::contact::{ContactPoint, LineContact, own_wire};

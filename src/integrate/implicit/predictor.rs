@@ -1,8 +1,8 @@
 //! The guess of a step and what its solve starts from.
 
 use super::lengths::voronoi;
+use super::nozzle_edge::NozzleEdge;
 use super::scheme::{Scheme, StepFormula, extrapolation};
-use super::tensioner::NozzleEdge;
 use super::unknowns::Unknowns;
 use super::work::Work;
 use crate::math::Spin;

@@ -1,216 +1,147 @@
-//! The edge at the nozzle together with line and tensioner, as one spring.
+//! Line, pulley and tensioner behind the nozzle during one step.
 //!
-//! How much wire passes the nozzle in a step follows from equal forces in the edge and in the
-//! line. Both schemes make the line's tension a straight line over the wire passed. So the length of
-//! the edge is the root of a quadratic and its tension has a closed potential: the feed costs no
-//! unknown.
+//! The tensioner's mass, damper and pull, and a line without mass, make the line's tension a straight line over the wire
+//! passed. Mass of the line's wire, and a pulley with its bearing, make it a [`Curve`].
 
 use super::scheme::StepFormula;
-use crate::feed::{Feed, FeedSpec};
-use crate::rod::Stretched;
+use crate::feed::{Curve, Feed, FeedSpec, Span};
 use crate::system::Past;
 
-/// The edge at the nozzle during one solve.
-///
-/// Friction at the exit holds back whichever way the wire moves. The tension is `grip` times the line's where
-/// wire comes out in this step, and the line's over `grip` where it goes back. Between the two none passes.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct NozzleEdge {
-    /// the line's tension is `a + b * rest`, N and N/m
-    a: f64,
-    b: f64,
-    /// elastic modulus, N
-    ea: f64,
-    /// `1 + plastic stretch` of the edge's wire
-    set: f64,
-    /// the same of wire that comes out
-    coming: f64,
-    /// how much longer the wire at the start is for its plastic stretch than if it were such wire, m
-    longer: f64,
-    /// rest length at which the line goes slack, m
-    slack: f64,
-    /// rest length at the start of the step, m
-    start: f64,
-    /// tension after over tension before the exit while wire comes out, 1 or more
-    grip: f64,
+/// A body on the line where the step's formula would have it without forces.
+#[derive(Clone, Copy, Debug)]
+struct Body {
+    /// its place `s*`, m
+    place: f64,
+    /// its speed `u*`, m/s
+    speed: f64,
+    /// kg
+    mass: f64,
 }
 
-/// Which way wire passes the nozzle in a step.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Way {
-    /// out, and the tension is the line's times this
-    Out(f64),
-    /// back, and the tension is the line's times this
-    Back(f64),
-    /// held by friction
-    Held,
+impl Body {
+    /// The force that moves it, over how much farther it gets, m, in a step with this gamma, s.
+    fn inertia(&self, gamma: f64) -> [f64; 2] {
+        [-self.mass * self.speed / gamma, self.mass / (gamma * gamma)]
+    }
 }
 
-impl NozzleEdge {
-    /// `rest` is the edge's unstretched length now, `pull` the tensioner's force, `grip` the ratio of
-    /// tension after to before the exit where wire comes out, `ea` the wire's modulus, `plastic` the plastic
-    /// stretch of the edge and of wire that comes out.
+/// What stands behind the nozzle during one step: tensions over how much farther a place gets than without forces.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chain {
+    gamma: f64,
+    nozzle: Body,
+    guided: Body,
+    tensioner: Body,
+    /// tension at the nozzle, with the mass of the wire there
+    at_nozzle: Curve,
+    /// in the span before the nozzle, over the nozzle's place
+    line: Curve,
+    /// before the pulley, and behind it, over the pulley's place
+    pulley: Option<[Curve; 2]>,
+    /// at the tensioner, over its place
+    pull: Curve,
+}
+
+impl Chain {
+    /// `pull` is the tensioner's force, N.
     pub(super) fn new(
         spec: &FeedSpec,
         feed: &Feed,
         past: &Past,
         step: &StepFormula,
-        (rest, pull, grip, ea, plastic): (f64, f64, f64, f64, [f64; 2]),
+        pull: f64,
     ) -> Self {
-        let (t0, slope) = line_over_fed(spec, feed, past, step, pull);
-        // tension = t0 + slope * fed, fed = feed.fed + rest' - rest
-        let a = t0 + slope * (feed.fed - rest);
-        Self {
-            a,
-            b: slope,
-            ea,
-            set: 1.0 + plastic[0],
-            coming: 1.0 + plastic[1],
-            longer: rest * (plastic[0] - plastic[1]),
-            slack: if slope > 0.0 {
-                -a / slope
-            } else {
-                f64::NEG_INFINITY
-            },
-            start: rest,
-            grip,
-        }
-    }
-
-    /// The line's tension while no wire passes, N.
-    fn line_at_start(&self) -> f64 {
-        (self.a + self.b * self.start).max(0.0)
-    }
-
-    /// Tension of the edge were no wire to pass, N.
-    fn held(&self, length: f64) -> f64 {
-        self.ea * (length / self.start - self.set)
-    }
-
-    fn way(&self, length: f64) -> Way {
-        let (held, line) = (self.held(length), self.line_at_start());
-        if held > self.grip * line {
-            Way::Out(self.grip)
-        } else if self.grip == 1.0 || held < line / self.grip {
-            Way::Back(1.0 / self.grip)
-        } else {
-            Way::Held
-        }
-    }
-
-    /// Unstretched length of the edge when it is `length` long.
-    pub(super) fn rest(&self, length: f64) -> f64 {
-        match self.way(length) {
-            Way::Held => self.start,
-            way => self.balanced(length, way),
-        }
-    }
-
-    /// The line's tension when the edge is `length` long, N.
-    pub(super) fn line(&self, length: f64) -> f64 {
-        match self.way(length) {
-            Way::Held => self.line_at_start(),
-            way @ (Way::Out(grip) | Way::Back(grip)) => self.free(length, way).tension / grip,
-        }
-    }
-
-    /// Tension, stiffness and potential at a length.
-    pub(super) fn stretched(&self, length: f64) -> Stretched {
-        let way = self.way(length);
-        let grip = match way {
-            Way::Out(grip) | Way::Back(grip) => grip,
-            Way::Held => return self.stuck(length),
+        let g = step.gamma;
+        let body = |place: [f64; 2], speed: [f64; 2], mass: f64| Body {
+            place: step.blend(place[0], place[1]),
+            speed: step.blend(speed[0], speed[1]),
+            mass,
         };
-        let free = self.free(length, way);
-        if self.grip == 1.0 && self.longer == 0.0 {
-            // out and back are one law
-            return free;
-        }
-        // the potential goes on where wire begins to pass
-        let end = self.start * (self.set + grip * self.line_at_start() / self.ea);
-        Stretched {
-            energy: free.energy - self.free(end, way).energy + self.stuck(end).energy,
-            ..free
-        }
-    }
-
-    /// The edge while friction lets no wire pass.
-    fn stuck(&self, length: f64) -> Stretched {
-        let tension = self.held(length);
-        Stretched {
-            tension,
-            stiffness: self.ea / self.start,
-            energy: 0.5 * tension * tension * self.start / self.ea,
-        }
-    }
-
-    /// Length of the edge less what makes its wire unlike that which passes, m; factor of the line's
-    /// tension; `1 + plastic stretch` of wire that passes.
-    fn alike(&self, length: f64, way: Way) -> (f64, f64, f64) {
-        match way {
-            Way::Out(grip) => (length - self.longer, grip, self.coming),
-            Way::Back(grip) => (length, grip, self.set),
-            Way::Held => (length, 1.0, self.set),
-        }
-    }
-
-    /// Unstretched length at which the edge pulls as hard as the line does through the exit.
-    fn balanced(&self, length: f64, way: Way) -> f64 {
-        let (length, grip, set) = self.alike(length, way);
-        let (a, b) = (grip * self.a, grip * self.b);
-        let c = self.ea * set + a;
-        let y = if b > 0.0 {
-            // b y^2 + c y = EA length, the positive root in the form without cancellation
-            let d = (c * c + 4.0 * b * self.ea * length).sqrt();
-            if c > 0.0 {
-                2.0 * self.ea * length / (c + d)
-            } else {
-                (d - c) / (2.0 * b)
+        let (front, rear) = match spec.pulley {
+            Some(pulley) => (spec.span(pulley.share), spec.span(1.0 - pulley.share)),
+            None => (spec.span(1.0), spec.span(1.0)),
+        };
+        let nozzle = body(
+            [feed.fed, past.fed[0]],
+            [feed.rate, past.fed_rate],
+            front.half_mass,
+        );
+        let guided = body(
+            [feed.guided, past.guided],
+            [feed.guided_rate, past.guided_rate],
+            front.half_mass + rear.half_mass + spec.pulley.map_or(0.0, |pulley| pulley.mass),
+        );
+        let tensioner = body(
+            [feed.paid, past.paid],
+            [feed.paid_rate, past.paid_rate],
+            rear.half_mass + spec.mass,
+        );
+        let before = |curve: Curve, span: Span, from: Body, to: Body| {
+            let stiffness = span.stiffness + span.damping / g;
+            curve
+                .before_spring(stiffness, span.stiffness * (from.place - to.place))
+                .never_pushing()
+        };
+        let [force, slope] = tensioner.inertia(g);
+        let at_tensioner = Curve::straight(pull + force, feed.damping_on(spec) / g + slope);
+        let (pulley, line) = match spec.pulley {
+            Some(pulley) => {
+                let behind = before(at_tensioner, rear, guided, tensioner);
+                let [force, slope] = guided.inertia(g);
+                let ahead = behind.plus(force, slope).with_friction(pulley.friction);
+                (Some([ahead, behind]), before(ahead, front, nozzle, guided))
             }
-        } else {
-            self.ea * length / c
+            None => (None, before(at_tensioner, front, nozzle, tensioner)),
         };
-        if y <= self.slack || a + b * y < 0.0 {
-            // the line is slack: the edge is as long as it likes
-            length / set
-        } else {
-            y
+        let [force, slope] = nozzle.inertia(g);
+        Self {
+            gamma: g,
+            nozzle,
+            guided,
+            tensioner,
+            at_nozzle: line.plus(force, slope).never_pushing(),
+            line,
+            pulley,
+            pull: at_tensioner,
         }
     }
 
-    /// The edge where wire passes.
-    fn free(&self, length: f64, way: Way) -> Stretched {
-        let y = self.balanced(length, way);
-        let (_, grip, set) = self.alike(length, way);
-        let (a, b) = (grip * self.a, grip * self.b);
-        let tension = a + b * y;
-        if tension <= 0.0 {
-            return Stretched::default();
-        }
-        let c = self.ea * set + a;
-        let slope = self.ea / (2.0 * b * y + c);
-        // integral of the tension over the length, with d length = (2 b y + c) / EA dy
-        let primitive = |y: f64| {
-            (a * c * y + (2.0 * a * b + b * c) * y * y * 0.5 + 2.0 * b * b * y * y * y / 3.0)
-                / self.ea
-        };
-        // from where the line begins to pull, or from nothing where it always does: the constant
-        // does not matter, but staying near keeps digits
-        let from = if self.slack.is_finite() && self.slack > 0.0 {
-            self.slack
+    /// Tension at the nozzle over the wire passed there beyond the second number, m.
+    pub(super) fn at_nozzle(&self) -> (&Curve, f64) {
+        (&self.at_nozzle, self.nozzle.place)
+    }
+
+    /// The feed after the step, in which wire up to `fed`, m, came out under the tension `line`, N, at the nozzle.
+    fn advance(&self, feed: &Feed, fed: f64, line: f64) -> Feed {
+        let g = self.gamma;
+        let farther = fed - self.nozzle.place;
+        let tension = if line > 0.0 {
+            let [force, slope] = self.nozzle.inertia(g);
+            (line - force - slope * farther).max(0.0)
         } else {
-            0.0
+            // nothing pulls at the wire there: it stops at the nozzle
+            self.line.tension(farther)
         };
-        Stretched {
-            tension,
-            stiffness: if b > 0.0 { b * slope } else { 0.0 },
-            energy: primitive(y) - primitive(from),
+        let mut next = Feed {
+            fed,
+            rate: farther / g,
+            line_tension: line,
+            ..*feed
+        };
+        let mut behind = tension;
+        if let Some([ahead, rear]) = &self.pulley {
+            let farther = ahead.place(tension);
+            (next.guided, next.guided_rate) = (self.guided.place + farther, farther / g);
+            behind = rear.tension(farther);
         }
+        let farther = self.pull.place(behind);
+        (next.paid, next.paid_rate) = (self.tensioner.place + farther, farther / g);
+        next
     }
 }
 
-/// Line tension at zero wire passed and its slope: `T = t0 + slope * fed` at the end of the step.
-fn line_over_fed(
+/// Line tension at zero wire passed and its slope where the line has no mass: `T = t0 + slope * fed` at the end of the step.
+pub(super) fn line_over_fed(
     spec: &FeedSpec,
     feed: &Feed,
     past: &Past,
@@ -256,6 +187,9 @@ pub(super) fn advance(
 ) -> Feed {
     let g = step.gamma;
     let fed = feed.fed + grown;
+    if spec.has_chain() {
+        return Chain::new(spec, feed, past, step, pull).advance(feed, fed, line);
+    }
     let rate = (fed - step.blend(feed.fed, past.fed[0])) / g;
     let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
     let (paid, paid_rate) = if elastic_line {
@@ -271,7 +205,7 @@ pub(super) fn advance(
         paid,
         paid_rate,
         line_tension: line,
-        damping: feed.damping,
+        ..*feed
     }
 }
 
@@ -279,175 +213,146 @@ pub(super) fn advance(
 mod tests {
     use super::super::scheme::Scheme;
     use super::*;
+    use crate::feed::Pulley;
 
-    fn setting() -> (FeedSpec, Feed, Past, StepFormula) {
-        let spec = FeedSpec {
-            mass: 1e-3,
-            damping: 0.4,
+    const SET: f64 = 15.0;
+
+    fn spec(friction: f64) -> FeedSpec {
+        FeedSpec {
+            mass: 2e-3,
+            damping: 0.3,
             line_stiffness: 97_800.0,
             line_damping: 2.0,
             exit_friction: 0.0,
             line_length: 0.5,
-        };
-        let feed = Feed {
-            fed: 0.012,
-            rate: 3.0,
-            paid: 0.012 - 14.0 / 97_800.0,
-            paid_rate: 2.9,
-            line_tension: 14.0,
-            damping: 0.3,
-        };
-        let past = Past {
-            known: 1,
-            fed: [0.012 - 3e-4; 2],
-            paid: 0.012 - 3e-4 - 14.0 / 97_800.0,
-            paid_rate: 2.9,
-            h: [1e-4, 0.0],
-            ..Past::default()
-        };
-        let step = StepFormula::new(Scheme::Bdf2, &past, 1.2e-4);
-        (spec, feed, past, step)
-    }
-
-    #[test]
-    fn wire_and_line_pull_alike() {
-        let (spec, feed, past, step) = setting();
-        let ea = 48_900.0;
-        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.1, ea, [1e-4; 2]));
-        // so long that wire comes out
-        let length = 3.36e-3 * (1.0 + 3e-4);
-        let y = edge.rest(length);
-        let s = edge.stretched(length);
-        assert!((s.tension - ea * (length / y - 1.0 - 1e-4)).abs() < 1e-6);
-        // the line's own law, step by step
-        let line = edge.line(length);
-        assert!((s.tension / line - 1.1).abs() < 1e-12);
-        let next = advance(&spec, &feed, &past, &step, (y - 3e-3, line, 15.0));
-        let law = spec.line_stiffness * (next.fed - next.paid)
-            + spec.line_damping * (next.rate - next.paid_rate);
-        assert!((law - line).abs() < 1e-6, "{law} {line}");
-        // the tensioner's own
-        let began = step.blend(feed.paid_rate, past.paid_rate);
-        let inertia = spec.mass * (next.paid_rate - began) / step.gamma;
-        let force = line - 15.0 - feed.damping_on(&spec) * next.paid_rate;
-        assert!((inertia - force).abs() < 1e-9, "{inertia} {force}");
-        let h = 1e-9;
-        let d =
-            (edge.stretched(length + h).tension - edge.stretched(length - h).tension) / (2.0 * h);
-        assert!((d / s.stiffness - 1.0).abs() < 1e-5);
-        let de =
-            (edge.stretched(length + h).energy - edge.stretched(length - h).energy) / (2.0 * h);
-        assert!((de / s.tension - 1.0).abs() < 1e-4, "{de}");
-    }
-
-    #[test]
-    fn a_slack_line_does_not_push() {
-        let (spec, feed, past, step) = setting();
-        let edge = NozzleEdge::new(
-            &spec,
-            &feed,
-            &past,
-            &step,
-            (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]),
-        );
-        let s = edge.stretched(1e-3);
-        assert_eq!(s.tension, 0.0);
-        assert!((edge.rest(1e-3) - 1e-3).abs() < 1e-15);
-    }
-
-    /// Tension is one branch of another with friction at the exit, never jumps, and derives from the potential.
-    #[test]
-    fn friction_at_the_exit_holds_wire_between_two_tensions() {
-        let (spec, mut feed, mut past, step) = setting();
-        // at rest: a moving tensioner would leave the line slack if no wire came
-        (feed.rate, feed.paid_rate) = (0.0, 0.0);
-        past.fed = [feed.fed; 2];
-        (past.paid, past.paid_rate) = (feed.paid, 0.0);
-        let (ea, grip) = (48_900.0, 1.4);
-        let edge = NozzleEdge::new(
-            &spec,
-            &feed,
-            &past,
-            &step,
-            (3e-3, 15.0, grip, ea, [1e-4; 2]),
-        );
-        let line = edge.line_at_start();
-        assert!(line > 5.0, "the line pulls by {line} N");
-        let at = |tension: f64| 3e-3 * (1.0 + 1e-4 + tension / ea);
-        for share in [1.0 / grip + 1e-6, 1.0, grip - 1e-6] {
-            assert_eq!(edge.rest(at(share * line)), 3e-3);
-            assert!((edge.stretched(at(share * line)).tension - share * line).abs() < 1e-9);
-            assert_eq!(edge.line(at(share * line)), line);
+            line_mass: 1.7e-3,
+            pulley: Some(Pulley {
+                mass: 3e-3,
+                friction,
+                share: 0.3,
+            }),
         }
-        assert!(edge.rest(at(2.0 * grip * line)) > 3e-3);
-        assert!(edge.rest(at(0.2 * line)) < 3e-3);
-        let out = at(3.0 * line);
-        assert!((edge.stretched(out).tension / edge.line(out) - grip).abs() < 1e-12);
-        let mut before = edge.stretched(at(-line)).tension;
-        let h = 1e-10;
-        for k in 0..400 {
-            let length = at(-line) + f64::from(k) * 2e-8;
-            let s = edge.stretched(length);
-            let slope =
-                (edge.stretched(length + h).energy - edge.stretched(length - h).energy) / (2.0 * h);
-            assert!(
-                (slope - s.tension).abs() < 1e-2,
-                "{k}: {slope} {}",
-                s.tension
-            );
-            assert!(s.tension >= before && s.tension - before < 0.5);
-            before = s.tension;
-        }
-        assert!(
-            before > 1.02 * grip * line,
-            "the last is well past letting go: {before}"
-        );
     }
 
-    /// Wire of the edge keeps its plastic stretch while virgin wire comes out.
-    #[test]
-    fn virgin_wire_comes_out_behind_stretched_wire() {
-        let (spec, mut feed, mut past, step) = setting();
-        (feed.rate, feed.paid_rate) = (0.0, 0.0);
-        past.fed = [feed.fed; 2];
-        (past.paid, past.paid_rate) = (feed.paid, 0.0);
-        let (ea, rest, plastic) = (48_900.0, 3e-3, [0.02, 0.001]);
-        for grip in [1.0, 1.3] {
-            let edge = NozzleEdge::new(&spec, &feed, &past, &step, (rest, 15.0, grip, ea, plastic));
-            let turn = rest * (1.02 + edge.line_at_start() / ea);
-            let mut before = edge.stretched(turn - 2e-5);
-            for k in -199..400 {
-                let length = turn + f64::from(k) * 1e-7;
-                let (y, s) = (edge.rest(length), edge.stretched(length));
-                let came = y - rest;
-                let passing = if came > 0.0 { plastic[1] } else { plastic[0] };
-                let free = rest * (1.0 + plastic[0]) + came * (1.0 + passing);
-                let tension = ea * (length - free) / y;
-                assert!((tension - s.tension).abs() < 1e-6, "{k}: {tension} {s:?}");
-                assert!((s.tension - before.tension).abs() < 2.5, "{k}: no jump");
-                let work = s.energy - before.energy;
-                let mean = 0.5 * (s.tension + before.tension) * 1e-7;
-                assert!((work - mean).abs() < 1e-7 * 1.5, "{k}: {work} {mean}");
-                before = s;
+    /// Wire drawn through the nozzle by `t` (s), m, and its speed, m/s: a mean speed, m/s, and a swing, m.
+    fn drawn([mean, swing]: [f64; 2], t: f64) -> [f64; 2] {
+        let w = 900.0;
+        [
+            mean * t + swing * (1.0 - libm::cos(w * t)),
+            mean + swing * w * libm::sin(w * t),
+        ]
+    }
+
+    /// A line that moves at this speed, m/s.
+    fn moving(spec: &FeedSpec, speed: f64) -> (Feed, Past) {
+        let mut feed = Feed::at_rest(spec, SET);
+        (feed.rate, feed.guided_rate, feed.paid_rate) = (speed, speed, speed);
+        let mut past = Past::default();
+        past.keep_feed(&feed);
+        (feed, past)
+    }
+
+    /// Tensions at the nozzle by the implicit chain at every 0.1 ms, N.
+    fn implicit(spec: &FeedSpec, way: [f64; 2], h: f64, end: f64) -> Vec<f64> {
+        let (mut feed, mut past) = moving(spec, way[0]);
+        let (mut seen, steps) = (Vec::new(), (end / h).round() as usize);
+        let each = (1e-4 / h).round() as usize;
+        for k in 1..=steps {
+            let step = StepFormula::new(Scheme::Bdf2, &past, h);
+            let fed = drawn(way, k as f64 * h)[0];
+            let chain = Chain::new(spec, &feed, &past, &step, SET);
+            let (curve, passed) = chain.at_nozzle();
+            let line = curve.tension(fed - passed);
+            let next = advance(spec, &feed, &past, &step, (fed - feed.fed, line, SET));
+            past.keep_feed(&feed);
+            past.known = 1;
+            past.h = [h, past.h[0]];
+            feed = next;
+            if k % each == 0 {
+                seen.push(line);
             }
-            assert!(edge.rest(turn + 4e-5) > rest && edge.rest(turn - 2e-5) < rest);
+        }
+        seen
+    }
+
+    /// The same by the equations of motion in short explicit steps.
+    fn explicit(spec: &FeedSpec, way: [f64; 2], end: f64) -> Vec<f64> {
+        let pulley = spec.pulley.expect("a pulley");
+        let (share, h) = (pulley.share, 1e-8);
+        let (k, c) = (spec.line_stiffness, spec.line_damping);
+        let masses = [
+            pulley.mass + 0.5 * spec.line_mass,
+            spec.mass + 0.5 * spec.line_mass * (1.0 - share),
+        ];
+        let (mut x, mut v) = ([-share * SET / k, -SET / k], [way[0]; 2]);
+        let (mut seen, steps) = (Vec::new(), (end / h).round() as usize);
+        for n in 1..=steps {
+            let [fed, speed] = drawn(way, n as f64 * h);
+            x[0] += h * v[0];
+            x[1] += h * v[1];
+            let front = (k / share * (fed - x[0]) + c / share * (speed - v[0])).max(0.0);
+            let rest = 1.0 - share;
+            let rear = (k / rest * (x[0] - x[1]) + c / rest * (v[0] - v[1])).max(0.0);
+            let free = v[0] + h * (front - rear) / masses[0];
+            let held = h * pulley.friction / masses[0];
+            v[0] = free.signum() * (free.abs() - held).max(0.0);
+            v[1] += h * (rear - SET - spec.damping * v[1]) / masses[1];
+            if n % 10_000 == 0 {
+                let speeder = (drawn(way, n as f64 * h + h)[1] - speed) / h;
+                seen.push((front + 0.5 * spec.line_mass * share * speeder).max(0.0));
+            }
+        }
+        seen
+    }
+
+    /// The curve of a step is the chain's equations of motion: with wire that comes, goes back, is held and goes slack.
+    #[test]
+    fn a_chain_follows_its_equations_of_motion() {
+        // (bearing friction, mean speed and swing, whether the line goes slack)
+        for (friction, way, slack) in [
+            (0.0, [4.0, 1e-3], false),
+            (1.5, [4.0, 1e-3], false),
+            (1.5, [0.0, 1e-3], false),
+            (4.0, [0.3, 1e-3], false),
+            (1.5, [-9.0, 5e-3], true),
+        ] {
+            let (spec, end) = (spec(friction), 0.01);
+            let want = explicit(&spec, way, end);
+            assert_eq!(want.contains(&0.0), slack, "{way:?}: {want:?}");
+            let off = |h: f64| {
+                let seen = implicit(&spec, way, h, end);
+                assert_eq!(seen.len(), want.len());
+                let off = seen.iter().zip(&want).map(|(a, b)| (a - b).abs());
+                off.fold(0.0, f64::max)
+            };
+            let (long, short) = (off(1e-5), off(2e-6));
+            let most = want.iter().copied().fold(0.0, f64::max);
+            assert!(
+                short < 0.005 * most && short < 0.4 * long,
+                "{friction} N, {way:?}: {long} and {short} N off of {most}"
+            );
         }
     }
 
+    /// At a steady speed nothing but friction and dampers counts.
     #[test]
-    fn without_mass_and_damping_the_set_force_acts() {
-        let (mut spec, mut feed, past, step) = setting();
-        (spec.mass, spec.damping, feed.damping) = (0.0, 0.0, 0.0);
-        let edge = NozzleEdge::new(
-            &spec,
-            &feed,
-            &past,
-            &step,
-            (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]),
-        );
-        for length in [2e-3, 3e-3, 4e-3] {
-            let s = edge.stretched(length);
-            assert!((s.tension - 15.0).abs() < 1e-12 && s.stiffness == 0.0);
+    fn steady_wire_feels_friction_and_no_mass() {
+        let spec = spec(1.5);
+        let (mut feed, mut past) = moving(&spec, 0.0);
+        for k in 1..=40_000 {
+            let step = StepFormula::new(Scheme::Bdf2, &past, 5e-6);
+            let grown = 3.0 * 5e-6 * f64::min(1.0, f64::from(k) / 2e3);
+            let chain = Chain::new(&spec, &feed, &past, &step, SET);
+            let (curve, passed) = chain.at_nozzle();
+            let line = curve.tension(feed.fed + grown - passed);
+            let next = advance(&spec, &feed, &past, &step, (grown, line, SET));
+            past.keep_feed(&feed);
+            past.known = 1;
+            past.h = [5e-6, past.h[0]];
+            feed = next;
         }
+        let want = SET + 1.5 + spec.damping * 3.0;
+        assert!((feed.line_tension - want).abs() < 1e-6, "{feed:?}");
+        assert!((feed.guided_rate - 3.0).abs() < 1e-9 && (feed.paid_rate - 3.0).abs() < 1e-9);
     }
 }

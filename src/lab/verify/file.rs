@@ -104,6 +104,7 @@ const PACKED: &[(&str, &str)] = packed![
     "spinning_ring",
     "penalty_impact",
     "winding_feed",
+    "feed_tension",
     "wave_damping",
     "rolling_path",
     "helix_gap",

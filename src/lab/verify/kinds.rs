@@ -3,10 +3,10 @@
 use super::case::{Answers, Context, VerifyError};
 use super::{
     axial_wave, bending_modes, bulge_linear, capstan, corner_edge, cyclic_bending,
-    elastica_cantilever, end_couple, frozen_helix, groove_seat, grooved_capstan, hanging_wire,
-    helix, helix_gap, live_pair, mandrel_springback, penalty_impact, rolling_path, shoulder_drop,
-    shoulder_static, spinning_ring, square_loop, torsion, twist_buckling, wave_damping,
-    winding_feed,
+    elastica_cantilever, end_couple, feed_tension, frozen_helix, groove_seat, grooved_capstan,
+    hanging_wire, helix, helix_gap, live_pair, mandrel_springback, penalty_impact, rolling_path,
+    shoulder_drop, shoulder_static, spinning_ring, square_loop, torsion, twist_buckling,
+    wave_damping, winding_feed,
 };
 
 /// Computes the answers of one case.
@@ -88,4 +88,5 @@ pub const KINDS: &[Kind] = kinds! {
     live_pair: None, Wind::All;
     penalty_impact: Some("the paper's nodal contact, whose dashpot may pull; RK4"), Wind::Nothing;
     winding_feed: None, Wind::All;
+    feed_tension: None, Wind::All;
 };

@@ -15,6 +15,7 @@ mod cyclic_bending;
 mod elastica_cantilever;
 mod end_couple;
 mod equilibrium;
+mod feed_tension;
 mod file;
 mod frozen_helix;
 mod groove_seat;

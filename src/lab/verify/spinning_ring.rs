@@ -246,6 +246,8 @@ impl<'a> Wound<'a> {
             line_damping: 0.0,
             exit_friction: 0.0,
             line_length: 0.0,
+            line_mass: 0.0,
+            pulley: None,
         };
         sys.set_feed(spec, Feed::at_rest(&spec, pull));
         sys.state.set_tension = pull;

@@ -26,7 +26,7 @@ const STAND_OFF: f64 = 1e-4;
 const STRETCH: f64 = 8e-3;
 
 /// Core surface speed at the nozzle's distance as a share of the wave speed in the free span.
-const SPEED: f64 = 0.03;
+pub(super) const SPEED: f64 = 0.03;
 
 /// Edge length on the core as a share of the bend radius of a corner, in explicit steps.
 const SPACING: f64 = 0.2;
@@ -35,7 +35,7 @@ const SPACING: f64 = 0.2;
 const COARSER: f64 = 8.0;
 
 /// Axial pitch in diameters.
-const PITCH: f64 = 1.3;
+pub(super) const PITCH: f64 = 1.3;
 
 /// Angle turned before anything is measured, rad; angle between samples, rad.
 const RUN_IN: f64 = 0.6;
@@ -50,7 +50,7 @@ struct Sample {
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
-    let scene = scene(ctx)?;
+    let scene = string(ctx)?;
     let samples = wind(&scene)?;
     let n = samples.len() - 1;
     let stretch = 1.0 + STRETCH;
@@ -76,8 +76,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     ])
 }
 
-/// The scene of the case.
-fn scene(ctx: &Context) -> Result<Scene, VerifyError> {
+/// The scene of the case: an ideal string on its core.
+pub(super) fn string(ctx: &Context) -> Result<Scene, VerifyError> {
     let (width_x, height_z) = (ctx.number("core_w_m")?, ctx.number("core_h_m")?);
     let corner_radius = ctx.number("corner_radius_m")?;
     let distance = ctx.number("nozzle_distance_m")?;

@@ -47,12 +47,9 @@ impl System {
         if at_nozzle {
             let lost = merge.joined - a - b;
             if let Some(f) = &mut self.state.feed {
-                // wire and tensioner shift alike, so that the line between them pulls as before
-                f.fed += lost;
-                f.paid += lost;
+                f.shift(lost);
             }
-            self.state.past.fed.iter_mut().for_each(|fed| *fed += lost);
-            self.state.past.paid += lost;
+            self.state.past.shift_feed(lost);
             self.state.balance.inflow += self.kinetic() - kinetic;
         } else {
             self.state.joined_away += a + b - merge.joined;
