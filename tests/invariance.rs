@@ -23,13 +23,10 @@ fn exponent(unit: &str) -> i32 {
     powers.sum()
 }
 
-/// `fig8` with all that is zero for "by itself" and a length or a time spelled out, and these changes.
+/// `fig8` with these changes. Spacing and tolerance that nobody gives go with the wire.
 fn settings(changes: &[(&str, &str)]) -> SceneSettings {
     let mut settings = SceneSettings::load("fig8").expect("packed");
     let explicit = [
-        ("solver.spacing_near", "0.4e-3"),
-        ("solver.spacing_free", "3.2e-3"),
-        ("solver.refine_distance", "3e-3"),
         ("spindle.turns", "1.6"),
         // the rigidities of the paper's wire are those of one diameter
         ("wire.material", "copper"),

@@ -37,7 +37,7 @@ fn height(settings: &SceneSettings) -> f64 {
 #[test]
 fn fine_wire_on_tight_corners_is_no_bulge() {
     let height = height(&fine_wire(&[]));
-    // at a sixth of that spacing; 0.95 at 0.3 mm
+    // at half the spacing; 0.95 at 0.3 mm
     assert!((height - 0.41).abs() < 0.05, "{height} d");
 }
 
@@ -52,9 +52,25 @@ fn stiff_wire_and_round_corners_keep_their_spacing() {
     fig8.set_text("core.corner_radius", "0")
         .expect("a sharp core");
     assert_eq!(near(&fig8), usual, "the wire is bent more widely than that");
-    let (near, free) = near(&fine_wire(&[]));
-    assert_eq!(near, 0.25 * usual.0);
-    assert_eq!(free, usual.1, "the free span has no corners");
+    let coarse = [("solver.tolerance_um", "10"), ("tensioner.tension", "1.2")];
+    let wide = [coarse[0], coarse[1], ("core.corner_radius_mm", "1")];
+    let (tight, wide) = (near(&fine_wire(&coarse)), near(&fine_wire(&wide)));
+    assert_eq!(tight.0, 0.5 * wide.0);
+    assert_eq!(tight.1, wide.1, "the free span has no corners");
+    // spacing goes with the wire, and on a cylinder that is wide for it it is at most twice as much
+    let cylinder = |diameter: &str| {
+        near(&fine_wire(&[
+            ("core.shape", "cylinder"),
+            ("core.radius_mm", "2"),
+            ("wire.diameter_mm", diameter),
+            ("tensioner.tension", "0.1"),
+        ]))
+        .0
+    };
+    let over_usual = |d: f64, near: f64| near / (usual.0 * d / 0.7);
+    assert!((over_usual(0.3, cylinder("0.3")) - 1.0).abs() < 1e-12);
+    assert!((over_usual(0.1, cylinder("0.1")) - 2.0_f64.sqrt()).abs() < 1e-12);
+    assert!((over_usual(0.04, cylinder("0.04")) - 2.0).abs() < 1e-12);
     let given = fine_wire(&[("solver.spacing_near_mm", "0.2")]);
     assert_eq!(given.build().expect("a scene").solver.spacing_near, 0.2e-3);
 }

@@ -510,8 +510,8 @@ fn wire_that_runs_away_from_the_nozzle_ends_the_run() {
 #[test]
 fn values_out_of_range_are_refused_with_the_range() {
     for (name, value, range) in [
-        ("solver.tolerance", "0", "1e-9 to 0.001 m"),
-        ("solver.tolerance", "0.1", "1e-9 to 0.001 m"),
+        ("solver.tolerance", "-1e-6", "0 to 0.001 m"),
+        ("solver.tolerance", "0.1", "0 to 0.001 m"),
         ("solver.spacing_near", "0.1", "to 0.05 m"),
         ("solver.step", "-1", "0 to 0.01 s"),
         ("freeze.time", "0", "1e-6 to 1e6 s"),

@@ -144,7 +144,7 @@ impl Parameters {
     pub(crate) fn effect_of_tolerance(&self) -> Option<String> {
         let row = by_name(SOLVER_TOLERANCE)?;
         let tolerance = self.tolerance?;
-        let (is, scene) = (self.settings.solver.tolerance, self.base.solver.tolerance);
+        let (is, scene) = (in_use(&self.settings), in_use(&self.base));
         (is != scene && !self.explicit.contains_key(&row.reference)).then(|| {
             format!(
                 "the experiment's tolerance {} makes {SOLVER_TOLERANCE} {} m; the scene has {} m, which {} stands for; \
@@ -313,11 +313,19 @@ fn laid_over(
     if let (Some(tolerance), Some(row)) = (tolerance, by_name(SOLVER_TOLERANCE))
         && !explicit.contains_key(&row.reference)
     {
-        let scaled = settings.solver.tolerance * (tolerance / DEFAULT_TOLERANCE);
+        let scaled = in_use(&settings) * (tolerance / DEFAULT_TOLERANCE);
         let most = COARSEST * settings.wire.diameter;
-        settings.solver.tolerance = row.nearest(scaled.min(most));
+        if scaled != in_use(&settings) {
+            settings.solver.tolerance = row.nearest(scaled.min(most));
+        }
     }
     Ok(settings)
+}
+
+/// The error, m, that a step may have with these settings.
+fn in_use(settings: &SceneSettings) -> f64 {
+    let diameter = settings.wire.outer_diameter();
+    settings.solver.tolerance_for(diameter)
 }
 
 /// Returns what was set explicitly with the texts that numbers stand for; a number wins over the text.

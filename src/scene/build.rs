@@ -10,18 +10,26 @@ use super::{
     Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver, Window,
 };
 use crate::rod::Twist;
-use crate::settings::{SceneSettings, Spindle};
+use crate::settings::{SceneSettings, SolverSettings, Spindle};
 use std::path::{Path, PathBuf};
 
-/// Node spacing near the core that goes with a tolerance, m: 0.3 mm to 2e-6 m.
+/// Node spacing near the core that goes with a tolerance, m, for wire of `diameter`, m: 0.3 mm to 2e-6 m for 0.7 mm.
 ///
 /// Above, steps are as the cube root of the tolerance, and both time and space are of second order.
 /// A spacing as that root too keeps the shares of the error that come from either. (`fig8` at 1e-5 m
 /// and 0.4 mm: nearly all was from the steps. At 2e-6 m, 500 rad/s, 0.4 mm: the mean gap of turn 2 is 0.008 d from
 /// that of half the spacing, with 0.3 mm 0.002 d.)
-fn spacing_for(tolerance: f64) -> f64 {
-    0.3e-3 * libm::cbrt((tolerance / 2e-6).max(1.0))
+///
+/// On a wide cylinder of this radius, m, chords of that spacing lie on the core as none of the rest needs it. There they
+/// may be off it by as much as on one of [`WIDE`] diameters, and at most twice as long.
+fn spacing_for(tolerance: f64, diameter: f64, cylinder: f64) -> f64 {
+    let with_wire = |usual: f64| SolverSettings::with_wire(usual, diameter);
+    let wide = (cylinder / (WIDE * diameter)).sqrt().clamp(1.0, 2.0);
+    with_wire(0.3e-3) * wide * libm::cbrt((tolerance / with_wire(2e-6)).max(1.0))
 }
+
+/// Radius of a cylinder, in diameters, from which on edges get longer: there a chord is 0.2 % of the diameter off it.
+const WIDE: f64 = 10.0;
 
 /// Largest node spacing near the core over the radius that its corners bend the wire to. Chosen: with more, copper of 0.1 mm on
 /// corners of 0.2 mm stands off the faces twice as far as it does.
@@ -86,7 +94,12 @@ impl SceneSettings {
         let twist = twist.unwrap_or(Twist::Off);
         let span = self.nozzle.distance - extent.turning_radius;
         let bend = core.bend(&wire, self.tensioner.tension);
-        let solver = self.solver_for(integrator, twist, (wire.diameter, span), bend);
+        let cylinder = match core {
+            Core::Cylinder { radius, .. } => radius,
+            _ => 0.0,
+        };
+        let round = (bend, cylinder);
+        let solver = self.solver_for(integrator, twist, (wire.diameter, span), round);
         self.check_spacing(&solver, &wire, &extent, &mut problems);
         let window = self.window(core.flange(), &mut problems);
         let mut warnings = self.warnings(&solver, &wire, &core, &extent, &nozzle_law);
@@ -297,7 +310,7 @@ impl SceneSettings {
         integrator: Integrator,
         twist: Twist,
         (diameter, span): (f64, f64),
-        bend: f64,
+        (bend, cylinder): (f64, f64),
     ) -> Solver {
         // the explicit step falls with the square of the finest spacing wherever it is, so a coarse
         // free span saves little there and costs a refinement front
@@ -305,8 +318,9 @@ impl SceneSettings {
         let given = |x: f64, otherwise: f64| if x > 0.0 { x } else { otherwise };
         let implicit = integrator == Integrator::Implicit;
         let (near, refine) = if implicit {
-            let near = spacing_for(s.tolerance).clamp(FINEST * diameter, 8.0 * diameter);
-            (near, 3e-3)
+            let near =
+                spacing_for(s.tolerance_for(diameter), diameter, cylinder).min(8.0 * diameter);
+            (near, SolverSettings::with_wire(3e-3, diameter))
         } else {
             (0.5e-3, 6e-3)
         };
@@ -338,7 +352,7 @@ impl SceneSettings {
             refine_distance: given(s.refine_distance, refine),
             step_share: s.step_share,
             step: s.step,
-            tolerance: s.tolerance,
+            tolerance: s.tolerance_for(diameter),
             features: Features {
                 live_contact: LiveContact::Always,
                 inertia: true,

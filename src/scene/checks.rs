@@ -208,6 +208,13 @@ impl SceneSettings {
         // Contact of stiffness 1e10 N/m2 that is wrong by so much pushes harder than most wire is
         // pulled.
         let most = 0.1 * d;
+        if solver.tolerance < 1e-9 {
+            problems.add(self.impossible(
+                "solver.tolerance",
+                "rounding is larger",
+                "1e-9 to 0.001 m, or 0: as the wire's diameter",
+            ));
+        }
         if solver.tolerance > most * (1.0 + 1e-9) && solver.integrator == Integrator::Implicit {
             problems.add(self.impossible(
                 "solver.tolerance",

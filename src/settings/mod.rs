@@ -144,7 +144,7 @@ pub struct SolverSettings {
     pub integrator: String,
     /// how the wire's twist is carried; auto: the least that matters; dynamic with the explicit methods (one of `auto`, `off`, `quasi-static`, `dynamic`)
     pub twist: String,
-    /// node spacing near the core, m; 0: 0.5 mm explicit, implicit 0.3 mm to a tolerance of 2 um and beyond as its cube root
+    /// node spacing near the core, m; 0: 0.5 mm explicit, implicit as the wire's diameter, 0.3 mm for 0.7 mm, and finer at tight corners, coarser as the cube root of a tolerance above its own
     pub spacing_near: f64,
     /// node spacing in the free span, m; 0: 1 mm explicit, eight times that near the core implicit
     pub spacing_free: f64,
@@ -154,7 +154,7 @@ pub struct SolverSettings {
     pub step_share: f64,
     /// fixed time step, s; 0: from the error (implicit) or the stability limit
     pub step: f64,
-    /// estimated error that a step of the implicit method may have, root mean square over the wire, m
+    /// estimated error that a step of the implicit method may have, root mean square over the wire, m; 0: [`Self::tolerance_for`]
     pub tolerance: f64,
     /// contact of live wire with live wire; auto: from half a live turn on (one of `auto`, `on`, `off`)
     pub live_contact: String,
@@ -170,6 +170,25 @@ pub struct SolverSettings {
     pub coarse_settled: String,
     /// steps that reach beyond a communication point while inputs go on as they did; auto: where the method finds its own steps (one of `auto`, `on`, `off`)
     pub steps_beyond: String,
+}
+
+/// Diameter of the paper's wire, m: what lengths that go with the wire are told for.
+const USUAL: f64 = 0.7e-3;
+
+impl SolverSettings {
+    /// A length, m, that is so long for wire of 0.7 mm, for wire of `diameter`, m.
+    pub(crate) fn with_wire(usual: f64, diameter: f64) -> f64 {
+        usual * (diameter / USUAL)
+    }
+
+    /// The error, m, that a step may have with wire of this outer diameter, m.
+    pub fn tolerance_for(&self, diameter: f64) -> f64 {
+        if self.tolerance > 0.0 {
+            self.tolerance
+        } else {
+            Self::with_wire(2e-6, diameter)
+        }
+    }
 }
 
 impl WireSettings {
@@ -280,7 +299,7 @@ impl Default for SceneSettings {
                 line_damping_ratio: 0.1,
                 damping: 0.0,
                 radius: 50e-3,
-                brake_torque_max: 1e4,
+                brake_torque_max: 0.0,
                 line_inertia: false,
                 pulley_mass: 0.0,
                 pulley_friction: 0.0,
@@ -324,7 +343,7 @@ impl Default for SceneSettings {
                 refine_distance: 0.0,
                 step_share: 0.9,
                 step: 0.0,
-                tolerance: 2e-6,
+                tolerance: 0.0,
                 live_contact: "auto".to_owned(),
                 plasticity: "auto".to_owned(),
                 friction: "auto".to_owned(),

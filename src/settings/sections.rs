@@ -28,7 +28,7 @@ pub struct Tensioner {
     pub damping: f64,
     /// radius of the wheel on which a brake acts, m
     pub radius: f64,
-    /// largest torque of that brake, N m
+    /// largest torque of that brake, N m; 0: none
     pub brake_torque_max: f64,
     /// whether the wire between tensioner and nozzle has its mass
     pub line_inertia: bool,
@@ -41,6 +41,15 @@ pub struct Tensioner {
 }
 
 impl Tensioner {
+    /// The largest torque of the brake, N m.
+    pub fn most_torque(&self) -> f64 {
+        if self.brake_torque_max > 0.0 {
+            self.brake_torque_max
+        } else {
+            f64::INFINITY
+        }
+    }
+
     /// Whether a pulley guides the line.
     pub fn has_pulley(&self) -> bool {
         self.pulley_mass > 0.0 || self.pulley_friction > 0.0

@@ -53,13 +53,13 @@ impl Told {
 
 /// Inputs with all that holds the tensioner back in `tension_setpoint`: the brake holds by its largest torque at most.
 pub(super) fn with_brake(scene: &Scene, inputs: Inputs) -> Inputs {
-    let torque = inputs.brake_torque.min(scene.tensioner.brake_torque_max);
+    let torque = inputs.brake_torque.min(scene.tensioner.most_torque());
     adding(scene, inputs, torque)
 }
 
 /// The same of the `rates` of these inputs, per s: a brake at its largest torque gets no stronger.
 pub(super) fn rates_with_brake(scene: &Scene, inputs: &Inputs, rates: Inputs) -> Inputs {
-    let most = scene.tensioner.brake_torque_max;
+    let most = scene.tensioner.most_torque();
     let at_most =
         inputs.brake_torque > most || inputs.brake_torque == most && rates.brake_torque > 0.0;
     let rate = if at_most { 0.0 } else { rates.brake_torque };

@@ -377,7 +377,7 @@ table! {
     fixed(1303, "tensioner.line_damping_ratio", tensioner.line_damping_ratio, "1", "", 0.0, 10.0, 0.1, "damping ratio of the mass on the line");
     fixed(1304, "tensioner.damping", tensioner.damping, "N.s/m", "", 0.0, 1e4, 1.0, "damper on the tensioner: pull per speed of the wire that it lets go");
     fixed(1305, "tensioner.radius", tensioner.radius, "m", "mm", 1e-3, 10.0, 0.1, "radius of the tensioner's wheel, on which brake_torque acts");
-    fixed(1306, "tensioner.brake_torque_max", tensioner.brake_torque_max, "N.m", "N.mm", 0.0, 1e4, 0.1, "largest torque of the brake: brake_torque above it counts as this");
+    fixed(1306, "tensioner.brake_torque_max", tensioner.brake_torque_max, "N.m", "N.mm", 0.0, 1e4, 0.1, "largest torque of the brake: brake_torque above it counts as this; 0: none");
     switch(1307, "tensioner.line_inertia", tensioner.line_inertia, "whether wire between tensioner and nozzle has its mass: half of each span's goes to either end");
     fixed(1308, "tensioner.pulley_mass", tensioner.pulley_mass, "kg", "g", 0.0, 100.0, 1e-3, "guide pulley: moment of inertia over the square of its radius; 0 with pulley_friction = 0: no pulley");
     fixed(1309, "tensioner.pulley_friction", tensioner.pulley_friction, "N", "", 0.0, 1e4, 1.0, "guide pulley: friction of its bearing, as a force on the wire");
@@ -410,12 +410,12 @@ table! {
     fixed(1802, "friction.slip_speed", friction.slip_speed, "m/s", "mm/s", 1e-5, 100.0, 1e-2, "slip speed over which static turns into kinetic");
 
     text(1900, "solver.integrator", (solver.integrator), ["auto", "implicit", "rk4", "verlet"], "time integrator; auto: rk4 for preset paper, else implicit");
-    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit, implicit 0.3 mm to a tolerance of 2 um and beyond as its cube root");
+    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit, implicit as the wire's diameter, 0.3 mm for 0.7 mm, and finer at tight corners, coarser as the cube root of a tolerance above its own");
     fixed(1902, "solver.spacing_free", solver.spacing_free, "m", "mm", 0.0, 0.1, 1e-3, "node spacing in the free span; 0: 1 mm explicit, eight times that near the core implicit");
     fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core or the layer below at which free-span edges are split; 0: 3 mm implicit, 6 mm explicit");
     fixed(1904, "solver.step_share", solver.step_share, "1", "", 1e-3, 1.0, 1.0, "time step as a share of the stability limit");
     fixed(1905, "solver.step", solver.step, "s", "us", 0.0, 1e-2, 1e-6, "fixed time step; 0: from the error (implicit) or the stability limit");
-    fixed(1906, "solver.tolerance", solver.tolerance, "m", "um", 1e-9, 1e-3, 1e-6, "estimated error that a step of the implicit method may have, root mean square over the wire");
+    fixed(1906, "solver.tolerance", solver.tolerance, "m", "um", 0.0, 1e-3, 1e-6, "estimated error that a step of the implicit method may have, root mean square over the wire, 1e-9 m at least; 0: as the wire's diameter, 2 um for 0.7 mm");
     text(1907, "solver.twist", (solver.twist), ["auto", "off", "quasi-static", "dynamic"], "how the wire's twist is carried; auto: the least that matters; dynamic with the explicit methods");
     text(1908, "solver.live_contact", (solver.live_contact), ["auto", "on", "off"], "contact of live wire with live wire; auto: from half a live turn on");
     text(1909, "solver.plasticity", (solver.plasticity), ["auto", "on", "off"], "plastic state of the wire; auto: where it can yield; off: elastic wire");

@@ -71,7 +71,7 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     };
     solver(&mut settings, args)?;
     let told = args.tol.is_some() || args.set.iter().any(|(name, _)| name == "solver.tolerance");
-    if !told && settings.solver.tolerance == SceneSettings::default().solver.tolerance {
+    if !told && settings.solver.tolerance == 0.0 {
         let diameter = settings.build()?.wire.diameter;
         settings.solver.tolerance = USUAL * (diameter / USUAL_DIAMETER).min(1.0);
     }

@@ -131,7 +131,7 @@ pub fn row(case: &Case, verdict: &Verdict) -> String {
         s.wire.diameter,
         s.tensioner.tension,
         s.spindle.speed,
-        s.solver.tolerance,
+        s.solver.tolerance_for(s.wire.outer_diameter()),
         s.solver.twist,
         verdict.measures.row()
     )

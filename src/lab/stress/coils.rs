@@ -69,7 +69,7 @@ pub(super) fn scene(case_random: &mut CaseRandom) -> (SceneSettings, Option<Mesh
         (s.winding.turns_per_layer, s.winding.pitch) = (turns, pitch);
     }
     parts::spacing(case_random, &mut s, room, perimeter);
-    s.solver.tolerance = s.solver.tolerance.max(parts::FINEST * outer);
+    s.solver.tolerance = s.solver.tolerance_for(outer).max(parts::FINEST * outer);
     parts::contact(case_random, &mut s);
     parts::freeze(case_random, &mut s);
     s.spindle.speed = case_random.log(8.0, 1500.0);

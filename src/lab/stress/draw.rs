@@ -156,7 +156,7 @@ fn layers(case_random: &mut CaseRandom, s: &mut SceneSettings, mesh: Option<&Mes
             )
         }
     };
-    s.solver.tolerance = s.solver.tolerance.max(FINEST * d);
+    s.solver.tolerance = s.solver.tolerance_for(d).max(FINEST * d);
     let way = pitch * turns;
     let start = match mesh {
         Some(Mesh::Bobbin(_)) => -0.5 * way,

@@ -46,7 +46,7 @@ pub struct Manner {
     /// node spacing where it is finest, m; `None`: each kind's own
     pub spacing: Option<f64>,
     /// local error that a step may have, m, where the set-up is that of a wind
-    pub tolerance: f64,
+    pub tolerance: Option<f64>,
     /// node spacing of a wind at this tolerance over the wire's diameter
     pub wind_spacing: f64,
 }
@@ -69,8 +69,8 @@ impl Manner {
         if let Some(spacing) = self.spacing {
             parts.push(format!("spacing {spacing} m"));
         }
-        if winds && self.tolerance != SceneSettings::default().solver.tolerance {
-            parts.push(format!("tolerance {:e} m", self.tolerance));
+        if let Some(tolerance) = self.tolerance.filter(|_| winds) {
+            parts.push(format!("tolerance {tolerance:e} m"));
         }
         if parts.is_empty() {
             return WIND.to_owned();
@@ -129,7 +129,7 @@ impl VerifyOptions {
             preset,
             integrator,
             spacing,
-            tolerance: settings.solver.tolerance,
+            tolerance: Some(settings.solver.tolerance).filter(|tolerance| *tolerance > 0.0),
             wind_spacing: wind_spacing(settings.solver.tolerance)?,
         })
     }
@@ -236,14 +236,16 @@ fn run_case(
     (setup, name): (Setup, &str),
 ) -> Result<(Vec<Record>, f64), VerifyError> {
     let winds = setup == Setup::Wind;
-    let near = manner.wind_spacing * file.section.diameter;
+    let diameter = file.section.diameter;
+    let near = manner.wind_spacing * diameter;
+    let usual = SceneSettings::default().solver.tolerance_for(diameter);
     let context = Context {
         section: &file.section,
         inputs: &case.inputs,
         folder: &file.folder,
         integrator: manner.integrator,
         spacing: manner.spacing.or(winds.then_some(near)),
-        tolerance: manner.tolerance,
+        tolerance: manner.tolerance.unwrap_or(usual),
         setup,
     };
     let start = Instant::now();
