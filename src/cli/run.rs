@@ -13,7 +13,6 @@ use coilwind::output::{Ending, History, Mark, OutputError, Snapshot, write_repor
 use coilwind::scene::{Scene, assignment};
 use coilwind::settings::SceneSettings;
 use coilwind::simulation::{SimError, Simulation};
-use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -118,8 +117,6 @@ struct Start {
     frames: Frames,
     /// of the run so far, s
     wall_s: f64,
-    /// keeps other runs out of the folder
-    hold: Option<File>,
 }
 
 /// Runs a scene, or goes on with a run.
@@ -141,7 +138,6 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
         history,
         frames,
         wall_s,
-        hold,
     } = start;
     let snapshot = Snapshot::new(&simulation).map_err(|reason| Failure::Start {
         scene: plan.settings.name.clone(),
@@ -192,7 +188,6 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
         Some(page) => Ok(write_report(&[&directory], page)?),
         None => Ok(()),
     });
-    drop(hold);
     let place = directory.display().to_string();
     match ended {
         // The checkpoint stays: with room on the disk the run goes on.
@@ -258,7 +253,6 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
         drive,
         history,
         wall_s: 0.0,
-        hold: None,
     })
 }
 
@@ -282,6 +276,8 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
             "the checkpoint contradicts itself; begin again with --force".to_owned(),
         ));
     }
+    // (from here on the history holds it)
+    drop(hold);
     let history = History::resume(&directory.join("history.csv"), &checkpoint.history)?;
     let history = history.ok_or_else(|| {
         refuse("history.csv is not the one that the run wrote; begin again with --force".to_owned())
@@ -300,7 +296,6 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
         history,
         frames,
         wall_s: checkpoint.wall_s,
-        hold,
     })
 }
 

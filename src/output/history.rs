@@ -4,8 +4,10 @@ use super::OutputError;
 use crate::simulation::Simulation;
 use crate::variables::{Access, Value, table};
 use serde::{Deserialize, Serialize};
-use std::fs::File;
-use std::io::{Read, Write};
+#[cfg(not(windows))]
+use std::fs::TryLockError;
+use std::fs::{File, OpenOptions};
+use std::io::{Error, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -123,9 +125,17 @@ impl History {
     /// Opens the file again at a mark and cuts off what was written after it.
     ///
     /// `None` if the file is not there or is not the one that the mark was made in.
+    ///
+    /// # Errors
+    ///
+    /// Where another run writes it, or it cannot be cut.
     pub fn resume(path: &Path, mark: &Mark) -> Result<Option<Self>, OutputError> {
-        let Ok(file) = File::options().read(true).write(true).open(path) else {
-            return Ok(None);
+        let file = match alone(File::options().read(true).write(true), path) {
+            Ok(file) => file,
+            Err(error) if error.kind() == ErrorKind::WouldBlock => {
+                return Err(OutputError::io(path)(error));
+            }
+            Err(_) => return Ok(None),
         };
         let counted = Counted::cut(file, mark).map_err(OutputError::io(path))?;
         Ok(counted.map(|counted| Self {
@@ -184,21 +194,9 @@ fn whole_rows(counted: Counted) -> csv::Writer<Counted> {
 }
 
 /// Opens an empty file that no other run has open; two of them would mix their rows.
-#[cfg(unix)]
 fn open_alone(path: &Path) -> std::io::Result<File> {
-    use std::fs::TryLockError;
-    use std::io::{Error, ErrorKind};
-
-    let file = File::options()
-        .write(true)
-        .create(true)
-        .truncate(false)
-        .open(path)?;
-    // (not every file system has locks)
-    if let Err(TryLockError::WouldBlock) = file.try_lock() {
-        let text = "another run writes here; give each run a folder of its own";
-        return Err(Error::new(ErrorKind::WouldBlock, text));
-    }
+    let mut options = File::options();
+    let file = alone(options.write(true).create(true).truncate(false), path)?;
     let regular = file.metadata()?.is_file();
     if regular {
         file.set_len(0)?;
@@ -206,10 +204,34 @@ fn open_alone(path: &Path) -> std::io::Result<File> {
     Ok(file)
 }
 
-/// Opens an empty file. A lock would keep readers out as well here.
-#[cfg(not(unix))]
-fn open_alone(path: &Path) -> std::io::Result<File> {
-    File::create(path)
+/// Opens a file for one writer; an error of the kind `WouldBlock` where it has one.
+#[cfg(not(windows))]
+fn alone(options: &mut OpenOptions, path: &Path) -> std::io::Result<File> {
+    let file = options.open(path)?;
+    // (not every file system has locks)
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(taken()),
+        _ => Ok(file),
+    }
+}
+
+/// A lock would keep readers out as well here; who opens a file says what others may do with it.
+#[cfg(windows)]
+fn alone(options: &mut OpenOptions, path: &Path) -> std::io::Result<File> {
+    use std::os::windows::fs::OpenOptionsExt;
+    // FILE_SHARE_READ and ERROR_SHARING_VIOLATION of the Windows API
+    const READERS: u32 = 1;
+    const SHARING_VIOLATION: i32 = 32;
+    let opened = options.share_mode(READERS).open(path);
+    opened.map_err(|error| match error.raw_os_error() {
+        Some(SHARING_VIOLATION) => taken(),
+        _ => error,
+    })
+}
+
+fn taken() -> Error {
+    let text = "another run writes here; give each run a folder of its own";
+    Error::new(ErrorKind::WouldBlock, text)
 }
 
 /// Name and accessor of what changes over time.
