@@ -305,10 +305,18 @@ impl SceneSettings {
             Some(_) => "a flange",
             None => "an end of the core",
         };
+        // (what rounding leaves of the middle of the core)
+        let told = |y: f64| {
+            si(if y.abs() > ROUNDING * (high - low) {
+                y
+            } else {
+                0.0
+            })
+        };
         let reason = format!(
             "the nozzle goes from {} to {} m, past {what}",
-            si(least),
-            si(largest)
+            told(least),
+            told(largest)
         );
         let room = (ends[1] - ends[0]) - (largest - least);
         let start = law.start();

@@ -121,6 +121,15 @@ impl SceneSettings {
                 warn("core.flange.height", message);
             }
         }
+        let first = self.nozzle.y_start;
+        if self.winds_layers() && (self.start.clamp_y - first).abs() > wire.diameter {
+            let message = format!(
+                "the wire is clamped beside the first turn, which lies at {} m, and crosses the place of others on its way \
+                 there; set it to nozzle.y_start",
+                si(first)
+            );
+            warn("start.clamp_y", message);
+        }
         let tension = self.tensioner.tension;
         if tension >= wire.n_y {
             let message = format!(

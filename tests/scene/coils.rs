@@ -262,3 +262,27 @@ fn keys_of_another_way_are_told() {
         "{warnings:?}"
     );
 }
+
+/// Wire that is clamped in the middle of the window lies across the first layer.
+#[test]
+fn a_clamp_beside_the_first_turn_is_told() {
+    let keys = |text: &str| -> Vec<&str> {
+        let (_, warnings) = parse(text).unwrap().build_with_warnings().unwrap();
+        warnings.iter().map(|w| w.key).collect()
+    };
+    let layers = format!("{BOBBIN}mode = 'helical'\n");
+    assert!(!keys(&layers).contains(&"start.clamp_y"));
+    let across = layers.replace("clamp_y_mm = -6.9", "clamp_y_mm = 0");
+    assert!(keys(&across).contains(&"start.clamp_y"));
+    let by_hand = across.replace("mode = 'helical'", "mode = 'by-angle'");
+    assert!(!keys(&by_hand).contains(&"start.clamp_y"));
+}
+
+/// The middle of the core is 0, whatever rounding leaves of it.
+#[test]
+fn a_way_past_a_flange_is_told_in_round_numbers() {
+    let text = "[core]\nshape = 'cylinder'\n[core.flange]\ninner_distance_mm = 4.3\n[wire]\ndiameter_mm = 0.5\n\
+                [traverse]\nmode = 'orthocyclic'\n[winding]\nturns_per_layer = 8\nlayers = 3\n";
+    let said = refused(text);
+    assert_says(&said, &["nozzle.y_start", "goes from 0 to 0.0038 m"]);
+}
