@@ -1,5 +1,5 @@
-//! What a saved state costs on the way through a long wind: bytes, CPU time to save and restore, and memory of
-//! copies that share settled wire. `cargo bench --bench saved_states [-- TURNS]`
+//! What a saved state costs on the way through a long wind: bytes, CPU time to save and restore, memory of copies that share
+//! settled wire, and the CPU time of a directional derivative beside that of the step it is for. `cargo bench --bench saved_states [-- TURNS]`
 
 use coilwind::settings::SceneSettings;
 use coilwind::signals::Inputs;
@@ -34,7 +34,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let scene = settings.build()?;
     let mut sim = Simulation::new(&scene)?;
     let mut inputs = sim.inputs();
-    println!("turns  settled  bytes/kB  save/ms  restore/ms  copy/us  MB per copy");
+    println!(
+        "turns  settled  bytes/kB  save/ms  restore/ms  copy/us  MB per copy  step/ms  derivative/ms"
+    );
     let mut next = 1.0;
     while sim.outputs().turns_wound < turns {
         let speed = (inputs.spindle_speed + 5e4 * STEP).min(SPEED);
@@ -43,7 +45,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             nozzle_position: inputs.nozzle_position + PITCH * speed * STEP / TAU,
             ..inputs
         };
+        let last = sim.clone();
+        let began = ThreadTime::now();
         sim.advance(inputs, STEP)?;
+        let step = began.elapsed();
         if sim.outputs().turns_wound < next {
             continue;
         }
@@ -63,15 +68,26 @@ fn main() -> Result<(), Box<dyn Error>> {
         let began = ThreadTime::now();
         let copies: Vec<Simulation> = (0..COPIES).map(|_| sim.clone()).collect();
         let copy = began.elapsed() / COPIES as u32;
+        let memory = (resident() - before) / copies.len() as f64;
+        drop(copies);
+        let along = Inputs {
+            tension_setpoint: 1.0,
+            ..Inputs::HELD
+        };
+        let began = ThreadTime::now();
+        last.step_derivative(inputs, Inputs::HELD, STEP, along)?;
+        let derivative = began.elapsed();
         println!(
-            "{:5.1}  {:7.1}  {:8.1}  {:7.2}  {:10.2}  {:7.1}  {:11.3}",
+            "{:5.1}  {:7.1}  {:8.1}  {:7.2}  {:10.2}  {:7.1}  {:11.3}  {:7.2}  {:13.1}",
             sim.outputs().turns_wound,
             sim.outputs().turns_settled,
             bytes.len() as f64 / 1024.0,
             save.as_secs_f64() * 1e3,
             restore.as_secs_f64() * 1e3,
             copy.as_secs_f64() * 1e6,
-            (resident() - before) / copies.len() as f64,
+            memory,
+            step.as_secs_f64() * 1e3,
+            derivative.as_secs_f64() * 1e3,
         );
     }
     Ok(())

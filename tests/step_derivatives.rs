@@ -60,7 +60,8 @@ fn derivatives_are_those_of_the_step() {
             for (input, off) in off.into_iter().enumerate() {
                 let got = before
                     .step_derivative(inputs, Inputs::HELD, 1e-4, along(input, 1.0))
-                    .unwrap();
+                    .unwrap()
+                    .slopes;
                 let after = |by: f64| {
                     let mut run = before.clone();
                     run.advance(inputs.after(&along(input, by), 1.0), 1e-4)
@@ -117,7 +118,8 @@ fn derivatives_are_not_those_of_the_solvers_next_step() {
             let pull = along(2, 1.0);
             let got = before
                 .step_derivative(inputs, Inputs::HELD, 1e-3, pull)
-                .unwrap();
+                .unwrap()
+                .slopes;
             assert!(
                 (0.5..1.6).contains(&got.wire_tension),
                 "{}",
@@ -137,7 +139,7 @@ fn derivatives_at_the_start_are_those_of_the_start() {
     let sim = fig8();
     let slope =
         |input| Simulation::start_derivative(sim.scene(), sim.inputs(), along(input, 1.0)).unwrap();
-    let pull = slope(2);
+    let pull = slope(2).slopes;
     for got in [
         pull.wire_tension,
         pull.wire_tension_min,
@@ -145,8 +147,8 @@ fn derivatives_at_the_start_are_those_of_the_start() {
     ] {
         assert!((got - 1.0).abs() < 1e-9, "{got}");
     }
-    assert_eq!(smooth(&slope(0)), vec![0.0; Outputs::SMOOTH.len()]);
-    let moved = slope(1);
+    assert_eq!(smooth(&slope(0).slopes), vec![0.0; Outputs::SMOOTH.len()]);
+    let moved = slope(1).slopes;
     assert!(
         (moved.nozzle_angle + 1.0 / 0.0598).abs() < 0.3,
         "{}",
@@ -163,7 +165,8 @@ fn a_set_tension_of_zero_has_derivatives() {
     inputs.tension_setpoint = 0.0;
     let slope = sim
         .step_derivative(inputs, Inputs::HELD, 1e-3, along(2, 1.0))
-        .unwrap();
+        .unwrap()
+        .slopes;
     assert!(slope.tensioner_speed < 0.0, "{}", slope.tensioner_speed);
 }
 
@@ -177,7 +180,7 @@ fn brake_and_damper_have_derivatives() {
         }
         let slope = |along: Inputs| {
             let got = before.step_derivative(inputs, Inputs::HELD, 1e-4, along);
-            smooth(&got.unwrap())
+            smooth(&got.unwrap().slopes)
         };
         let pull = slope(along(2, 1.0));
         let brake = slope(Inputs {

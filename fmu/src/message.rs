@@ -46,6 +46,15 @@ impl Message {
         }
     }
 
+    /// Returns a message about a directional derivative. The call is served without a warning, which importers take for a failure.
+    pub(crate) fn about_derivative(text: String) -> Self {
+        Self {
+            status: Status::Ok,
+            category: Category::Derivatives,
+            text,
+        }
+    }
+
     /// Returns the warning that files in `output.directory` are missing. The run does not need them.
     pub(crate) fn not_written(reason: impl Display) -> Self {
         Self::warning(format_args!("output.directory: {reason}"))

@@ -5,6 +5,8 @@
 pub enum Category {
     /// What happens to the wire: a turn has come to rest, a defect was found.
     Events,
+    /// The slopes of a directional derivative over small and smaller changes disagree.
+    Derivatives,
     /// A call was served, and something about scene, wire, solver or files needs a look.
     Warning,
     /// A step failed, or a status that was asked for is not available.
@@ -17,12 +19,17 @@ pub enum Category {
     All,
 }
 
-/// Every category with its standard name (FMI 2.0.5, table in section 2.2.4) and description.
-pub(crate) const CATEGORIES: [(Category, &str, &str); 6] = [
+/// Every category with its name and description. All names but one are those of the standard (FMI 2.0.5, table in section 2.2.4).
+pub(crate) const CATEGORIES: [(Category, &str, &str); 7] = [
     (
         Category::Events,
         "logEvents",
         "Turns that have come to rest, defects found",
+    ),
+    (
+        Category::Derivatives,
+        "logDerivatives",
+        "Directional derivatives that hold for one size of the change only",
     ),
     (
         Category::Warning,

@@ -28,7 +28,7 @@ pub use law::ContactLoss;
 pub use law::{ContactLaw, damping_for_restitution};
 pub use line::{ContactRecord, LineContact, LineModel, LineScratch, LineState};
 #[cfg(feature = "lab")]
-pub use line::{HeldBy, HeldTouch};
+pub use line::{HeldBy, HeldTouch, TouchMark};
 #[cfg(feature = "lab")]
 pub use nodal::TouchForce;
 pub(crate) use nodal::far;

@@ -35,6 +35,10 @@ mod stepping;
 mod summary;
 mod talk;
 mod told;
+#[cfg(feature = "lab")]
+mod trail;
+#[cfg(feature = "lab")]
+mod trail_keeping;
 mod traverse;
 mod winding;
 
@@ -47,7 +51,11 @@ pub use motion_profile::MotionProfile;
 pub use product::{Fill, Product};
 pub use run::Simulation;
 pub use saved::RestoreError;
+pub use step_derivatives::Derivative;
 pub use summary::{EnergySummary, PenetrationSummary, Summary};
+#[cfg(feature = "lab")]
+#[doc(hidden)]
+pub use trail::StepTrail;
 pub use winding::Winding;
 
 /// Speed below which wire on a standing core counts as quiet, m/s.

@@ -313,6 +313,8 @@ impl Winding {
             ends,
             most_work: u64::MAX,
             stop: None,
+            #[cfg(feature = "lab")]
+            trail: None,
         };
         sim.sys.state.spindle.speed = inputs.spindle_speed;
         sim.sys.place_supports();

@@ -10,27 +10,59 @@ use crate::scene::Scene;
 use crate::signals::{Inputs, Outputs};
 
 /// Change of the core's angle over the step that a difference is taken over, rad, ...
-const TURN: f64 = 3e-5;
+const TURN: f64 = 2e-6;
 /// ... as a share of the speed where that is less, but no less than a tenth, ...
-const SPEED: f64 = 0.01;
+const SPEED: f64 = 1e-3;
 /// ... of the nozzle's position, m, for wire of 0.7 mm, ...
-const WAY: f64 = 1e-6;
+const WAY: f64 = 5e-8;
 /// ... and of the pull, as a share of it, by tension, brake or damper.
-const PULL: f64 = 3e-3;
-/// Least change of the pull, N, for wire of 0.7 mm.
-const LEAST_PULL: f64 = 1e-3;
+const PULL: f64 = 2e-4;
+/// Least change of the pull, N, for wire of 0.7 mm, ...
+const LEAST_PULL: f64 = 1e-4;
+/// ... and of the nozzle's position, as a share of the tolerance: less than a thousandth of it counts as no change.
+const LEAST_WAY: f64 = 0.02;
 /// Least speed of the wire, m/s, at which a change of a damper shows in its pull.
 const SLOW: f64 = 0.1;
-/// Sizes of a difference over those above. A landing, or a step of the solver more or less, makes some of them jump; the
-/// middle of the slopes is then another one. Chosen.
-const SIZES: [f64; 3] = [0.3, 1.0, 3.0];
+/// Sizes of a difference over those above. What lands, slips or yields in one run of a difference and not in the other bends
+/// its slope; the middle of the slopes is then another one. The sizes lie far apart: of all choices within this span they
+/// came nearest to differences of any size in it.
+const SIZES: [f64; 3] = [0.3, 1.0, 10.0];
+
+/// How the outputs change with the inputs of a communication step. Outputs beyond [`Outputs::SMOOTH`] change only when wire
+/// comes to rest and have 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Derivative {
+    /// the derivatives: for each output the middle of its slopes over changes of three sizes
+    pub slopes: Outputs,
+    /// the smallest of these slopes, ...
+    pub least: Outputs,
+    /// ... and the largest. Where they differ, wire lands, slips or yields otherwise for inputs close by.
+    pub most: Outputs,
+}
+
+impl Derivative {
+    fn of(slopes: &[Smooth]) -> Self {
+        let mut sorted: [Vec<f64>; Outputs::SMOOTH.len()] =
+            std::array::from_fn(|k| slopes.iter().map(|slope| slope[k]).collect());
+        for values in &mut sorted {
+            values.sort_by(f64::total_cmp);
+        }
+        let outputs = |value: &dyn Fn(&[f64]) -> f64| {
+            Outputs::default().with_smooth(std::array::from_fn(|k| value(&sorted[k])))
+        };
+        Self {
+            slopes: outputs(&middle),
+            least: outputs(&|values| values[0]),
+            most: outputs(&|values| values[values.len() - 1]),
+        }
+    }
+}
 
 impl Simulation {
     /// Derivatives of the outputs at the end of a communication step of `dt`, s, that begins here with `inputs` and
     /// their `rates` per s, when the inputs change in the direction `along` for all of the step.
     ///
-    /// Outputs beyond [`Outputs::SMOOTH`] change only when wire comes to rest and have 0. The run stays as it is. It costs
-    /// six such steps.
+    /// The run stays as it is. It costs six such steps.
     ///
     /// # Errors
     ///
@@ -41,7 +73,7 @@ impl Simulation {
         rates: Inputs,
         dt: f64,
         along: Inputs,
-    ) -> Result<Outputs, SimError> {
+    ) -> Result<Derivative, SimError> {
         let outcome = |by: f64| {
             let mut run = self.clone();
             run.advance_ramped(inputs.after(&along, by), rates, dt)?;
@@ -58,7 +90,7 @@ impl Simulation {
         }
         match refused {
             Some(error) if slopes.is_empty() => Err(error),
-            _ => Ok(Outputs::default().with_smooth(middle(&slopes))),
+            _ => Ok(Derivative::of(&slopes)),
         }
     }
 
@@ -72,7 +104,7 @@ impl Simulation {
         scene: &Scene,
         inputs: Inputs,
         along: Inputs,
-    ) -> Result<Outputs, SimError> {
+    ) -> Result<Derivative, SimError> {
         let outcome = |by: f64| {
             let mut there = inputs.after(&along, by);
             // which way round the wire lies is no smooth function of the speed
@@ -83,7 +115,7 @@ impl Simulation {
         };
         let start = Self::starting_with(scene, inputs)?;
         let slope = slope(&outcome, reach(&start, &inputs, &along, 1.0))?;
-        Ok(Outputs::default().with_smooth(slope))
+        Ok(Derivative::of(&[slope]))
     }
 }
 
@@ -94,6 +126,7 @@ type Smooth = [f64; Outputs::SMOOTH.len()];
 fn reach(run: &Simulation, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
     let scene = run.scene();
     let (diameter, bare) = (scene.wire.diameter, scene.wire.bare_diameter);
+    let way = scaled(WAY, diameter).max(LEAST_WAY * scene.solver.tolerance);
     let least = scaled(scaled(LEAST_PULL, bare), bare);
     let turn = TURN / dt;
     let share = (SPEED * inputs.spindle_speed.abs()).max(0.1 * turn);
@@ -102,9 +135,9 @@ fn reach(run: &Simulation, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
     let passing = run.outputs().tensioner_speed.abs().max(SLOW);
     let most = [
         (along.spindle_speed, turn.min(share)),
-        (along.nozzle_position, scaled(WAY, diameter)),
-        (along.nozzle_offset_x, scaled(WAY, diameter)),
-        (along.nozzle_offset_z, scaled(WAY, diameter)),
+        (along.nozzle_position, way),
+        (along.nozzle_offset_x, way),
+        (along.nozzle_offset_z, way),
         (along.tension_setpoint, pull),
         (along.brake_torque, pull * radius),
         (along.tensioner_damping, pull / passing),
@@ -115,7 +148,9 @@ fn reach(run: &Simulation, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Slope from `by` on both sides; on one side where there is nothing on the other, as below a tension of 0.
+/// Slope from `by` on both sides; on one side where there is nothing on the other, as below a tension of 0. The step with the
+/// inputs as they are is none of the two: with inputs that go on the method may step beyond it, and the difference of both
+/// ways of stepping is no slope.
 fn slope(outcome: &impl Fn(f64) -> Result<Outputs, SimError>, by: f64) -> Result<Smooth, SimError> {
     let over = |a: &Outputs, b: &Outputs, way: f64| {
         let (a, b) = (a.smooth(), b.smooth());
@@ -123,21 +158,17 @@ fn slope(outcome: &impl Fn(f64) -> Result<Outputs, SimError>, by: f64) -> Result
     };
     match (outcome(by), outcome(-by)) {
         (Ok(ahead), Ok(behind)) => Ok(over(&ahead, &behind, 2.0 * by)),
-        (Ok(ahead), Err(_)) => Ok(over(&ahead, &outcome(0.0)?, by)),
-        (Err(_), Ok(behind)) => Ok(over(&outcome(0.0)?, &behind, by)),
+        (Ok(ahead), Err(_)) => Ok(over(&outcome(2.0 * by)?, &ahead, by)),
+        (Err(_), Ok(behind)) => Ok(over(&behind, &outcome(-2.0 * by)?, by)),
         (Err(error), Err(_)) => Err(error),
     }
 }
 
-/// The middle of the slopes, output by output; of an even number, the mean of the middle two.
-fn middle(slopes: &[Smooth]) -> Smooth {
-    std::array::from_fn(|k| {
-        let mut values: Vec<f64> = slopes.iter().map(|slope| slope[k]).collect();
-        values.sort_by(f64::total_cmp);
-        let half = values.len() / 2;
-        match values.len() % 2 {
-            1 => values[half],
-            _ => 0.5 * (values[half - 1] + values[half]),
-        }
-    })
+/// The middle of ascending values; of an even number, the mean of the middle two.
+fn middle(values: &[f64]) -> f64 {
+    let half = values.len() / 2;
+    match values.len() % 2 {
+        1 => values[half],
+        _ => 0.5 * (values[half - 1] + values[half]),
+    }
 }

@@ -89,6 +89,8 @@ impl Winding {
             });
         }
         let tried = self.stepper.statistics().tried();
+        #[cfg(feature = "lab")]
+        let before = self.begin_trail();
         let taken = self.stepper.step(&mut self.sys, most).map_err(|e| SimError {
             time: self.sys.state.time,
             node: Some(e.node),
@@ -99,6 +101,8 @@ impl Winding {
                 None => e.to_string(),
             },
         })?;
+        #[cfg(feature = "lab")]
+        self.end_trail(before);
         self.run.work +=
             (self.stepper.statistics().tried() - tried) * self.sys.state.rod.nodes() as u64;
         self.run.last_step = taken;

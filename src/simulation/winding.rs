@@ -27,6 +27,9 @@ pub struct Winding {
     pub(super) most_work: u64,
     /// ends a step of the run early where it is up; the caller's
     pub(super) stop: Option<Arc<AtomicBool>>,
+    /// what steps did, where somebody asked
+    #[cfg(feature = "lab")]
+    pub(super) trail: Option<Vec<super::StepTrail>>,
 }
 
 impl Winding {
@@ -125,6 +128,8 @@ impl Winding {
             ends: _,
             most_work,
             stop,
+            #[cfg(feature = "lab")]
+            trail,
         } = other;
         self.sys.follow(sys);
         self.coil.clone_from(coil);
@@ -133,5 +138,7 @@ impl Winding {
         self.behind.clone_from(behind);
         self.most_work = *most_work;
         self.stop.clone_from(stop);
+        #[cfg(feature = "lab")]
+        self.trail.clone_from(trail);
     }
 }

@@ -45,3 +45,27 @@ def test_defects_come_with_time_turn_and_angle(slave):
     for text in events:
         assert re.match(r"t = \d+\.\d+ s, turn \d+\.\d+, core at -?\d+\.\d deg: ", text), text
     assert re.search(r"defect in turn \d+ at \d+ deg \(gap", defects[0])
+
+
+def test_a_derivative_that_depends_on_the_size_of_the_change_is_told(slave):
+    """Over a millisecond at 100 rad/s wire lands in half of the steps; while the core stands nothing does."""
+    slave.start(scene__file="fig8")
+    unknown, known = slave.references(["wire_tension", "turns_wound"]), slave.references(["tension_setpoint"])
+
+    def ask(k, speed):
+        slave.set(spindle_speed=speed)
+        slave.fmu.doStep(k * 1e-3, 1e-3)
+        before = len(slave.log)
+        slave.fmu.getDirectionalDerivative(unknown, known, [1.0])
+        return [entry[1:] for entry in slave.log[before:]]
+
+    assert not any(ask(k, 0.0) for k in range(3))
+    told = [entry for k in range(3, 40) for entry in ask(k, min(100.0, 10.0 * k))]
+    assert told, slave.log
+    for status, category, text in told:
+        assert (status, category) == (0, "logDerivatives")
+        pattern = r"t = 0\.\d{6} s: wire lands, slips or yields .*: (wire_tension|turns_wound) \S+ \(\S+ to \S+\)"
+        assert re.match(pattern, text), text
+    assert len(told) < 37
+    slave.fmu.setDebugLogging(True, ["logEvents"])
+    assert not any(ask(k, 100.0) for k in range(40, 60))

@@ -4,10 +4,14 @@ use super::Instance;
 use super::run::write_input;
 use crate::error::Error;
 use crate::lifecycle::State;
+use crate::message::Message;
 use crate::scalar::{find, wrong_type};
 use coilwind::signals::Inputs;
 use coilwind::simulation::Simulation;
 use coilwind::variables::{Access, Causality, Value};
+
+/// Share by which slopes over changes of different sizes may part before the importer is told. Chosen.
+const APART: f64 = 0.1;
 
 impl Instance {
     /// `fmi2SetRealInputDerivatives`: sets all of the derivatives or none, in the unit of each
@@ -129,6 +133,7 @@ impl Instance {
             return Ok(vec![0.0; asked.len()]);
         }
         let failed = self.state == State::StepFailed;
+        let start = self.clock.experiment_time(0.0);
         let run = self.start()?;
         let simulation = &run.simulation;
         let slopes = match &run.last {
@@ -143,13 +148,28 @@ impl Instance {
             }
         };
         let slopes = slopes.map_err(Error::NoTangent)?;
-        asked
-            .into_iter()
-            .map(|(variable, get)| match get(&slopes) {
+        let time = start + simulation.time();
+        let (mut values, mut apart) = (Vec::with_capacity(asked.len()), Vec::new());
+        for (variable, get) in asked {
+            let of = |outputs| match get(outputs) {
                 Value::Real(x) => Ok(x),
                 _ => Err(wrong_type::<f64>(variable)),
-            })
-            .collect()
+            };
+            let [value, least, most] = [of(&slopes.slopes)?, of(&slopes.least)?, of(&slopes.most)?];
+            if most - least > APART * least.abs().max(most.abs()) {
+                let name = variable.name;
+                apart.push(format!("{name} {value:.4} ({least:.4} to {most:.4})"));
+            }
+            values.push(value);
+        }
+        if !apart.is_empty() {
+            let text = format!(
+                "t = {time:.6} s: wire lands, slips or yields otherwise for inputs close by, and the slopes over three sizes of the change disagree: {}",
+                apart.join(", ")
+            );
+            self.messages.push(Message::about_derivative(text));
+        }
+        Ok(values)
     }
 }
 

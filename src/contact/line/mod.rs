@@ -32,7 +32,7 @@ mod touch;
 pub use line_contact::LineContact;
 pub use model::LineModel;
 #[cfg(feature = "lab")]
-pub use probe::{HeldBy, HeldTouch};
+pub use probe::{HeldBy, HeldTouch, TouchMark};
 pub use record::ContactRecord;
 pub use scratch::LineScratch;
 pub use state::LineState;

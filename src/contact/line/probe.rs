@@ -29,7 +29,27 @@ pub struct HeldTouch {
     pub with: HeldBy,
 }
 
+/// A contact point that touches: its number, and what it is with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TouchMark {
+    /// core, wall of a mesh or flange, or a passage of frozen wire
+    Settled(usize, usize),
+    /// older live wire
+    Live(usize),
+}
+
 impl LineState {
+    /// The touches, and whether each slides; of pairs of live wire that is not told.
+    pub fn marks(&self) -> impl Iterator<Item = (TouchMark, bool)> {
+        let settled = self.points.iter().enumerate().flat_map(|(point, state)| {
+            let touches = state.touches().iter().enumerate();
+            let touching = touches.filter(|(_, t)| t.anchored);
+            touching.map(move |(slot, t)| (TouchMark::Settled(point, slot), t.slide != V3::zeros()))
+        });
+        let pairs = self.self_contact.iter().flat_map(|pairs| pairs.held());
+        settled.chain(pairs.map(|pair| (TouchMark::Live(pair.point), false)))
+    }
+
     /// The touches with core and frozen wire that friction holds.
     pub fn held(&self) -> impl Iterator<Item = HeldTouch> {
         self.points.iter().enumerate().flat_map(|(point, state)| {
