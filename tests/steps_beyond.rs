@@ -2,6 +2,8 @@
 
 mod common;
 
+use coilwind::scene::Scene;
+use coilwind::settings::SceneSettings;
 use coilwind::signals::{Inputs, Outputs};
 use coilwind::simulation::Simulation;
 use common::fig8;
@@ -208,4 +210,116 @@ fn the_scenes_own_motion_goes_on_from_the_point() {
     sim.advance_profile(1e-4).expect("a step");
     assert!((sim.time() - time - 1e-4).abs() < 1e-12);
     assert!(sim.outputs().spindle_angle >= angle);
+}
+
+/// The scene's own motion until `end`, s, read at `count` points.
+fn along_the_scene(scene: &Scene, end: f64, count: u32, beyond: bool) -> (Simulation, [f64; 2]) {
+    let mut sim = Simulation::new(scene).expect("starts");
+    sim.step_beyond(beyond);
+    let mut tension = [f64::INFINITY, f64::NEG_INFINITY];
+    for k in 1..=count {
+        let next = end * f64::from(k) / f64::from(count);
+        sim.advance_profile(next - sim.time()).expect("goes on");
+        let o = sim.outputs();
+        tension = [
+            tension[0].min(o.wire_tension_min),
+            tension[1].max(o.wire_tension_max),
+        ];
+    }
+    (sim, tension)
+}
+
+/// Steps end where the ramp ends and where the nozzle turns, and nowhere for a point that is read.
+#[test]
+fn rows_change_nothing_along_the_scenes_own_motion() {
+    for (name, settings) in [
+        ("fig8", vec![("spindle.turns", "1")]),
+        (
+            "bobbin",
+            vec![
+                ("traverse.mode", "orthocyclic"),
+                ("winding.turns_per_layer", "1"),
+                ("winding.layers", "2"),
+                ("solver.tolerance_um", "20"),
+            ],
+        ),
+    ] {
+        let mut given = SceneSettings::load(name).expect("packed");
+        for (name, value) in settings {
+            given.set_text(name, value).expect("a setting");
+        }
+        let scene = given.build().expect("valid");
+        let end = Simulation::new(&scene)
+            .expect("starts")
+            .motion_profile()
+            .end();
+        let (one, extremes) = along_the_scene(&scene, end, 1, true);
+        for count in [7, 300, 3000] {
+            let (mut rows, tension) = along_the_scene(&scene, end, count, true);
+            assert_eq!(tension, extremes, "{name}, {count} rows");
+            rows.settle().expect("a step");
+            assert_eq!(one.statistics(), rows.statistics(), "{name}, {count} rows");
+            let (a, b) = (one.centreline(), rows.centreline());
+            let far = a.points.iter().zip(&b.points).map(|(a, b)| (a - b).norm());
+            let far = far.fold(0.0, f64::max);
+            assert!(far < 1e-12, "{name}: {far} m in {count} rows");
+        }
+        let (profile, at_end) = (one.motion_profile(), one.inputs());
+        assert!((at_end.nozzle_position - profile.nozzle(end)).abs() < 1e-12);
+        assert!((one.outputs().spindle_angle.abs() - profile.angle(end).abs()).abs() < 1e-9);
+        let (short, _) = along_the_scene(&scene, end, 300, false);
+        let steps = |sim: &Simulation| sim.statistics().steps;
+        assert!(steps(&one) < steps(&short));
+    }
+}
+
+#[test]
+fn a_saved_state_within_the_scenes_own_motion_goes_on_to_the_bit() {
+    let scene = fig8(&[("spindle.turns", "1")]);
+    let mut sim = Simulation::new(&scene).expect("starts");
+    sim.step_beyond(true);
+    let end = sim.motion_profile().end();
+    let mut behind = 0;
+    for _ in 0..20 {
+        for _ in 0..25 {
+            sim.advance_profile(end / 500.0).expect("goes on");
+        }
+        behind += u32::from(sim.winding().time() < sim.time());
+        let bytes = sim.to_bytes().expect("bytes");
+        let mut other = Simulation::from_bytes(&scene, &bytes).expect("a state");
+        other.step_beyond(true);
+        let mut copy = sim.clone();
+        for run in [&mut copy, &mut other] {
+            for _ in 0..60 {
+                run.advance_profile(end / 500.0).expect("goes on");
+            }
+        }
+        assert_eq!(copy.outputs(), other.outputs());
+        assert!(copy.to_bytes().expect("bytes") == other.to_bytes().expect("bytes"));
+    }
+    assert!(behind > 10, "{behind}");
+}
+
+/// Inputs begin where the scene's own motion ended, and a settled copy leaves the run as it is.
+#[test]
+fn inputs_go_on_from_the_point_of_the_scenes_own_motion() {
+    let mut sim = Simulation::new(&fig8(&[])).expect("starts");
+    sim.step_beyond(true);
+    let end = 0.4 * sim.motion_profile().end();
+    for _ in 0..173 {
+        sim.advance_profile(end / 173.0).expect("a step");
+    }
+    let (time, inputs, angle) = (sim.time(), sim.inputs(), sim.outputs().spindle_angle);
+    assert!(sim.winding().time() < time, "no step reaches beyond");
+    let there = sim.settled().expect("a step");
+    assert_eq!(there.winding().time(), time);
+    assert!((there.outputs().spindle_angle - angle).abs() < 1e-9);
+    assert!(sim.winding().time() < time);
+    sim.advance(inputs, 2e-5).expect("a step");
+    assert!((sim.time() - time - 2e-5).abs() < 1e-15);
+    let turned = sim.outputs().spindle_angle - angle;
+    assert!(
+        (turned - 2e-5 * inputs.spindle_speed).abs() < 1e-9,
+        "{turned}"
+    );
 }

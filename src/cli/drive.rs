@@ -137,7 +137,12 @@ impl Drive {
                     .motion_profile()
                     .time_at(*count as f64 * *interval);
                 let next = if row >= *end - sliver { *end } else { row };
-                Some(simulation.advance_profile(next - time).map(|()| next))
+                let mut gone = simulation.advance_profile(next - time);
+                if next == *end {
+                    // the last row is what the results tell of
+                    gone = gone.and_then(|()| simulation.settle());
+                }
+                Some(gone.map(|()| next))
             }
             Self::Signals {
                 signals,

@@ -53,7 +53,10 @@ impl Frames {
         let count = f64::from(self.count);
         let due = (share * count).floor().min(count) as u32;
         if due > self.written.last().map_or(0, |&(number, _)| number) {
-            snapshot.write_frame(&self.directory.join(name(due)), simulation)?;
+            // (the wire may be a step of the method behind; where none leads on, it is drawn where it is)
+            let there = simulation.settled();
+            let shown = there.as_ref().unwrap_or(simulation);
+            snapshot.write_frame(&self.directory.join(name(due)), shown)?;
             self.written.push((due, simulation.time()));
             let listed: Vec<(f64, String)> = self
                 .written

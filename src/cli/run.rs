@@ -160,7 +160,13 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
         },
     };
     simulation.stop_on(Arc::clone(stop));
-    let ended = record.wind(&mut simulation, &mut drive, stop, args.resume.is_none());
+    let mut ended = record.wind(&mut simulation, &mut drive, stop, args.resume.is_none());
+    // The coil of the last row. The checkpoint is of before, so that a run which goes on knows nothing of it.
+    match simulation.settled() {
+        Ok(there) => simulation = there,
+        Err(reason) => ended = ended.and(Err(Stop::Solver(reason))),
+    }
+    record.progress.tell(&simulation.drain_events());
     record.progress.finish();
 
     // Results first: whatever ended the run, what it computed stays usable.
@@ -403,7 +409,6 @@ impl Record {
                 return Ok(Ending::Interrupted);
             }
             let Some(advanced) = drive.advance(simulation) else {
-                simulation.settle().map_err(Stop::Solver)?;
                 return Ok(Ending::Done);
             };
             self.progress.tell(&simulation.drain_events());

@@ -50,7 +50,8 @@ impl Winding {
         self.take_course(course, first);
         self.reset_extremes();
         let before = self.statistics();
-        let stepped = self.step(self.longest_return());
+        let most = course.left(self.run.time).min(self.longest_return());
+        let stepped = self.step(most);
         self.tell_of_trouble(before);
         stepped?;
         (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);

@@ -4,6 +4,7 @@
 //! they do, and communication points within a step are answered from its two ends. The winding itself stands at the end of the
 //! last step that lies behind the communication point ([`Simulation::winding`]); the step beyond it is kept apart. Inputs that go
 //! on otherwise drop that step, and the time that has passed since the winding's is gone through with the inputs as they were.
+//! The scene's own motion never goes on otherwise; steps end where it has a kink, and at its end.
 
 use super::ahead::Ahead;
 use super::course::{Course, Given, Likeness};
@@ -15,6 +16,7 @@ use super::talk::{LONGEST_WAIT, Served};
 use super::told::{Told, as_meant};
 use super::{SimError, Simulation, Winding};
 use crate::signals::{Inputs, Outputs};
+use std::sync::Arc;
 
 /// Share of the tolerance by which the wire may come out otherwise for inputs that count as gone on: what rounding does to
 /// the inputs of a master is far less, and what a person changes far more.
@@ -92,7 +94,7 @@ impl Simulation {
                 Ok(())
             });
         }
-        self.communicate(inputs.after(&rates, dt), &told, dt)
+        self.communicate(Some(inputs.after(&rates, dt)), &told, dt)
     }
 
     /// Advances by `dt`, s, along the scene's own spindle ramp and traverse, which are continuous.
@@ -103,9 +105,19 @@ impl Simulation {
     ///
     /// See [`Self::advance`].
     pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
-        self.settle()?;
-        (self.talk.course, self.talk.travel, self.talk.told) = (None, None, None);
-        self.step_to_the_point(|winding| winding.advance_profile(dt))
+        let of_scene = self.talk.course.is_some_and(|course| course.is_of_scene());
+        if !of_scene || !self.finds_its_own_steps() {
+            self.settle()?;
+            (self.talk.course, self.talk.travel, self.talk.told) = (None, None, None);
+        }
+        if !self.finds_its_own_steps() || dt.is_nan() || dt <= 0.0 {
+            return self.step_to_the_point(|winding| winding.advance_profile(dt));
+        }
+        if !of_scene {
+            self.talk.course = self.now.stretch_of_scene(self.now.inputs());
+        }
+        let told = *self.outputs();
+        self.communicate(None, &told, dt)
     }
 
     /// Brings the winding to the communication point, where it may be up to a step of the method behind it.
@@ -126,7 +138,10 @@ impl Simulation {
         let gone = if debt > ROUNDING * served.time {
             winding.run.events.clear();
             winding.reset_extremes();
-            let gone = winding.go_along(&course, debt);
+            let gone = match course.is_of_scene() {
+                true => winding.go_along_scene(debt),
+                false => winding.go_along(&course, debt),
+            };
             self.talk.events.append(&mut winding.run.events);
             gone
         } else {
@@ -139,6 +154,20 @@ impl Simulation {
         }
         winding.stand_at(&served);
         Ok(())
+    }
+
+    /// A copy whose winding stands at the communication point ([`Self::settle`]). No flag stops it on the way.
+    ///
+    /// # Errors
+    ///
+    /// If the method gives up on the way.
+    pub fn settled(&self) -> Result<Self, SimError> {
+        let mut copy = self.clone();
+        if copy.time() > copy.now.run.time {
+            Arc::make_mut(&mut copy.now).stop = None;
+            copy.settle()?;
+        }
+        Ok(copy)
     }
 
     /// Lets the winding itself step to the communication point.
@@ -154,22 +183,25 @@ impl Simulation {
         gone
     }
 
+    /// Whether steps need not end at communication points, as far as inputs do not matter.
+    fn finds_its_own_steps(&self) -> bool {
+        let method = &self.now.stepper;
+        self.steps_beyond
+            && !self.now.run.nozzle_by_law
+            && method.is_implicit()
+            && method.fixed().is_none()
+            && !self.now.run.over
+    }
+
     /// Whether a step may reach beyond the communication point at all, when the inputs of a step of `dt`, s, change at `rates`.
     fn may_step_beyond(&self, inputs: &Inputs, rates: &Inputs, dt: f64) -> bool {
-        let method = &self.now.stepper;
         let (now, end) = (self.inputs(), inputs.after(rates, dt));
         let aside = (end.nozzle_offset_x - now.nozzle_offset_x)
             .hypot(end.nozzle_offset_z - now.nozzle_offset_z);
         let damped =
             inputs.tensioner_damping == now.tensioner_damping && rates.tensioner_damping == 0.0;
         // (courses know of no way aside, of no law of the nozzle, and of one damper)
-        !self.now.run.nozzle_by_law
-            && damped
-            && aside <= NOZZLE * self.now.scene.solver.tolerance
-            && self.steps_beyond
-            && method.is_implicit()
-            && method.fixed().is_none()
-            && !self.now.run.over
+        self.finds_its_own_steps() && damped && aside <= NOZZLE * self.now.scene.solver.tolerance
     }
 
     /// Whether a communication step goes on as the inputs were taken to.
@@ -209,12 +241,23 @@ impl Simulation {
         Ok(())
     }
 
+    /// The course at the winding's time. Where a stretch of the scene's own motion has ended, the next begins.
+    fn course_from_here(&mut self) -> Option<Course> {
+        let (course, time) = (self.talk.course?, self.now.run.time);
+        if course.left(time) <= ROUNDING * time {
+            self.talk.course = self.now.stretch_of_scene(course.at(time));
+        }
+        self.talk.course
+    }
+
     /// Goes on to the next communication point, `dt`, s, away, in steps that need not end there. The inputs at that point are
-    /// `inputs`; `told` was at the last.
-    fn communicate(&mut self, inputs: Inputs, told: &Outputs, dt: f64) -> Result<(), SimError> {
-        let Some(course) = self.talk.course else {
-            return Ok(());
-        };
+    /// `inputs`, or those of the course; `told` was at the last.
+    fn communicate(
+        &mut self,
+        inputs: Option<Inputs>,
+        told: &Outputs,
+        dt: f64,
+    ) -> Result<(), SimError> {
         let mut served = self.talk.served.unwrap_or_else(|| Served::at(&self.now));
         served.begin(dt, &self.now);
         let point = served.time;
@@ -232,6 +275,9 @@ impl Simulation {
                 served.pass(&self.now);
                 continue;
             }
+            let Some(course) = self.course_from_here() else {
+                return Ok(());
+            };
             let room = point - self.now.run.time;
             if room <= near || (self.now.is_quiescent() && course.is_still()) {
                 break;
@@ -259,6 +305,10 @@ impl Simulation {
                 return Err(error);
             }
         }
+        let Some(course) = self.talk.course else {
+            return Ok(());
+        };
+        let inputs = inputs.unwrap_or_else(|| course.at(point));
         let end = self.ahead.as_ref().map(|ahead| &*ahead.winding);
         served.read(&self.now, end, &course, inputs);
         let both = [told, &served.outputs];
@@ -293,6 +343,24 @@ impl Winding {
         gone
     }
 
+    /// Goes along the scene's own motion for `duration`, s, and no farther.
+    fn go_along_scene(&mut self, duration: f64) -> Result<(), SimError> {
+        let (profile, start) = (self.motion_profile.clone(), self.run.time);
+        let before = self.statistics();
+        let mut drives = profile.drives(start, start + duration, self.sys.state.set_tension);
+        let gone = drives.try_for_each(|drive| self.follow(&drive));
+        self.tell_of_trouble(before);
+        gone
+    }
+
+    /// The scene's own motion from the winding's time to its next kink or its end, where the inputs are those of `now`.
+    fn stretch_of_scene(&self, now: Inputs) -> Option<Course> {
+        let (profile, time) = (&self.motion_profile, self.run.time);
+        let tension = self.sys.state.set_tension;
+        let drive = profile.drives(time, f64::INFINITY, tension).next()?;
+        Some(Course::of_scene(&drive, time, profile.end(), now))
+    }
+
     /// Takes a communication point for the present instant.
     fn stand_at(&mut self, point: &Served) {
         (self.run.time, self.run.time_lost) = (point.time, point.time_lost);
@@ -300,7 +368,11 @@ impl Winding {
         self.sys.state.set_tension = point.inputs.tension_setpoint;
         self.sys.state.support[1].point.y = point.inputs.nozzle_position;
         self.finish();
-        keep_told(&mut self.run.outputs, &point.outputs);
+        let mut told = *point;
+        if !self.run.over {
+            told.meet(self.run.outputs.wire_tension);
+        }
+        keep_told(&mut self.run.outputs, &told.outputs);
         self.run.rates = point.rates;
     }
 }

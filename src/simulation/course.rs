@@ -1,6 +1,7 @@
-//! The motion that a master gives the machine from one communication point on, until it says otherwise.
+//! The motion of the machine from one instant on: as a master gives it, until it says otherwise, or a stretch of the scene's own.
 
 use super::door::check_finite;
+use super::motion_profile::ROUNDING;
 use crate::signals::Inputs;
 use crate::system::{Drive, NozzleDrive};
 use serde::{Deserialize, Serialize};
@@ -16,6 +17,8 @@ pub(super) struct Course {
     rates: Inputs,
     /// of the nozzle, m/s2
     acceleration: f64,
+    /// when a stretch of the scene's own motion ends, s; none for what a master gives
+    until: Option<f64>,
 }
 
 /// A communication step as a master gives it.
@@ -85,7 +88,40 @@ impl Course {
             inputs: given.inputs,
             rates,
             acceleration,
+            until: None,
         }
+    }
+
+    /// The stretch of the scene's own motion that begins at `start`, s, as `drive` has it, with the inputs as they are `now`. It ends
+    /// where the `end` of that motion, s, is still to come and comes first.
+    pub(super) fn of_scene(drive: &Drive, start: f64, end: f64, now: Inputs) -> Self {
+        let travel = drive.travel().unwrap_or(0.0);
+        let until = start + drive.duration;
+        let is_over = end - start <= ROUNDING * end;
+        Self {
+            start,
+            inputs: Inputs {
+                spindle_speed: drive.speed,
+                ..now
+            },
+            rates: Inputs {
+                spindle_speed: drive.acceleration,
+                nozzle_position: travel * drive.speed,
+                ..Inputs::HELD
+            },
+            acceleration: travel * drive.acceleration,
+            until: Some(if is_over { until } else { until.min(end) }),
+        }
+    }
+
+    /// Whether it is a stretch of the scene's own motion.
+    pub(super) fn is_of_scene(&self) -> bool {
+        self.until.is_some()
+    }
+
+    /// How much of it is left at `time`, s.
+    pub(super) fn left(&self, time: f64) -> f64 {
+        self.until.map_or(f64::INFINITY, |until| until - time)
     }
 
     /// Speed, nozzle position and set tension at `time`, s.
@@ -124,6 +160,7 @@ impl Course {
             ..self.rates
         };
         self.start.is_finite()
+            && self.until.is_none_or(|until| until > self.start)
             && self.acceleration.is_finite()
             && self.rates.tension_setpoint.is_finite()
             && check_finite(&self.inputs, 0.0).is_ok()
@@ -137,6 +174,9 @@ impl Course {
 
     /// Whether a step is this course gone on, at its end and, with the inputs going on from there, until `until`, s.
     pub(super) fn goes_on_as(&self, given: &Given, until: f64, alike: &Likeness) -> bool {
+        if self.is_of_scene() {
+            return false;
+        }
         let (start, end) = (given.start, given.start + given.dt);
         let nozzle = [start, end].map(|time| {
             let apart = self.at(time).nozzle_position - given.at(time).nozzle_position;

@@ -3,6 +3,9 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
+/// Share of the way back that counts, up to which the nozzle stands: more than rounding moves it by, and too little to be seen.
+const STANDS: f64 = 1e-9;
+
 /// Where the nozzle was farthest one way along y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Farthest {
@@ -90,9 +93,9 @@ impl Traverse {
         for (end, sign) in self.ends.iter_mut().zip([-1.0, 1.0]) {
             let beyond = sign * (y - end.y);
             // What was laid since is being unwound, and the nozzle may start anew from where it is.
-            if beyond > 0.0 || (back && core < end.left) {
+            if beyond > STANDS * turned || (back && core < end.left) {
                 *end = Farthest::at(y, core);
-            } else if beyond == 0.0 && end.ahead.is_none() {
+            } else if beyond >= -STANDS * turned && end.ahead.is_none() {
                 end.left = core;
             }
         }
@@ -121,5 +124,31 @@ impl Traverse {
         let core = self.core;
         let ends = self.ends.iter_mut();
         ends.filter(move |end| end.ahead.is_none() && end.left < core)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Where the second pass begins when the nozzle comes, stands from 1 to 3 rad and goes back, off its place by rounding.
+    fn began(rounding: f64) -> f64 {
+        let mut way = Traverse::new(0.0);
+        for k in 0..500 {
+            let core = 0.01 * f64::from(k);
+            let y = 1e-3 * (core.min(1.0) - (core - 3.0).max(0.0));
+            let sign = f64::from(k % 3) - 1.0;
+            if let Found::Turned(turn, sense) = way.look(y + sign * rounding, core, 3.5e-4) {
+                assert_eq!(sense, -1.0);
+                return turn.laid(0.0);
+            }
+        }
+        panic!("it has turned");
+    }
+
+    #[test]
+    fn rounding_moves_no_nozzle_that_stands() {
+        assert_eq!(began(0.0), 3.0);
+        assert_eq!(began(1e-18), 3.0);
     }
 }

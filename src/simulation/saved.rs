@@ -117,7 +117,7 @@ impl Simulation {
             ));
         }
         let ahead = match saved.ahead {
-            Some((course, first)) if course.is_sound() => {
+            Some((course, first)) if course.is_sound() && course.left(winding.time()) > 0.0 => {
                 let ahead = Ahead::of(Arc::new(winding.clone()), course, first);
                 Some(ahead.map_err(|_| RestoreError::Impossible("no step leads ahead"))?)
             }

@@ -94,7 +94,8 @@ impl Served {
         raise_as(&mut self.outputs, &winding.run.outputs);
     }
 
-    fn meet(&mut self, tension: f64) {
+    /// Takes note of a tension, N.
+    pub(super) fn meet(&mut self, tension: f64) {
         let o = &mut self.outputs;
         o.wire_tension_min = o.wire_tension_min.min(tension);
         o.wire_tension_max = o.wire_tension_max.max(tension);

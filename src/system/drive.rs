@@ -52,7 +52,7 @@ impl Drive {
     }
 
     /// Travel of the nozzle per core angle, m/rad; `None` where it moves on its own or not at all.
-    fn travel(&self) -> Option<f64> {
+    pub(crate) fn travel(&self) -> Option<f64> {
         match self.nozzle {
             NozzleDrive::WithSpindle(travel) if travel != 0.0 => Some(travel),
             NozzleDrive::WithSpindle(_) | NozzleDrive::Even(_) => None,
