@@ -91,6 +91,9 @@ impl LineContact<'_> {
         }
         self.look_up_if_moved(k, to, own);
         let point = &self.state.points[k];
+        if (to - point.clear_at).norm() < point.clear_within {
+            return 1.0;
+        }
         let touch_at = |slot: usize, p: V3| {
             let (depth, normal, _) = depth_at(
                 self.model,
