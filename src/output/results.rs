@@ -7,9 +7,10 @@ use super::{
 use crate::geometry::Surface;
 use crate::math::V3;
 use crate::measure::Station;
-use crate::simulation::{Centreline, SimError, Simulation, Summary, core_surface};
+use crate::simulation::{Centreline, SimError, Simulation, Summary};
 use serde::Serialize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// How a run ended.
 #[derive(Clone, Debug, Serialize)]
@@ -39,17 +40,17 @@ struct Report<'a> {
     summary: Summary,
 }
 
-/// The core for pictures and heights, built once per run.
+/// The core for pictures and heights.
 #[derive(Clone, Debug)]
 pub struct Snapshot {
-    core: Surface,
+    core: Arc<Surface>,
 }
 
 impl Snapshot {
-    /// Builds the core of this simulation's scene.
+    /// The core of this simulation.
     pub fn new(simulation: &Simulation) -> Result<Self, SimError> {
         Ok(Self {
-            core: core_surface(&simulation.scene().core)?,
+            core: simulation.core()?,
         })
     }
 

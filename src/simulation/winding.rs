@@ -1,7 +1,9 @@
 //! Wire, coil and method of a run, and what it remembers: what a step of the method changes.
 
-use super::MotionProfile;
+use super::core_model::core_surface;
 use super::run_state::RunState;
+use super::{MotionProfile, SimError};
+use crate::geometry::Surface;
 use crate::integrate::{SolverStatistics, Stepper};
 use crate::measure::Coil;
 use crate::scene::Scene;
@@ -74,6 +76,18 @@ impl Winding {
     /// The motion profile of the scene.
     pub fn motion_profile(&self) -> &MotionProfile {
         &self.motion_profile
+    }
+
+    /// The core as a triangle mesh, in its own frame, m.
+    ///
+    /// # Errors
+    ///
+    /// As for [`core_surface`].
+    pub(crate) fn core(&self) -> Result<Arc<Surface>, SimError> {
+        match &self.sys.model.core {
+            Some(surface) => Ok(Arc::clone(surface)),
+            None => core_surface(&self.scene.core).map(Arc::new),
+        }
     }
 
     pub(super) fn report(&mut self, kind: EventKind, text: String) {
