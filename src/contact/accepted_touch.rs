@@ -3,6 +3,9 @@
 use super::stencil::{ContactPoint, NodeWeights};
 use crate::math::V3;
 
+/// Depth from which wire still comes from outside, as a share of the onset: wire that is laid in touch is outside but for rounding.
+pub(super) const OUTSIDE: f64 = 1e-3;
+
 /// A touch at the accepted end of a step; core frame.
 #[derive(Clone, Copy, Debug)]
 pub struct AcceptedTouch {

@@ -22,6 +22,7 @@ use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene};
 use crate::signals::{Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
@@ -61,6 +62,49 @@ fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
     }
 }
 
+/// Depth of straight wire in the core that is none, as a share of the wire's radius.
+const GRAZES: f64 = 1e-4;
+
+/// Angle of the core, rad, at which straight wire from the `clamp` (core frame, m) to the `nozzle` (m) passes the core: as near to
+/// `angle(0)` as can be. Wire that is clamped in a hollow leads over its edge. `angle` is that of a core turned back by so much.
+fn clear_angle(
+    scene: &Scene,
+    surface: &Surface,
+    (clamp, nozzle): (V3, V3),
+    angle: impl Fn(f64) -> f64,
+) -> f64 {
+    let radius = scene.wire.radius();
+    let is_clear = |back: f64| {
+        let nozzle = Spin::new(angle(back)).to_core(nozzle);
+        let along = (nozzle - clamp).normalize();
+        let spacing = 0.5 * scene.solver.spacing_near;
+        let looks = (2.0 * surface.radius_max() / spacing) as usize;
+        (1..=looks).all(|k| {
+            let place = clamp + along * (spacing * k as f64);
+            surface.nearest(place).distance > radius * (1.0 - GRAZES)
+        })
+    };
+    if is_clear(0.0) {
+        return angle(0.0);
+    }
+    let (mut deep, mut clear) = (0.0, 1e-3);
+    while !is_clear(clear) {
+        (deep, clear) = (clear, 2.0 * clear);
+        if clear > FRAC_PI_2 {
+            return angle(0.0);
+        }
+    }
+    for _ in 0..40 {
+        let middle = 0.5 * (deep + clear);
+        *(if is_clear(middle) {
+            &mut clear
+        } else {
+            &mut deep
+        }) = middle;
+    }
+    angle(clear)
+}
+
 /// Builds the system at rest, an empty coil and the core angle at the start.
 fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
     let surface = Arc::new(core_surface(&scene.core)?);
@@ -83,12 +127,18 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     // the core begins turned towards the nozzle, the way round on which its spindle lays wire
     let aside = libm::atan2(-nozzle.z, nozzle.x);
     let turned = crate::settings::Start::core_angle(half, radius, distance);
-    let angle0 = aside
-        + match inputs.spindle_speed < 0.0 {
-            true => -turned,
-            false => turned,
-        };
     let clamp_core = V3::new(half + radius, scene.start.clamp_y, 0.0);
+    let way_round = if inputs.spindle_speed < 0.0 {
+        -1.0
+    } else {
+        1.0
+    };
+    let angle0 = match &scene.core {
+        Core::Mesh { .. } => clear_angle(scene, &surface, (clamp_core, nozzle), |back| {
+            aside + way_round * (turned - back)
+        }),
+        _ => aside + way_round * turned,
+    };
     let clamp = Spin::new(angle0).to_lab(clamp_core);
     let points = line_of_nodes(scene, &surface, clamp, nozzle, angle0);
     let tension = inputs.tension_setpoint;

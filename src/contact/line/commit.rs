@@ -4,7 +4,7 @@ use super::line_contact::LineContact;
 use super::model::LineModel;
 use super::point::PointState;
 use super::state::LineState;
-use crate::contact::accepted_touch::{AcceptedTouch, TouchOwner, friction_of};
+use crate::contact::accepted_touch::{AcceptedTouch, OUTSIDE, TouchOwner, friction_of};
 use crate::contact::friction::across;
 use crate::contact::law::{NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
 use crate::contact::stencil::ContactPoint;
@@ -88,7 +88,7 @@ impl LineContact<'_> {
                 continue;
             }
             let began = !t.anchored;
-            let lands = began && -out >= t.depth;
+            let lands = began && t.depth + out <= OUTSIDE * onset;
             let pressed = NormalLaw::at(t.depth, onset);
             if lands {
                 self.state.loss.damping +=

@@ -1,7 +1,7 @@
 //! An iterate becomes accepted: friction limits, bristles, losses; and the energy that pairs store.
 
 use super::pairs::SelfContact;
-use crate::contact::accepted_touch::{AcceptedTouch, TouchOwner, friction_of};
+use crate::contact::accepted_touch::{AcceptedTouch, OUTSIDE, TouchOwner, friction_of};
 use crate::contact::friction::across;
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
 use crate::contact::stencil::{ContactPoint, NodeWeights};
@@ -44,7 +44,7 @@ impl SelfContact {
             let k_t = stiffness * TANGENTIAL_SHARE;
             let size = b.norm();
             let deeper = -way.dot(&n);
-            let lands = !pair.touched && deeper >= pair.depth;
+            let lands = !pair.touched && pair.depth - deeper <= OUTSIDE * onset;
             let spring = NormalLaw::at(pair.depth, onset);
             let (friction, surplus) = friction_of(&b, k_t, pair.limit.current, used[number]);
             accepted.push(AcceptedTouch {

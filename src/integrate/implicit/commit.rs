@@ -27,6 +27,7 @@ impl Implicit {
         let (x0, v0) = (&mut w.start, &mut w.guess);
         x0.clone_from(&sys.state.rod.x);
         v0.clone_from(&sys.state.rod.v);
+        let numerical = sys.state.balance.numerical;
         let kinetic = sys.kinetic();
         let momentum = sys.momentum_about_core();
         let before = (
@@ -136,6 +137,7 @@ impl Implicit {
                 mass: &w.mass,
                 star: &w.star[1],
                 force: &w.force,
+                numerical,
             };
             w.impacts.stop(sys, step, solved, before.0, self.tolerance);
         }

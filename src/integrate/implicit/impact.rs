@@ -2,8 +2,8 @@
 //!
 //! A blow lasts one or two microseconds, a step ten times as long or longer. The solve holds the wire at the surface; how fast it goes on
 //! would be left to the formula of time. So the accepted velocities are set: of every touch, the speed along its
-//! normal is 0, or what the landing gives back. The impulses that do so act along the forces of the touches, friction
-//! across the wire included, and none of them pulls.
+//! normal is 0, or what the landing gives back. The impulses that do so act along the normals, and none of them pulls.
+//! Friction comes with them, across the wire: it brakes a slide and never drives one.
 //!
 //! A touch that began within the step also rewrites the history of its nodes. After it, the formula of time has to see a wire
 //! that moved all the time as it does now, or it would take the fall for part of the motion.
@@ -17,9 +17,6 @@ use crate::system::{Spindle, System};
 
 /// Sweeps over the touches that are enough.
 const SWEEPS: usize = 50;
-/// Times by which impulses may raise the motion energy. Chosen: `verify shoulder_drop` comes to rest with less, a wedge
-/// brings a hundred times and more.
-const GIVEN: f64 = 10.0;
 /// Way in a step that no sweep has to mend, as a share of the tolerance.
 const UNSEEN: f64 = 0.01;
 
@@ -31,6 +28,30 @@ fn book(sys: &mut System, rubbed: f64, stopped: f64) {
         line.state.loss.friction += rubbed;
         line.state.loss.damping += stopped;
     }
+}
+
+/// What blows and friction took, J. They act at once, and which of them took a motion cannot be told; so where they take, none gives.
+fn apart(taken: [f64; 2]) -> [f64; 2] {
+    let most = (taken[0] + taken[1]).max(0.0);
+    match taken {
+        [blow, rubbed] if blow < 0.0 && rubbed > 0.0 => [blow + rubbed - most, most],
+        [blow, rubbed] if rubbed < 0.0 && blow > 0.0 => [most, blow + rubbed - most],
+        _ => taken,
+    }
+}
+
+/// Leaves out of what impulses took, J, the motion that the formula of time had `given` within the step, J.
+///
+/// A long step cannot tell the speed of wire that is held by tension and its touches. What its formula makes up, and the impulses take
+/// away again, is no blow.
+fn taken_back(sys: &mut System, given: f64, mut taken: [f64; 2]) -> [f64; 2] {
+    let mut back = given.min(taken.iter().sum());
+    for part in &mut taken {
+        let of_it = back.min(*part).max(0.0);
+        (*part, back) = (*part - of_it, back - of_it);
+        sys.state.balance.numerical += of_it;
+    }
+    taken
 }
 
 /// Impulses of touches, and what they are computed with.
@@ -95,7 +116,8 @@ impl Impacts {
             1
         };
         self.look(sys, old, solved.mass, parts);
-        self.list(&touches, &sys.state.past.q[0], step, restitution);
+        let [places, before, _] = &sys.state.past.q;
+        self.list(&touches, (places, before), step, restitution);
         if let Some(line) = sys.line_contact() {
             line.scratch.accepted = touches;
         }
@@ -103,19 +125,17 @@ impl Impacts {
             self.came
                 .in_landings(sys, step, (solved, old), (&self.impulses, &self.start[0]));
         sys.state.balance.numerical -= blow + rubbed;
-        book(sys, rubbed, blow);
+        let landed = [blow, rubbed];
         self.give_back_friction(sys, step, parts);
         let before = Carried::of(sys);
         let bound = UNSEEN * tolerance;
-        self.settle(step.h, bound, parts);
-        if self.gives_motion() {
-            // where wire is wedged, friction of one touch can press another, and that one the first, without end
-            self.forget_friction();
-            self.settle(step.h, bound, parts);
-        }
+        self.settle(step.h, bound, parts, restitution);
         self.take_over(sys, step, old, parts);
         let rubbed = self.rubbed();
         let stopped = -before.gained(sys) - rubbed;
+        let given = solved.numerical - sys.state.balance.numerical;
+        let taken = apart([landed[0] + stopped, landed[1] + rubbed]);
+        let [stopped, rubbed] = taken_back(sys, given, taken);
         book(sys, rubbed, stopped);
         if restitution > 0.0
             && let Some(line) = sys.line_contact()
@@ -127,47 +147,41 @@ impl Impacts {
         }
     }
 
-    /// Sweeps over the touches in a step of `h` (s), until no way changes by `unseen`, m.
-    fn settle(&mut self, h: f64, unseen: f64, parts: usize) {
-        let bounds = [unseen / h, unseen / h, unseen];
-        for (part, bound) in bounds.into_iter().enumerate().take(parts) {
-            for sweep in 0..SWEEPS {
-                if self.sweep(part, sweep % 2 == 1) < bound {
-                    break;
-                }
+    /// Impulses that stop what touches in a step of `h` (s), then those that let it rebound, and its history with them; until no way
+    /// changes by `unseen`, m.
+    fn settle(&mut self, h: f64, unseen: f64, parts: usize, restitution: f64) {
+        self.sweep_until(0, unseen / h);
+        if parts == 1 {
+            return;
+        }
+        if restitution > 0.0 {
+            let landings = self.impulses.iter_mut().filter(|i| i.touch.began);
+            landings.for_each(Impulse::rebound);
+            // (what a rebound is wrong by goes on over many steps)
+            self.sweep_until(0, 0.1 * unseen / h);
+            for landing in self.impulses.iter_mut().filter(|i| i.touch.began) {
+                landing.rebounds_at(landing.along_normal(&self.motion[0]), h);
+            }
+        }
+        self.sweep_until(1, unseen / h);
+        self.sweep_until(2, unseen);
+    }
+
+    /// Sweeps over the touches until none changes a part of the motion by more than `unseen`.
+    fn sweep_until(&mut self, part: usize, unseen: f64) {
+        for sweep in 0..SWEEPS {
+            if self.sweep(part, sweep % 2 == 1) < unseen {
+                break;
             }
         }
     }
 
-    /// Whether impulses brought more motion, as the core sees it, than landings give back.
-    fn gives_motion(&self) -> bool {
-        let energy = |motion: &[V3]| -> f64 {
-            let nodes = motion.iter().zip(&self.mobility).filter(|(_, m)| **m > 0.0);
-            nodes.map(|(v, m)| 0.5 * v.norm_squared() / m).sum()
-        };
-        let before = energy(&self.start[0]);
-        let back = |i: &Impulse| i.range[0][0] * i.range[0][0] / i.inverse;
-        let given_back: f64 = self.impulses.iter().map(back).sum();
-        energy(&self.motion[0]) > before * GIVEN + given_back
-    }
-
-    /// Goes back to the start, with impulses along the normals only. They are a projection, which never gives motion.
-    fn forget_friction(&mut self) {
-        for impulse in &mut self.impulses {
-            (impulse.along, impulse.added) = (impulse.touch.normal, [0.0; PARTS]);
-        }
-        for (start, motion) in self.start.iter().zip(&mut self.motion) {
-            motion.clone_from(start);
-        }
-    }
-
-    /// Work of friction in the impulses, J: each acts on the mean of the motion before and after.
+    /// Work of friction in the impulses, J: each acts last, on the mean of the motion without it and the motion after all.
     fn rubbed(&self) -> f64 {
         let of_touch = |impulse: &Impulse| {
-            let rubs = impulse.along - impulse.touch.normal;
-            let mean =
-                |(i, w): (usize, f64)| 0.5 * w * (self.motion[0][i] + self.start[0][i]).dot(&rubs);
-            -impulse.added[0] * impulse.nodes().map(mean).sum::<f64>()
+            let [rubbed, ..] = impulse.rubbed;
+            let alone = 0.5 * rubbed * impulse.inverse;
+            rubbed * (alone - impulse.along_friction(&self.motion[0]))
         };
         self.impulses.iter().map(of_touch).sum()
     }
@@ -197,11 +211,11 @@ impl Impacts {
         }
     }
 
-    /// Lists the touches; `places` are those of the nodes now, core frame, m.
+    /// Lists the touches; `places` are those of the nodes now and at the step's start, core frame, m.
     fn list(
         &mut self,
         touches: &[AcceptedTouch],
-        places: &[V3],
+        (places, before): (&[V3], &[V3]),
         step: &StepFormula,
         restitution: f64,
     ) {
@@ -211,12 +225,14 @@ impl Impacts {
             let Some(mut impulse) = Impulse::of(touch, step.gamma, &self.mobility, places) else {
                 continue;
             };
+            let way = impulse.along_friction(places) - impulse.along_friction(before);
+            impulse.slid = (2.0 * way / step.h).min(0.0);
             impulse.range[0] = [0.0, touch.rebound];
             if touch.began {
                 let approach = -impulse.along_normal(&self.motion[1]);
                 let speed = restitution * approach.max(0.0);
                 let there = impulse.along_normal(places) - step.h * speed;
-                impulse.range = [[speed; 2], [speed; 2], [there; 2]];
+                impulse.range = [[0.0; 2], [speed; 2], [there; 2]];
             } else if began {
                 for (part, motion) in self.motion.iter().enumerate().skip(1) {
                     impulse.range[part] = [impulse.along_normal(motion); 2];
@@ -251,7 +267,7 @@ impl Impacts {
         sys.state.balance.numerical -= before.gained(sys);
     }
 
-    /// Mends the speed, or place, of each touch in turn; returns the largest change along a normal.
+    /// Mends the speed, or place, of each touch in turn; returns the largest change.
     fn sweep(&mut self, part: usize, backwards: bool) -> f64 {
         let motion = &mut self.motion[part];
         let count = self.impulses.len();
@@ -259,23 +275,8 @@ impl Impacts {
         for k in 0..count {
             let k = if backwards { count - 1 - k } else { k };
             let impulse = &mut self.impulses[k];
-            let now = impulse.along_normal(motion);
-            let alone = now - impulse.added[part] * impulse.inverse;
-            let [low, high] = impulse.range[part];
-            let wanted = (alone.clamp(low, high) - alone) / impulse.inverse;
-            // a touch pushes: all that it gives along the normal is at least 0, and what the wire would have fallen
-            // since it began lies behind its surface
-            let allowed = match part {
-                0 => wanted.max(-impulse.given),
-                1 => wanted.max(0.0),
-                _ => wanted.min(0.0),
-            };
-            let change = allowed - impulse.added[part];
-            impulse.added[part] = allowed;
-            for (i, share) in impulse.shares() {
-                motion[i] += impulse.along * (share * change);
-            }
-            largest = largest.max((change * impulse.inverse).abs());
+            largest = largest.max(impulse.press(part, motion));
+            largest = largest.max(impulse.rub(part, motion));
         }
         largest
     }
@@ -298,7 +299,7 @@ impl Impacts {
         // the way of a touch that opened too fast stays; the speed that it would stand for does not
         for impulse in self.impulses.iter().filter(|i| !i.touch.began) {
             for (i, share) in impulse.shares() {
-                let speed = impulse.along * (share * impulse.added[0]);
+                let speed = impulse.sum(0) * share;
                 past.x[i] -= before.to_lab(speed * step.gamma);
             }
         }
@@ -309,6 +310,95 @@ impl Impacts {
                     past.x[i] -= before.to_lab(speed * step.gamma);
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{ContactPoint, TouchOwner};
+
+    /// Masses of the nodes, kg.
+    const MASS: f64 = 1e-6;
+
+    /// Five nodes of straight wire along x that move at `speed`, m/s, with touches of the middle one.
+    fn wedged(speed: V3, touches: &[AcceptedTouch]) -> Impacts {
+        let places: Vec<V3> = (0..5).map(|i| V3::x() * f64::from(i) * 1e-3).collect();
+        let motion: [Vec<V3>; PARTS] = std::array::from_fn(|_| vec![speed; 5]);
+        let mobility = vec![1.0 / MASS; 5];
+        let impulse = |touch: &AcceptedTouch| Impulse::of(touch, 1e-12, &mobility, &places);
+        Impacts {
+            impulses: touches.iter().filter_map(impulse).collect(),
+            start: motion.clone(),
+            motion,
+            mobility,
+            ..Impacts::default()
+        }
+    }
+
+    fn touch(normal: V3, friction: V3) -> AcceptedTouch {
+        AcceptedTouch {
+            point: ContactPoint::Node(2),
+            old: None,
+            normal,
+            force: normal + friction,
+            surplus: V3::zeros(),
+            began: false,
+            lands: false,
+            rebound: 0.0,
+            owner: TouchOwner::Point { point: 4, slot: 0 },
+        }
+    }
+
+    fn energy(motion: &[V3]) -> f64 {
+        motion.iter().map(|v| 0.5 * MASS * v.norm_squared()).sum()
+    }
+
+    /// Friction was a fixed share of each impulse, whichever way the wire slid. It pushed wire along, and out of the wedge.
+    #[test]
+    fn friction_in_a_wedge_gives_no_motion() {
+        for (opening, across, out) in [(0.05, -1.0, 1.0), (0.15, 1.0, 1.0), (0.6, 1.0, -1.0)] {
+            for speed in [V3::z(), -V3::z(), V3::y(), V3::new(0.3, -0.8, -0.5)] {
+                let below = V3::y();
+                let above = V3::new(0.0, -libm::cos(opening), -libm::sin(opening));
+                let along = V3::new(0.0, -above.z, above.y) * 0.8;
+                let touches = [
+                    touch(below, V3::z() * (0.8 * across)),
+                    touch(above, along * out),
+                ];
+                let mut impacts = wedged(speed, &touches);
+                impacts.settle(1e-5, 1e-12, 1, 0.5);
+                let [before, after] = [&impacts.start[0], &impacts.motion[0]].map(|v| energy(v));
+                assert!(
+                    after <= before * (1.0 + 1e-9),
+                    "{speed:?}, {opening}: {after:e} of {before:e} J"
+                );
+                let rubbed = impacts.rubbed();
+                assert!(
+                    rubbed >= 0.0 && rubbed <= before - after + 1e-9 * before,
+                    "{rubbed:e}"
+                );
+                let falls = impacts
+                    .impulses
+                    .iter()
+                    .any(|i| i.along_normal(&impacts.motion[0]) < -1e-2);
+                assert!(!falls, "{speed:?}, {opening}: into its touch");
+            }
+        }
+    }
+
+    /// Friction stops a slide that it can stop, and brakes another by its share of the blow.
+    #[test]
+    fn friction_of_a_blow_brakes_the_slide() {
+        for (slide, left) in [(-0.1, 0.0), (-2.0, -1.7)] {
+            let mut impacts = wedged(V3::new(0.0, -1.0, slide), &[touch(V3::y(), V3::z() * 0.3)]);
+            impacts.settle(1e-5, 1e-12, 1, 0.0);
+            let [impulse] = &impacts.impulses[..] else {
+                panic!("one touch")
+            };
+            let got = impulse.along_friction(&impacts.motion[0]);
+            assert!((got - left).abs() < 1e-9, "{slide}: {got}");
         }
     }
 }

@@ -17,16 +17,24 @@ pub(super) struct Impulse {
     shares: [f64; 6],
     /// how many they are
     pub(super) count: usize,
-    /// direction, whose part along the normal is 1
-    pub(super) along: V3,
+    /// direction of the touch's friction across the wire, or 0
+    pub(super) rubs: V3,
+    /// friction over normal force
+    pub(super) friction: f64,
+    /// speed along `rubs` at the end of a slide that begins at rest and goes evenly faster over the way of the step, not above 0, m/s
+    pub(super) slid: f64,
     /// what the solve gave along the normal, N s
     pub(super) given: f64,
     /// change of speed along the normal by an impulse there, 1/kg
     pub(super) inverse: f64,
+    /// largest impulse along the normal that makes it rebound, N s; what stops it may be more
+    pub(super) most: f64,
     /// least and largest speed, m/s, or place, m, along the normal
     pub(super) range: [[f64; 2]; PARTS],
-    /// the impulse added, N s, and N s^2 for the places
+    /// the impulse added along the normal, N s, and N s^2 for the places
     pub(super) added: [f64; PARTS],
+    /// that of friction, along `rubs`
+    pub(super) rubbed: [f64; PARTS],
 }
 
 impl Impulse {
@@ -62,18 +70,27 @@ impl Impulse {
             surplus: of_wire(touch.surplus),
             ..*touch
         };
-        let friction = touch.force - touch.normal * pressed;
+        let friction = of_wire(touch.force - touch.normal * pressed);
+        let size = friction.norm();
         (pressed > 0.0 && inverse > 0.0).then(|| Self {
             touch,
             nodes,
             weights,
             shares,
             count,
-            along: touch.normal + of_wire(friction) / pressed,
+            rubs: if size > 0.0 {
+                friction / size
+            } else {
+                friction
+            },
+            friction: size / pressed,
+            slid: 0.0,
             given: gamma * pressed,
             inverse,
+            most: f64::INFINITY,
             range: [[0.0; 2]; PARTS],
             added: [0.0; PARTS],
+            rubbed: [0.0; PARTS],
         })
     }
 
@@ -94,8 +111,88 @@ impl Impulse {
     /// What the touch sees of a motion of the nodes, along its normal.
     #[inline]
     pub(super) fn along_normal(&self, motion: &[V3]) -> f64 {
-        let normal = self.touch.normal;
-        let part = |(i, w): (usize, f64)| w * motion[i].dot(&normal);
+        self.part_of(motion, &self.touch.normal)
+    }
+
+    /// The same along its friction.
+    #[inline]
+    pub(super) fn along_friction(&self, motion: &[V3]) -> f64 {
+        self.part_of(motion, &self.rubs)
+    }
+
+    fn part_of(&self, motion: &[V3], along: &V3) -> f64 {
+        let part = |(i, w): (usize, f64)| w * motion[i].dot(along);
         self.nodes().map(part).sum()
+    }
+
+    /// All that was added to a part of the motion, N s or N s^2.
+    pub(super) fn sum(&self, part: usize) -> V3 {
+        self.touch.normal * self.added[part] + self.rubs * self.rubbed[part]
+    }
+
+    /// Adds impulses along the normal and of friction to a part of the motion.
+    fn add(&mut self, part: usize, along: f64, across: f64, motion: &mut [V3]) {
+        self.added[part] += along;
+        self.rubbed[part] += across;
+        let change = self.touch.normal * along + self.rubs * across;
+        for (i, share) in self.shares() {
+            motion[i] += change * share;
+        }
+    }
+
+    /// Brings the speed, or place, along the normal into its range; returns by how much it changes.
+    pub(super) fn press(&mut self, part: usize, motion: &mut [V3]) -> f64 {
+        let now = self.along_normal(motion);
+        let alone = now - self.added[part] * self.inverse;
+        let [low, high] = self.range[part];
+        let wanted = (alone.clamp(low, high) - alone) / self.inverse;
+        // a touch pushes: all that it gives along the normal is at least 0, and what the wire would have fallen
+        // since it began lies behind its surface
+        let allowed = match part {
+            0 => wanted
+                .min(self.most.max(-alone / self.inverse))
+                .max(-self.given),
+            1 => wanted.max(0.0),
+            _ => wanted.min(0.0),
+        };
+        let change = allowed - self.added[part];
+        self.add(part, change, 0.0, motion);
+        (change * self.inverse).abs()
+    }
+
+    /// Lets a landing rebound, which has been stopped: its touch gives back no more than it took to stop it.
+    pub(super) fn rebound(&mut self) {
+        self.most = self.added[0] + (self.given + self.added[0]);
+        self.range[0] = self.range[1];
+    }
+
+    /// Wire that something else had slowed down rebounds by less: the history becomes that of the speed `now`, m/s, after a step
+    /// of `h`, s.
+    pub(super) fn rebounds_at(&mut self, now: f64, h: f64) {
+        let [speed, _] = self.range[0];
+        let slower = now.clamp(0.0, speed);
+        self.range[0][1] = slower;
+        self.range[1] = [slower; 2];
+        self.range[2] = self.range[2].map(|there| there + h * (speed - slower));
+    }
+
+    /// Friction of what is added along the normal; returns by how much the speed changes.
+    ///
+    /// It brakes a slide, and no more than stops it. What is taken back of the solve's push takes its friction along, as long as
+    /// the slide is no faster than the way of the step explains. A place is where the slide that is left comes from.
+    pub(super) fn rub(&mut self, part: usize, motion: &mut [V3]) -> f64 {
+        let pressed = self.added[part];
+        let most = (pressed * self.friction).abs();
+        let until =
+            |speed: f64| self.rubbed[part] + (speed - self.along_friction(motion)) / self.inverse;
+        let allowed = match part {
+            2 if self.added[1] > 0.0 => pressed * self.rubbed[1] / self.added[1],
+            2 => 0.0,
+            _ if pressed < 0.0 => until(self.slid).clamp(-most, 0.0),
+            _ => until(0.0).clamp(-most, most),
+        };
+        let change = allowed - self.rubbed[part];
+        self.add(part, 0.0, change, motion);
+        (change * self.inverse).abs()
     }
 }

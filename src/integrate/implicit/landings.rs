@@ -25,6 +25,8 @@ pub(super) struct Solved<'a> {
     pub(super) star: &'a [V3],
     /// forces at the step's start, N
     pub(super) force: &'a [V3],
+    /// numerical losses up to the step's start, J
+    pub(super) numerical: f64,
 }
 
 /// Forces on each node that came within a step, core frame, N.
