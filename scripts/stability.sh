@@ -6,7 +6,9 @@
 #     scripts/stability.sh [COUNT [SEED [SAMPLE]]]     default: 10000 1 200
 #
 # Takes about half an hour on two cores, with progress. What breaks an invariant or makes the solver give up is kept, made
-# small, in target/stress/ (or under CARGO_TARGET_DIR). Exits with 1 if an invariant breaks, after writing the tables.
+# small, in target/stress/ (or under CARGO_TARGET_DIR). Run again after it was stopped, it takes over the part, all scenes or the
+# sample, that the same command had finished. Exits with 1 if an invariant breaks or a refined scene ends otherwise, after writing
+# the tables.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 
@@ -20,19 +22,32 @@ if [ -z "${COILWIND_COMMAND-}" ]; then
 fi
 out=$target/stress
 
-# Progress goes to the terminal, lines of scenes to the log.
-"$command" stress --count "$count" --seed "$seed" --threads 2 --out "$out" >"$out.log"
+# part OUT ARGUMENTS...: runs `stress`, with progress on the terminal and lines of scenes in OUT.log, unless OUT.done says that the
+# same command did. Returns 1 if an invariant broke.
+part() {
+    local out=$1 key code
+    shift
+    key="$(cksum <"$command") $seed $*"
+    if [ "$(sed -n 1p "$out.done" 2>/dev/null)" = "$key" ]; then
+        return "$(sed -n 2p "$out.done")"
+    fi
+    rm -f "$out.done"
+    "$command" stress "$@" --seed "$seed" --threads 2 --out "$out" >"$out.log"
+    code=$?
+    if [ "$code" -gt 1 ]; then
+        tail -n 1 "$out.log"
+        exit "$code"
+    fi
+    printf '%s\n' "$key" "$code" >"$out.done"
+    return "$code"
+}
+
+mkdir -p "$target"
+part "$out" --count "$count"
 status=$?
-if [ "$status" -gt 1 ]; then
-    tail -n 1 "$out.log"
-    exit "$status"
-fi
-"$command" stress --count "$sample" --seed "$seed" --threads 2 --no-shrink --refined \
-    --out "$out-refined" >"$out-refined.log"
-refined=$?
-if [ "$refined" -gt 1 ]; then
-    tail -n 1 "$out-refined.log"
-    exit "$refined"
+part "$out-refined" --count "$sample" --no-shrink --refined
+if grep -q REFINED "$out-refined.log"; then
+    status=1
 fi
 
 tables=docs/validation/tables
