@@ -165,6 +165,9 @@ impl Impacts {
         }
         self.sweep_until(1, unseen / h);
         self.sweep_until(2, unseen);
+        for impulse in &mut self.impulses {
+            impulse.shift(&mut self.motion[2]);
+        }
     }
 
     /// Sweeps over the touches until none changes a part of the motion by more than `unseen`.
@@ -276,7 +279,9 @@ impl Impacts {
             let k = if backwards { count - 1 - k } else { k };
             let impulse = &mut self.impulses[k];
             largest = largest.max(impulse.press(part, motion));
-            largest = largest.max(impulse.rub(part, motion));
+            if part < 2 {
+                largest = largest.max(impulse.rub(part, motion));
+            }
         }
         largest
     }

@@ -176,18 +176,26 @@ impl Impulse {
         self.range[2] = self.range[2].map(|there| there + h * (speed - slower));
     }
 
+    /// Shifts the place along the surface by the share that friction has in the speed there: to where the slide that is left comes from.
+    ///
+    /// The places along the normals are settled by then. In a wedge, each shift would press another touch, and that one the first.
+    pub(super) fn shift(&mut self, motion: &mut [V3]) {
+        if self.added[1] > 0.0 {
+            let shift = self.added[2] * self.rubbed[1] / self.added[1];
+            self.add(2, 0.0, shift, motion);
+        }
+    }
+
     /// Friction of what is added along the normal; returns by how much the speed changes.
     ///
     /// It brakes a slide, and no more than stops it. What is taken back of the solve's push takes its friction along, as long as
-    /// the slide is no faster than the way of the step explains. A place is where the slide that is left comes from.
+    /// the slide is no faster than the way of the step explains.
     pub(super) fn rub(&mut self, part: usize, motion: &mut [V3]) -> f64 {
         let pressed = self.added[part];
         let most = (pressed * self.friction).abs();
         let until =
             |speed: f64| self.rubbed[part] + (speed - self.along_friction(motion)) / self.inverse;
         let allowed = match part {
-            2 if self.added[1] > 0.0 => pressed * self.rubbed[1] / self.added[1],
-            2 => 0.0,
             _ if pressed < 0.0 => until(self.slid).clamp(-most, 0.0),
             _ => until(0.0).clamp(-most, most),
         };
