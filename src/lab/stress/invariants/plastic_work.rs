@@ -66,13 +66,18 @@ impl PlasticWork {
             ("stretch", laws.stretch, inner, 2),
         ];
         for (name, law, count, kind) in kinds {
-            let mut least = 0.0;
+            let (mut least, mut grain) = (0.0, 0.0);
             for i in 0..count {
                 let (was, is) = (set(&before.rod, kind, i), set(&self.rod, kind, i));
                 let length = match kind {
                     2 => self.rod.rest[i],
                     _ => self.rod.voronoi(i),
                 };
+                if law.hardening > 0.0 {
+                    // (a rise is told from the one before to the rounding of the limit)
+                    let limit = law.limit + is.rise;
+                    grain += length * limit * (4.0 * f64::EPSILON * limit / law.hardening);
+                }
                 least += length
                     * work(&law, was, is).map_err(|text| {
                         Broken::new(Invariant::PlasticWork, format!("{name} at {i} {text}"))
@@ -81,7 +86,7 @@ impl PlasticWork {
             let booked = self.booked[kind] - before.booked[kind];
             let over = (least - booked) / booked.max(least).max(f64::MIN_POSITIVE);
             m.plastic = m.plastic.max(over);
-            let rounding = 1e-12 * self.booked[kind];
+            let rounding = 1e-12 * self.booked[kind] + grain;
             if least - booked > OFF * least + rounding {
                 let text = format!("{name}: {booked:.6e} J booked, {least:.6e} J by its hardening");
                 return Err(Broken::new(Invariant::PlasticWork, text));
