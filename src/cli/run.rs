@@ -245,7 +245,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     if let Drive::Signals { held, .. } = &drive {
         simulation.set_start(*held).map_err(start_failure)?;
     }
-    simulation.step_beyond(scene.solver.features.steps_beyond);
+    simulation.step_beyond(reaches_beyond(&motion, &scene));
     let directory = args.directory(&settings);
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
     folder::prepare(&directory, args.force)?;
@@ -262,6 +262,15 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     })
 }
 
+/// Whether steps may reach beyond the points or rows of this motion.
+fn reaches_beyond(motion: &Motion, scene: &Scene) -> bool {
+    let features = scene.solver.features;
+    match motion.inputs {
+        Some(_) => features.steps_beyond,
+        None => features.rows_between,
+    }
+}
+
 /// The run of a folder, where its last checkpoint was written.
 fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let refuse = |reason: String| Failure::Resume {
@@ -275,7 +284,7 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let (scene, _): (Scene, _) = plan.settings.build_with_warnings()?;
     let mut simulation = Simulation::from_bytes(&scene, &checkpoint.state)
         .map_err(|error| refuse(format!("{error}; begin again with --force")))?;
-    simulation.step_beyond(scene.solver.features.steps_beyond);
+    simulation.step_beyond(reaches_beyond(&plan.motion, &scene));
     let mut drive = Drive::new(&plan.motion, &scene, &simulation)?;
     if !drive.go_on(checkpoint.place) {
         return Err(refuse(

@@ -25,7 +25,7 @@ pub(super) fn wind(
         Err(reason) => Row::failed_to_start(member, &reason),
         Ok(mut simulation) => {
             simulation.stop_on(Arc::clone(stop));
-            simulation.step_beyond(scene.solver.features.steps_beyond);
+            simulation.step_beyond(scene.solver.features.rows_between);
             let motion = Motion {
                 inputs: None,
                 stop_time: None,

@@ -358,6 +358,7 @@ impl SceneSettings {
                 inertia: true,
                 coarse_settled: false,
                 steps_beyond: false,
+                rows_between: false,
             },
         }
     }

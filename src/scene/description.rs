@@ -218,6 +218,8 @@ pub struct Features {
     pub coarse_settled: bool,
     /// steps may reach beyond communication points
     pub steps_beyond: bool,
+    /// steps along the scene's own motion may reach beyond the rows of its history
+    pub rows_between: bool,
 }
 
 /// Since when live wire is looked for near live wire.

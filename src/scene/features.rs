@@ -194,6 +194,9 @@ impl SceneSettings {
             ],
         );
         scene.solver.features.steps_beyond = beyond && free;
+        // rows cost little where the motion is slow, and steps that end there show the tension's ringing
+        scene.solver.features.rows_between =
+            free && switch(&self.solver.steps_beyond) == Switch::On;
         scene.solver.features.coarse_settled = decisions.decide(
             "solver.coarse_settled",
             settled,

@@ -168,7 +168,7 @@ pub struct SolverSettings {
     pub coarse_span: String,
     /// coarser spacing of settled live wire; auto: with the implicit method (one of `auto`, `on`, `off`)
     pub coarse_settled: String,
-    /// steps that reach beyond a communication point while inputs go on as they did; auto: where the method finds its own steps (one of `auto`, `on`, `off`)
+    /// steps that reach beyond a communication point while inputs go on as they did; auto: where the method finds its own steps; on: beyond rows of a run of the scene's own motion too (one of `auto`, `on`, `off`)
     pub steps_beyond: String,
 }
 

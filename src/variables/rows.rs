@@ -423,7 +423,7 @@ table! {
     text(1911, "solver.inertia", (solver.inertia), ["auto", "on", "off"], "mass of the wire; auto: on; off: the wire goes through states of rest");
     text(1912, "solver.coarse_span", (solver.coarse_span), ["auto", "on", "off"], "coarser spacing in the free span; auto: where solver.spacing_free is more than solver.spacing_near");
     text(1913, "solver.coarse_settled", (solver.coarse_settled), ["auto", "on", "off"], "coarser spacing of settled live wire; auto: with the implicit method");
-    text(1920, "solver.steps_beyond", (solver.steps_beyond), ["auto", "on", "off"], "steps that reach beyond a communication point while inputs go on as they did; auto: where the method finds its own steps");
+    text(1920, "solver.steps_beyond", (solver.steps_beyond), ["auto", "on", "off"], "steps that reach beyond a communication point while inputs go on as they did; auto: where the method finds its own steps; on: beyond rows of a run of the scene's own motion too");
 
     switch(2000, "freeze.enabled", freeze.enabled, "false keeps all wire in the computation");
     fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");
