@@ -117,7 +117,7 @@ fn bad_input_exits_with_two() {
         ),
         (
             &["run", "fig8", "--set", "solver.tolerance=0.1"],
-            "1e-9 to 0.001 m",
+            "0 to 0.001 m",
         ),
         (
             &["run", "fig8", "--set", "solver.spacing_near_mm=100"],
