@@ -10,6 +10,8 @@ use coilwind::simulation::Simulation;
 
 /// Bulge may differ by this, m rms: a twentieth of what the verdict hangs on.
 const SAME_BULGE: f64 = 25e-6;
+/// The gap of a whole turn may differ by this, m rms: a seventh of the gap that is a defect.
+const SAME_GAP: f64 = 15e-6;
 const TURNS: &str = "2.5";
 /// Stations that both runs must have: turns 2 and the half after it, less what is off the core at the end.
 const STATIONS: usize = 400;
@@ -54,7 +56,17 @@ fn same_with_and_without(speed: &str) -> Verdict {
     );
     assert!(stations > STATIONS, "{stations} stations");
     assert!(off < SAME_BULGE, "{off} m");
-    assert_eq!(with.verdict(), without.verdict());
+    for (a, b) in with.turns().iter().zip(without.turns().iter()) {
+        let whole = a.settled == 1.0 && b.settled == 1.0;
+        if let (true, Some(a), Some(b)) = (whole, a.gap_rms, b.gap_rms) {
+            assert!((a - b).abs() < SAME_GAP, "{a} and {b} m");
+        }
+    }
+    // (the gap of turn 2 lies at the limit between these two, which the same coil may pass either way)
+    let plain = |verdict: Verdict| matches!(verdict, Verdict::Aligned | Verdict::Marginal);
+    if !(plain(with.verdict()) && plain(without.verdict())) {
+        assert_eq!(with.verdict(), without.verdict());
+    }
     with.verdict()
 }
 

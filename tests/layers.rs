@@ -126,7 +126,7 @@ fn the_nozzle_is_where_its_law_says_however_long_the_steps_are() {
 fn a_coil_that_grows_into_the_nozzle_ends_the_winding() {
     let text = "[core]\nshape = 'cylinder'\nradius_mm = 3\n[core.flange]\ninner_distance_mm = 1.5\nheight_mm = 1\n\
                 [nozzle]\ndistance_mm = 5.6\ny_start_mm = -0.4\n[start]\nclamp_y_mm = -0.4\n\
-                [spindle]\nspeed = 100\nturns = 22\n[traverse]\nper_turn_mm = 0\n[solver]\ntolerance_um = 5\n";
+                [spindle]\nspeed = 100\nturns = 22\n[traverse]\nper_turn_mm = 0\n[solver]\ntolerance_um = 2\n";
     let mut sim = started(text);
     let end = sim.motion_profile().end();
     sim.advance_profile(end).expect("the machine goes on");

@@ -29,7 +29,7 @@ fn motion_of_a_scene_as_inputs() {
         "--set",
         "spindle.turns=1.3",
         "--set",
-        "solver.tolerance_um=20",
+        "solver.tolerance_um=5",
     ];
     let csv = path("motion.csv");
     let motion = ["motion", "bobbin", "--step", "1e-3", "--out", &csv];
