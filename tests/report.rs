@@ -108,10 +108,12 @@ fn the_page_holds_the_numbers_of_the_run() {
     let frames = run["frames"].as_array().unwrap();
     assert_eq!(frames.len(), 4);
     let kept: Vec<u64> = frames.iter().map(|f| f["keep"].as_u64().unwrap()).collect();
+    // (how far a frame is kept hangs on a bound that wire may pass and pass back by moving a little later)
     assert!(
-        kept.is_sorted() && kept[3] as usize == node_arc.len(),
+        kept[0] < kept[3] && kept[3] as usize == node_arc.len(),
         "{kept:?}"
     );
+    assert!(kept.iter().all(|k| *k <= kept[3]), "{kept:?}");
     assert!(frames[0]["time"].as_f64() < frames[3]["time"].as_f64());
 
     // Made again it is the same page.
