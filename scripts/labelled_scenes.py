@@ -99,6 +99,10 @@ RADIUS = 5.0
 """Of the cylinder."""
 FLANGE = (3.0, 1.0)
 """Height and thickness of a flange."""
+AHEAD = -7.0
+"""Degrees by which a far nozzle is ahead of the angle by which the free span trails.
+
+Coils of one to four layers have no gap from -12 to +2 on the box (at +5 turns beside a flange stand off), and on the cylinder from -7 to +2."""
 FAR, NEAR = 25.0, 1.5
 """Nozzle from the axis, and over the flanges where it shall guide the wire over the turns below."""
 PULL = 2.5
@@ -172,9 +176,8 @@ def base(core, layers, speed, turns=TURNS, tension=15.0, near=False):
                  "core.flange.thickness_mm": FLANGE[1], "core.flange.edge_radius_mm": 0.3}
     start = -(inner - D) / 2
     distance = reach(core) + FLANGE[0] + NEAR if near else FAR
-    # Wire trails by the angle of the free span, and a little more.
     trails = math.degrees(math.acos((min(BOX[0] / 2, RADIUS) + D / 2) / distance))
-    advance = trails + (15 if near else 60 if core.endswith("box") else 5)
+    advance = trails + (15 if near else AHEAD)
     keys |= {"nozzle.distance_mm": distance, "nozzle.y_start_mm": start, "start.clamp_y_mm": start,
              "tensioner.tension": tension, "spindle.speed": speed, "traverse.mode": "orthocyclic",
              "traverse.crossover_deg": 360 * CROSSOVER, "traverse.advance_deg": advance,
@@ -214,9 +217,8 @@ def by_table(keys, turns, planned=None):
 
 # ---- kinds of scenes
 
-def nominal(core, layers, speed, **keys_too):
+def nominal(core, layers, speed):
     keys, mesh = base(core, layers, speed)
-    keys |= keys_too
     return Scene(f"nominal-{slug(core)}-{layers}-{speed:g}", "as planned", core, layers, speed, keys, mesh=mesh)
 
 
@@ -374,8 +376,7 @@ def runaway(speed, tension):
 SCENES = [
     *[nominal("cylinder", layers, speed) for layers in (1, 2, 3, 4) for speed in (100.0, 300.0)],
     nominal("cylinder", 2, 500.0),
-    *[nominal("box", layers, 100.0) for layers in (1, 2, 3)],
-    nominal("box", 4, 100.0, **{"tensioner.tension": 12.0, "traverse.advance_deg": 160.0}),
+    *[nominal("box", layers, 100.0) for layers in (1, 2, 3, 4)],
     nominal("box", 1, 300.0),
     nominal("box", 2, 300.0),
     *[nominal("mesh cylinder", layers, 100.0) for layers in (1, 3)],
