@@ -163,6 +163,28 @@ fn a_coil_that_grows_into_the_nozzle_ends_the_winding() {
     );
 }
 
+/// Wire that came round while a single edge had frozen at the clamp went 0.26 diameters into it, and got energy from nowhere when the next
+/// edges froze: a fifteenth of what the run dissipated.
+#[test]
+fn wire_that_comes_round_to_a_lone_frozen_edge_touches_it() {
+    for start in ["-0.38", "-0.33"] {
+        let text = format!(
+            "[core]\nshape = 'cylinder'\nradius_mm = 3\n[core.flange]\ninner_distance_mm = 1.5\nheight_mm = 1\n\
+             [nozzle]\ndistance_mm = 5.6\ny_start_mm = {start}\n[start]\nclamp_y_mm = -0.4\n\
+             [spindle]\nspeed = 100\nturns = 1.3\n[traverse]\nper_turn_mm = 0\n"
+        );
+        let mut sim = started(&text);
+        let end = sim.motion_profile().end();
+        sim.advance_profile(end).expect("the machine goes on");
+        let summary = sim.summary();
+        let depth = summary.penetration.largest_over_d;
+        assert!(depth < 0.02, "{depth} diameters deep from {start} mm");
+        let energy = summary.energy;
+        let lost = energy.numerical_J.abs() + energy.remeshing_J.abs();
+        assert!(lost < 1e-3, "{energy:?} from {start} mm");
+    }
+}
+
 /// Where a coil was higher than the region in which wire may freeze, its outer layers stayed in the computation for good.
 #[test]
 fn wire_freezes_on_a_coil_of_any_height() {

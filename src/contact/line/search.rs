@@ -174,7 +174,7 @@ impl LineContact<'_> {
             (core_room + skin).clamp(skin, 4.0 * skin)
         };
         self.scratch.found.clear();
-        if self.scratch.tube.len() > 1 && above <= skin {
+        if above <= skin {
             self.scratch
                 .tube
                 .gather(p, wire + reach, own, &mut self.scratch.found);
