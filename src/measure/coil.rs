@@ -15,8 +15,8 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-/// Last part of a pass, in which its wire may climb to the next layer, rad: a quarter of a turn. Crossovers take a
-/// twelfth to a sixth of a turn, and wire lands face by face.
+/// Last part of a pass, in which its wire may climb to the next layer, and first part of a row, in which it may still do so, rad:
+/// a quarter of a turn. Crossovers take a twelfth to a sixth of a turn, and wire lands face by face.
 pub(crate) const STEP_UP: f64 = 0.25 * TAU;
 
 /// A station is taken this far before its angle, rad: rounding may leave the clamp's own node a hair before its own angle.

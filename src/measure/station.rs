@@ -29,8 +29,8 @@ pub struct Station {
     pub time: f64,
     /// distance of the centreline from the core minus the radius, m
     pub height: f64,
-    /// how far the wire could drop before it lay on what it was laid over: wire of earlier passes below it, else
-    /// the core, m
+    /// how far the wire could drop before it lay on what it was laid over: wire of earlier rows below it, or the climb to
+    /// its own row, else the core, m
     pub bulge: f64,
     /// `bulge` minus the quasi-static height at this angle, which is 0 over wire, m; `None` without a profile
     pub bulge_excess: Option<f64>,

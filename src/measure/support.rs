@@ -1,6 +1,7 @@
-//! What a wire was laid over: the core, or wire of earlier rows below it.
+//! What a wire was laid over: the core, wire of earlier rows below it, or the climb to its own row.
 
-use super::coil::{Coil, Record};
+use super::STATIONS_PER_TURN;
+use super::coil::{Coil, Record, STEP_UP};
 use super::passes::Pass;
 use super::row::{Row, RowPlace};
 
@@ -62,7 +63,8 @@ impl Coil {
     }
 
     /// What lies below wire at `y` (m) and `height` over the core (m) among the stations of one polar angle. Only
-    /// rows before number `row` carry it; on others it has climbed.
+    /// rows before number `row` carry it, and the first part of this row where it climbed, which the turn after crosses. On other
+    /// wire it has climbed.
     ///
     /// Down is the direction of the wire's height: what lies beside the wire does not carry it.
     fn support(&self, row: u32, bucket: (usize, i64), y: f64, height: f64) -> Support {
@@ -87,6 +89,9 @@ impl Coil {
                 next = *beneath;
                 let (aside, rise) = ((y - lower.position.y).abs() / d, height - lower.height);
                 let earlier = of.number < row;
+                let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
+                let climbing = of.number > 1 && lower.angle < of.from + STEP_UP;
+                let carries = earlier || (one_turn_back && climbing);
                 if !earlier && aside <= BELOW && rise > 0.0 {
                     support.own_row = Some(support.own_row.unwrap_or(0.0).max(rise));
                 }
@@ -94,13 +99,11 @@ impl Coil {
                 if aside <= BELOW && rise > 0.0 {
                     support.highest = support.highest.max(level);
                 }
-                if aside > if earlier { BELOW } else { CLIMBED } {
-                    continue;
-                }
-                if rise >= NEXT_LAYER * d {
+                let below = aside <= if earlier { BELOW } else { CLIMBED };
+                if below && rise >= NEXT_LAYER * d {
                     support.layer = support.layer.max(lower.layer + 1);
                 }
-                if earlier && level > support.level {
+                if carries && aside <= BELOW && level > support.level {
                     support.level = level;
                     support.is_wire = true;
                     support.row = Some(of.number);

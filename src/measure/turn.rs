@@ -42,7 +42,7 @@ pub enum Verdict {
     EarlyJump,
     /// leaves a groove of the layer below empty beside it
     SkippedGroove,
-    /// rides on its neighbour, or has changed places with it, at any station
+    /// rides on its neighbour, or has changed places with it, over a run of stations
     Overlap,
     /// stands on turns of its own row
     DoubleTurn,
@@ -286,7 +286,7 @@ impl GapSums {
             && turn.gap_rms.is_none_or(|rms| rms < ALIGNED_RMS * d);
         if turn.stations == 0 {
             Verdict::Unsettled
-        } else if turn.overlap_max > 0.0 {
+        } else if has[DefectKind::Overlap as usize] {
             Verdict::Overlap
         } else if has[DefectKind::Gap as usize] {
             Verdict::Gap

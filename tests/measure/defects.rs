@@ -124,6 +124,30 @@ fn wire_riding_up_overlaps_and_is_in_the_second_layer() {
     assert_eq!(beside.layer, 1);
 }
 
+/// One station made the verdict, and eight the flag: wire that leans on its neighbour for seven degrees was an `overlap` without a
+/// defect.
+#[test]
+fn a_verdict_of_overlap_wants_as_long_a_run_as_the_flag() {
+    let leaning = |stations: f64| {
+        let place = move |angle: f64| match angle - TAU {
+            within if within < 0.0 => (0.0, 0.0),
+            within if (2.0..2.0 + stations * STATION_STEP).contains(&within) => {
+                (0.85 * D, 0.53 * D)
+            }
+            _ => (1.02 * D, 0.0),
+        };
+        wound(spec(), &on_cylinder(2.0, 1.0, place))
+    };
+    let brief = leaning(5.0);
+    assert!(brief.turns()[1].overlap_max > 0.1 * D);
+    assert!(!brief.flags().overlap);
+    assert_eq!(brief.turns()[1].verdict, Verdict::Aligned);
+    assert_eq!(brief.verdict(), Verdict::Aligned);
+    let long = leaning(12.0);
+    assert!(long.flags().overlap);
+    assert_eq!(long.turns()[1].verdict, Verdict::Overlap);
+}
+
 #[test]
 fn a_second_layer_after_the_traverse_turned_back_is_no_defect() {
     // Three turns out, then turns in the valleys above on the way back.

@@ -1,7 +1,9 @@
 //! Coils of several layers, made on paper: where a layer is one, where a neighbour is one, and what lies below.
 
 use crate::coils::{D, on_cylinder, spec, wound};
-use coilwind::measure::{Coil, DefectFlags, DefectKind, STATIONS_PER_TURN, SettledNode, Verdict};
+use coilwind::measure::{
+    Coil, DefectFlags, DefectKind, STATIONS_PER_TURN, SettledNode, Station, Verdict,
+};
 use std::f64::consts::TAU;
 
 /// Turns of a layer of the coils here.
@@ -92,7 +94,7 @@ fn going_back_by_two_pitches_once_is_no_gap() {
     coil.begin_pass(3.0 * TAU, -1.0);
     coil.begin_pass(5.0 * TAU, 1.0);
     assert!(!coil.flags().gap, "{:?}", coil.defects());
-    let without = |s: &&coilwind::measure::Station| s.neighbour.is_none();
+    let without = |s: &&Station| s.neighbour.is_none();
     // The first turn of each of three rows, which begin up to half a wire's way after the nozzle has turned.
     let count = coil.stations().filter(without).count();
     assert!(
@@ -149,4 +151,42 @@ fn the_step_to_the_next_layer_is_no_overlap() {
     let defects = early.defects();
     let overlap = defects.iter().any(|d| d.kind == DefectKind::Overlap);
     assert!(overlap, "{defects:?}");
+}
+
+/// A second layer the second turn of which lies on the climb of the first beside the flange, up to this turn of the wire, then in
+/// its groove.
+fn crossing_the_climb(until: f64) -> Coil {
+    let place = |angle: f64| {
+        let (y, height) = orthocyclic(angle);
+        if !(TURNS + 0.9..until).contains(&(angle / TAU)) {
+            return (y, height);
+        }
+        let (before, below) = orthocyclic(angle - TAU);
+        let aside = y - before;
+        (
+            y.max(before - 0.7 * D),
+            below + (D * D - aside * aside).max(0.51 * D * D).sqrt(),
+        )
+    };
+    let mut coil = wound(spec(), &on_cylinder(2.0 * TURNS - 0.15, 1.0, place));
+    coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    coil
+}
+
+/// Wire crosses the place where its row began to climb. The part before the row's first station was what it was laid over, the
+/// part after it was a neighbour that it rode up on.
+#[test]
+fn crossing_the_climb_beside_the_flange_was_an_overlap() {
+    let crossing = crossing_the_climb(TURNS + 1.1);
+    let stands =
+        |s: &&Station| s.height > 1.5 * D && s.neighbour.is_some_and(|n| n.axial < 0.9 * D);
+    let count = crossing.stations().filter(stands).count();
+    assert!(count > 30, "it stands on its neighbour: {count}");
+    assert!(!crossing.flags().overlap, "{:?}", crossing.defects());
+    assert_eq!(crossing.turns()[5].verdict, Verdict::Single);
+    assert_eq!(crossing.turns()[6].verdict, Verdict::Marginal);
+    // Wire that does not come down from there rides on its neighbour.
+    let riding = crossing_the_climb(TURNS + 1.4);
+    assert!(riding.flags().overlap, "{:?}", riding.defects());
+    assert_eq!(riding.turns()[6].verdict, Verdict::Overlap);
 }
