@@ -37,19 +37,33 @@ fn a_split_at_the_nozzle_is_no_work_of_the_spindle() {
     );
 }
 
+/// Hardening in pieces books the plastic work of every piece.
+#[test]
+fn wire_that_hardens_along_points_keeps_the_balance() {
+    let text = "[wire]\nstress_strain = [[0.0008, 92e6], [0.02, 115e6], [0.08, 160e6], [0.16, 190e6]]\n\
+                [spindle]\nspeed = 100\nturns = 1.5\n[solver]\ntolerance_um = 5\n";
+    let energy = wound(text).summary().energy;
+    assert!(energy.plastic_J > 0.05, "{energy:?}");
+    assert!(energy.numerical_over_dissipated.abs() < 0.01, "{energy:?}");
+}
+
+/// The scene of this text, wound to its end in one communication step: only the error bounds the steps.
+fn wound(text: &str) -> Simulation {
+    let settings =
+        SceneSettings::from_toml_str(text, "wound.toml", std::path::Path::new("")).expect("reads");
+    let mut sim = Simulation::new(&settings.build().expect("a scene")).expect("starts");
+    let end = sim.motion_profile().end();
+    sim.advance_profile(end).expect("the run goes on");
+    sim
+}
+
 /// Wire that is laid under tension comes with the pull that balances its touch, and nothing is stopped. Booked as blows, by speeds
 /// that a long step does not resolve, landings gave back 5 % of the dissipation, and as much was numerical.
 #[test]
 fn wire_laid_under_tension_takes_no_blow() {
     let text = "[core]\nshape = 'cylinder'\nradius_mm = 6\n[nozzle]\ndistance_mm = 25\n[tensioner]\ntension = 20\n\
                 [spindle]\nspeed = 100\nturns = 5\n[solver]\ntolerance_um = 5\n";
-    let settings =
-        SceneSettings::from_toml_str(text, "laid.toml", std::path::Path::new("")).expect("reads");
-    let mut sim = Simulation::new(&settings.build().expect("a scene")).expect("starts");
-    let end = sim.motion_profile().end();
-    // (in one communication step: only the error bounds the steps)
-    sim.advance_profile(end).expect("the run goes on");
-    let energy = sim.summary().energy;
+    let energy = wound(text).summary().energy;
     let dissipated = energy.plastic_J + energy.friction_J + energy.damping_J;
     assert!(
         (0.0..0.02 * dissipated).contains(&energy.damping_J),

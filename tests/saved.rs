@@ -83,6 +83,26 @@ fn a_wind_goes_on_from_anywhere() {
 }
 
 #[test]
+fn wire_that_hardens_along_points_goes_on() {
+    let machine = Machine {
+        speed: 200.0,
+        step: 1e-4,
+        steps: 400,
+    };
+    let points = "[[0.0008, 92e6], [0.02, 115e6], [0.08, 160e6], [0.16, 190e6]]";
+    let scene = fig8(&[
+        ("wire.material", "copper"),
+        ("wire.yield_stress", "0"),
+        ("wire.stress_strain", points),
+    ]);
+    assert!(scene.wire.hardening.bend.is_some());
+    let sim = goes_on(&scene, &machine, 15);
+    let rod = &sim.system().state.rod;
+    let yielded = rod.bend.iter().filter(|bend| bend.rise > 0.0).count();
+    assert!(yielded > 10, "{yielded}");
+}
+
+#[test]
 fn without_twist_and_with_all_of_it() {
     for twist in ["off", "dynamic"] {
         let machine = Machine {

@@ -3,7 +3,7 @@
 use coilwind::integrate::{Implicit, Scheme};
 use coilwind::lab::statics::{Limits, ramp};
 use coilwind::math::{V3, frame_along};
-use coilwind::rod::{Rod, Section, Twist};
+use coilwind::rod::{Hardening, Rod, Section, Twist};
 use coilwind::system::{Support, System};
 
 /// A clamped wire that runs askew to all axes; it carries no twist.
@@ -24,6 +24,7 @@ fn cantilever() -> System {
         t_y: f64::INFINITY,
         moment_cap: f64::INFINITY,
         strength: f64::INFINITY,
+        hardening: Hardening::default(),
     };
     let along = V3::new(0.8, 0.36, 0.48);
     let points: Vec<V3> = (0..=30).map(|i| along * (1e-3 * f64::from(i))).collect();

@@ -5,7 +5,7 @@ use coilwind::lab::statics::{Limits, ramp};
 use coilwind::math::{Quat, V3};
 use coilwind::math::{frame_along, rotate};
 use coilwind::rod::Twist;
-use coilwind::rod::{Joint, Rod, Section};
+use coilwind::rod::{Hardening, Joint, Rod, Section};
 use coilwind::system::{Support, System};
 
 /// The paper's wire; elastic but for torsion, which yields at `t_y`.
@@ -27,6 +27,7 @@ fn section(t_y: f64) -> Section {
         t_y,
         moment_cap: open,
         strength: open,
+        hardening: Hardening::default(),
     }
 }
 

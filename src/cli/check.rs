@@ -47,7 +47,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
     };
     let percent = |law: Bilinear| 100.0 * law.error;
     print(&format!(
-        "bilinear laws of the section: yield at {:.4} N, {:.4} N.mm, torque {:.4} N.mm; off the exact ones by up to {:.1} %, {:.1} %, {:.1} % of the last load\n",
+        "laws of the section: yield at {:.4} N, {:.4} N.mm, torque {:.4} N.mm; off the exact ones by up to {:.1} %, {:.1} %, {:.1} %\n",
         wire.n_y,
         1e3 * wire.m_y,
         1e3 * wire.t_y,

@@ -1,10 +1,12 @@
-//! From points of a stress-strain curve to bilinear laws of a round section.
+//! From points of a stress-strain curve to laws of a round section.
 //!
 //! The section is integrated exactly: plane sections stay plane, each fibre follows the curve, and torsion shears it by the
-//! von Mises rule. The mechanics know bilinear laws, so each exact law is replaced by one with the same elastic stiffness
+//! von Mises rule. Each exact law is replaced by a bilinear one with the same elastic stiffness
 //! and the same work up to the last point. In tension it yields where the curve does, in bending and torsion, where a section
-//! yields bit by bit, it ends at the exact load.
+//! yields bit by bit, it ends at the exact load. Bending and torsion can also follow the exact law in straight pieces.
 
+use super::pieces::Pieces;
+use super::section::Hardening;
 use std::f64::consts::PI;
 
 /// Nominal stress over nominal strain, straight from the origin to the first point, and straight between points.
@@ -42,7 +44,8 @@ pub struct Bilinear {
     pub limit: f64,
     /// stiffness beyond it
     pub tangent: f64,
-    /// largest difference to the exact law up to the last point, over the load there
+    /// largest difference to the exact law up to the last point, over the load there; where the section follows pieces that of
+    /// those, over the load at the same place
     pub error: f64,
 }
 
@@ -57,6 +60,18 @@ pub struct RoundLaws {
     pub twist: Bilinear,
     /// moment of a section in which every fibre has the last stress, N m
     pub moment_cap: f64,
+    /// pieces that bending and torsion follow in place of their bilinear laws, which give the elastic stiffness, the limit and a
+    /// mean tangent
+    pub hardening: Hardening,
+}
+
+/// Which laws of a section follow the exact one in pieces; the others are bilinear.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct InPieces {
+    /// moment over curvature
+    pub bend: bool,
+    /// torque over twist
+    pub twist: bool,
 }
 
 /// Places at which a fit is compared with the exact law. Chosen: kinks lie at a handful of places.
@@ -119,7 +134,7 @@ impl FlowCurve {
     }
 
     /// Laws of a round section of this radius, m, with this shear modulus, Pa.
-    pub fn round(&self, radius: f64, shear_modulus: f64) -> RoundLaws {
+    pub fn round(&self, radius: f64, shear_modulus: f64, in_pieces: InPieces) -> RoundLaws {
         let [strain, stress] = self.last();
         let modulus = self.modulus();
         let (square, cube) = (radius * radius, radius * radius * radius);
@@ -131,21 +146,27 @@ impl FlowCurve {
             |e| area * self.stress(e),
             area * self.work(strain),
         );
-        let bend = fit(
+        let (bend, bend_pieces) = law(
+            in_pieces.bend,
             modulus * 0.25 * area * square,
-            strain / radius,
+            [self.points[0][0] / radius, strain / radius],
             |curvature| 4.0 * cube * self.mean(curvature * radius, BENT),
             4.0 * square * self.mean_work(strain, BENT),
         );
         let shear = self.sheared(shear_modulus);
         let most = shear.last()[0];
-        let twist = fit(
+        let (twist, twist_pieces) = law(
+            in_pieces.twist,
             shear_modulus * 0.5 * area * square,
-            most / radius,
+            [shear.points[0][0] / radius, most / radius],
             |twist| 2.0 * PI * cube * shear.mean(twist * radius, TWISTED),
             2.0 * PI * square * shear.mean_work(most, TWISTED),
         );
         RoundLaws {
+            hardening: Hardening {
+                bend: bend_pieces,
+                twist: twist_pieces,
+            },
             stretch,
             bend,
             twist,
@@ -291,6 +312,29 @@ fn fit(elastic: f64, end: f64, exact: impl Fn(f64) -> f64, work: f64) -> Bilinea
     with_error(elastic, limit, tangent, end, exact)
 }
 
+/// The bilinear law, and where asked for the pieces between the ends of `yielding`, from first yield to the last point.
+fn law(
+    in_pieces: bool,
+    elastic: f64,
+    yielding: [f64; 2],
+    exact: impl Fn(f64) -> f64,
+    work: f64,
+) -> (Bilinear, Option<Pieces>) {
+    let [first, last] = yielding;
+    let bilinear = fit(elastic, last, &exact, work);
+    if !in_pieces {
+        return (bilinear, None);
+    }
+    let (pieces, error) = Pieces::of(first, last, exact);
+    let limit = pieces.limit();
+    let law = Bilinear {
+        limit,
+        error,
+        ..bilinear
+    };
+    (law, Some(pieces))
+}
+
 /// A law with its largest difference to the exact one.
 fn with_error(
     elastic: f64,
@@ -340,7 +384,7 @@ mod tests {
     #[test]
     fn two_points_are_the_bilinear_law_itself() {
         let (stress, last, end) = (100e6, 220e6, 0.2);
-        let laws = curve(&[[stress / E, stress], [end, last]]).round(R, G);
+        let laws = curve(&[[stress / E, stress], [end, last]]).round(R, G, InPieces::default());
         let area = PI * R * R;
         let tangent = (last - stress) / (end - stress / E);
         let close = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-10, "{a} {b}");
@@ -364,7 +408,7 @@ mod tests {
         let close = |a: f64, b: f64, off: f64| assert!((a / b - 1.0).abs() < off, "{a} {b}");
         close(moment(stress / E), stress * d3 * PI / 32.0, 1e-12);
         close(moment(0.5), stress * d3 / 6.0, 1e-4);
-        let laws = hardly.round(R, G);
+        let laws = hardly.round(R, G, InPieces::default());
         close(laws.bend.limit, stress * d3 / 6.0, 5e-3);
         close(laws.moment_cap, stress * d3 / 6.0, 1e-8);
         close(
@@ -396,7 +440,7 @@ mod tests {
     #[test]
     fn fits_take_the_exact_work_and_keep_yield_or_last_load() {
         let curve = annealed();
-        let laws = curve.round(R, G);
+        let laws = curve.round(R, G, InPieces::default());
         let [strain, stress] = curve.last();
         let shear = curve.sheared(G);
         let area = PI * R * R;

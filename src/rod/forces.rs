@@ -30,8 +30,14 @@ impl Laws {
         let open = f64::INFINITY;
         Self {
             stretch: Law::new(s.ea, s.ea_p, s.n_y, open),
-            bend: Law::new(s.ei, s.ei_p, s.m_y, s.moment_cap),
-            twist: Law::new(s.gj, s.gj_p, s.t_y, open),
+            bend: match s.hardening.bend.filter(|_| s.m_y.is_finite()) {
+                Some(pieces) => Law::in_pieces(s.ei, &pieces, s.moment_cap),
+                None => Law::new(s.ei, s.ei_p, s.m_y, s.moment_cap),
+            },
+            twist: match s.hardening.twist.filter(|_| s.t_y.is_finite()) {
+                Some(pieces) => Law::in_pieces(s.gj, &pieces, open),
+                None => Law::new(s.gj, s.gj_p, s.t_y, open),
+            },
         }
     }
 }

@@ -10,6 +10,7 @@ mod flow_curve;
 mod forces;
 mod joint;
 mod material;
+mod pieces;
 mod plasticity;
 mod section;
 mod state;
@@ -24,14 +25,15 @@ pub use bending::bent;
 #[cfg(feature = "lab")]
 pub use bending::{Bent, Symmetric, add_square};
 pub use bending::{Stretched, stretched, turning};
-pub use flow_curve::{Bilinear, FlowCurve, FlowCurveError, MOST_STRAIN, RoundLaws};
+pub use flow_curve::{Bilinear, FlowCurve, FlowCurveError, InPieces, MOST_STRAIN, RoundLaws};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::Joint;
 pub use material::Material;
+pub use pieces::Pieces;
 pub use plasticity::{Bend, Law, Scalar};
 #[cfg(feature = "lab")]
 pub use plasticity::{respond_bend, respond_scalar};
-pub use section::{ENAMEL_DENSITY, Section};
+pub use section::{ENAMEL_DENSITY, Hardening, Section};
 pub use state::Rod;
 pub use twist::Twist;
 #[cfg(any(test, feature = "lab"))]

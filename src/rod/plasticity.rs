@@ -1,30 +1,33 @@
-//! Bilinear laws with isotropic hardening, per unit length of wire.
+//! Laws with isotropic hardening in straight pieces, per unit length of wire.
 //!
 //! A trial force beyond the yield limit returns to it along the elastic stiffness. The limit
 //! rises by the hardening modulus `H = E Ep / (E - Ep)` times the plastic strain, so that the
-//! tangent of the loading branch is exactly `Ep`. The return is exact for a straight strain
-//! path. State advances only where the caller commits it.
+//! tangent of the loading branch is exactly `Ep`. A bilinear law has one such piece; others go on with flatter ones. The return
+//! is exact for a straight strain path. State advances only where the caller commits it.
 
+use super::pieces::{PIECES, Pieces};
 use serde::{Deserialize, Serialize};
 
-/// A bilinear law: elastic modulus, hardening, yield limit, optional cap on the limit.
+/// Elastic modulus, hardening in straight pieces, yield limit, optional cap on the limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Law {
     /// elastic modulus, force per strain: N, or N m^2 for moments over curvatures
     pub modulus: f64,
-    /// hardening modulus H, unit of `modulus`
+    /// hardening modulus H from the yield limit on, unit of `modulus`
     pub hardening: f64,
     /// yield limit of virgin material, N or N m
     pub limit: f64,
     /// value that the limit never exceeds, N or N m
     pub cap: f64,
+    /// pieces after the first: rise of the limit at which each begins, infinite for none, and its hardening modulus
+    later: [[f64; 2]; PIECES - 1],
 }
 
 impl Law {
     /// Law with tangent `plastic` above `limit`, and the limit held below `cap`.
     pub fn new(modulus: f64, plastic: f64, limit: f64, cap: f64) -> Self {
         let hardening = if plastic < modulus {
-            modulus * plastic / (modulus - plastic)
+            hardening_for(modulus, plastic)
         } else {
             f64::INFINITY
         };
@@ -44,7 +47,19 @@ impl Law {
             hardening,
             limit,
             cap: cap.max(limit),
+            later: [[f64::INFINITY, 0.0]; PIECES - 1],
         }
+    }
+
+    /// Law that follows `pieces`, and the limit held below `cap`.
+    pub fn in_pieces(modulus: f64, pieces: &Pieces, cap: f64) -> Self {
+        let limit = pieces.limit();
+        let mut law = Self::new(modulus, pieces.tangents[0], limit, cap);
+        for (k, later) in law.later.iter_mut().enumerate() {
+            let hardening = hardening_for(modulus, pieces.tangents[k + 1]);
+            *later = [pieces.loads[k + 1] - limit, hardening];
+        }
+        law
     }
 
     /// Largest rise of the limit, where it has met its cap.
@@ -59,7 +74,9 @@ impl Law {
         if rise >= self.most() {
             0.0
         } else {
-            self.modulus * self.hardening / (self.modulus + self.hardening)
+            let begun = self.later.iter().take_while(|piece| piece[0] <= rise);
+            let hardening = begun.last().map_or(self.hardening, |piece| piece[1]);
+            self.modulus * hardening / (self.modulus + hardening)
         }
     }
 
@@ -67,21 +84,70 @@ impl Law {
     /// `trial` at rise `q`.
     #[inline]
     fn flow(&self, trial: f64, q: f64) -> (f64, f64, f64) {
-        let over = trial - (self.limit + q);
-        let dg = over / (self.modulus + self.hardening);
-        let dq = self.hardening * dg;
+        let (mut trial, mut q, mut hardening) = (trial, q, self.hardening);
+        // plastic strain and work over the pieces that the limit leaves behind on the way
+        let (mut passed, mut spent) = (0.0, 0.0);
         let most = self.most().max(q);
+        for [end, next] in self.later {
+            if end >= most {
+                break;
+            }
+            if end > q {
+                let way = (end - q) / hardening;
+                if trial - (self.limit + q) <= (self.modulus + hardening) * way {
+                    break;
+                }
+                passed += way;
+                spent += (self.limit + 0.5 * (q + end)) * way;
+                trial -= self.modulus * way;
+                q = end;
+            }
+            hardening = next;
+        }
+        let over = trial - (self.limit + q);
+        let dg = over / (self.modulus + hardening);
+        let dq = hardening * dg;
         let room = most - q;
         if dq <= room {
-            return (dg, q + dq, (self.limit + q + 0.5 * dq) * dg);
+            let work = (self.limit + q + 0.5 * dq) * dg;
+            return (passed + dg, q + dq, spent + work);
         }
         // the limit meets its cap on the way: from there on it is ideally plastic
         let cap = self.limit + most;
         let dg = (trial - cap) / self.modulus;
         // on the first part of the way the limit was lower, by half the room on average
-        let hardened = room / self.hardening;
-        (dg, most, cap * dg - 0.5 * room * hardened)
+        let hardened = room / hardening;
+        let work = cap * dg - 0.5 * room * hardened;
+        (passed + dg, most, spent + work)
     }
+}
+
+impl Law {
+    /// Plastic strain and plastic work (J/m for forces and moments per length) while the limit rises from one value to another.
+    #[cfg(feature = "lab")]
+    pub fn hardened(&self, from: f64, to: f64) -> (f64, f64) {
+        let (mut rise, mut hardening) = (from, self.hardening);
+        let (mut strain, mut work) = (0.0, 0.0);
+        for [end, next] in self.later.into_iter().chain([[f64::INFINITY, 0.0]]) {
+            let stop = end.min(to);
+            if stop > rise {
+                let way = (stop - rise) / hardening;
+                strain += way;
+                work += (self.limit + 0.5 * (rise + stop)) * way;
+                rise = stop;
+            }
+            if end >= to {
+                break;
+            }
+            hardening = next;
+        }
+        (strain, work)
+    }
+}
+
+/// Hardening modulus of a branch with this tangent: `E Ep / (E - Ep)`.
+fn hardening_for(modulus: f64, tangent: f64) -> f64 {
+    modulus * tangent / (modulus - tangent)
 }
 
 /// Plastic state of a scalar law (stretch, twist).
@@ -170,6 +236,61 @@ mod tests {
         Law::new(3.06e-3, 1.13e-4, 5.72e-3, 0.0126)
     }
 
+    /// Pieces of 1e-3 N m each, flatter by a third from one to the next; the cap cuts off those after the eighth.
+    fn in_pieces() -> Law {
+        let loads = std::array::from_fn(|k| 4e-3 + 1e-3 * k as f64);
+        let tangents = std::array::from_fn(|k| 2e-3 * 1.5_f64.powi(-(k as i32)));
+        Law::in_pieces(3.06e-3, &Pieces { loads, tangents }, 11.2e-3)
+    }
+
+    /// The slope of the moment along its path, within pieces and at the cap.
+    #[test]
+    fn tangent_of_pieces_is_the_slope_of_the_moment() {
+        let l = in_pieces();
+        let h = 1e-6;
+        let mut tangents = std::collections::BTreeSet::new();
+        for k in 1..800 {
+            let k = f64::from(k) * 0.0503;
+            let at = |k: f64| respond_scalar(&l, &Scalar::default(), k);
+            let (m, next, _) = at(k);
+            let slope = (at(k + h).0 - at(k - h).0) / (2.0 * h);
+            let expected = if next.rise > 0.0 {
+                l.tangent(next.rise)
+            } else {
+                l.modulus
+            };
+            assert!(
+                (slope - expected).abs() < 1e-6 * l.modulus,
+                "{k} {m}: {slope} {expected}"
+            );
+            tangents.insert((1e9 * expected).round() as u64);
+        }
+        assert_eq!(
+            tangents.len(),
+            1 + 8 + 1,
+            "elastic, eight pieces and the cap: {tangents:?}"
+        );
+    }
+
+    /// The invariant of `stress` tells work and plastic strain from the rise alone.
+    #[cfg(feature = "lab")]
+    #[test]
+    fn the_rise_tells_plastic_strain_and_work() {
+        for l in [law(), in_pieces()] {
+            let mut before = Scalar::default();
+            for k in [2.5, 3.0, 4.5, 6.0] {
+                let (_, after, work) = respond_scalar(&l, &before, k);
+                let (strain, told) = l.hardened(before.rise, after.rise);
+                assert!(
+                    (strain - (after.strain - before.strain)).abs() < 1e-12 * k,
+                    "{k}"
+                );
+                assert!((told - work).abs() <= 1e-12 * work, "{k}: {told} {work}");
+                before = after;
+            }
+        }
+    }
+
     #[test]
     fn loading_branch_is_bilinear() {
         let l = law();
@@ -251,7 +372,7 @@ mod tests {
         /// One step that meets the cap on its way did the plastic work of all small steps on that way.
         #[test]
         fn work_of_a_step_to_the_cap_is_that_of_small_steps(k in 5.0..300.0f64, worn in 0.0..1.0f64, set in -30.0..30.0f64, a in 0.0..6.0f64) {
-            let l = capped();
+            for l in [capped(), in_pieces()] {
             let mut state = Bend { curvature: [set * a.cos(), set * a.sin()], rise: worn * (l.cap - l.limit) };
             let start = Scalar { strain: set, rise: state.rise };
             let (m, next, work) = respond_scalar(&l, &start, set + k);
@@ -270,6 +391,7 @@ mod tests {
             prop_assert!((work - sum).abs() < 1e-9 * scale, "{work} in one step, {sum} in {n}");
             prop_assert!((work - sum_bend).abs() < 1e-9 * scale);
             prop_assert!((next.strain - scalar.strain).abs() < 1e-9 * k);
+            }
         }
 
         /// Stored energy and plastic work together are the potential of the moment, whatever the branch.
@@ -277,7 +399,7 @@ mod tests {
         fn moment_is_the_derivative_of_energy_and_work(
             k in prop::array::uniform2(-300.0..300.0f64), set in prop::array::uniform2(-30.0..30.0f64), worn in 0.0..1.0f64,
         ) {
-            let l = capped();
+            for l in [capped(), in_pieces()] {
             let state = Bend { curvature: set, rise: worn * (l.cap - l.limit) };
             let potential = |k: [f64; 2]| {
                 let (m, _, work) = respond_bend(&l, &state, k);
@@ -294,6 +416,7 @@ mod tests {
                 let slope = (at(h) - at(-h)) / (2.0 * h);
                 // (a branch that changes within h bends the potential by E h)
                 prop_assert!((slope - m[a]).abs() < l.modulus * h, "{slope} {}", m[a]);
+            }
             }
         }
 

@@ -1,11 +1,12 @@
 //! Rigidities and yield limits of the wire's round section.
 
+use super::pieces::Pieces;
 use std::f64::consts::PI;
 
 /// Density of wire enamel, kg/m^3. Polyamide-imide has 1420 (data sheet of Torlon 4203), polyesters of enamels somewhat less.
 pub const ENAMEL_DENSITY: f64 = 1400.0;
 
-/// Elastic-plastic section with three uncoupled bilinear laws and isotropic hardening.
+/// Elastic-plastic section with three uncoupled laws and isotropic hardening.
 ///
 /// Above a yield limit the tangent falls from `e*` to `e*_p`; an infinite limit makes the law
 /// elastic.
@@ -25,11 +26,11 @@ pub struct Section {
     pub ea_p: f64,
     /// elastic bending rigidity, N m^2
     pub ei: f64,
-    /// tangent bending rigidity above yield, N m^2
+    /// tangent bending rigidity above yield, N m^2; the mean one where `hardening` has pieces
     pub ei_p: f64,
     /// elastic torsional rigidity, N m^2
     pub gj: f64,
-    /// tangent torsional rigidity above yield, N m^2
+    /// tangent torsional rigidity above yield, N m^2; the mean one where `hardening` has pieces
     pub gj_p: f64,
     /// axial force at yield, N
     pub n_y: f64,
@@ -41,6 +42,17 @@ pub struct Section {
     pub moment_cap: f64,
     /// tension at which the wire breaks, N
     pub strength: f64,
+    /// what bending and torsion follow beyond yield in place of their tangents
+    pub hardening: Hardening,
+}
+
+/// Hardening in pieces, of the laws that have it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Hardening {
+    /// moment, N m, over curvature, 1/m; its limit is `m_y`
+    pub bend: Option<Pieces>,
+    /// torque, N m, over twist, 1/m; its limit is `t_y`
+    pub twist: Option<Pieces>,
 }
 
 impl Section {
@@ -99,6 +111,7 @@ impl Section {
             t_y: open,
             moment_cap: open,
             strength: open,
+            hardening: Hardening::default(),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::SceneError;
 use super::impossible::si;
 use super::problems::Problems;
 use super::stress_strain::curve;
-use crate::rod::{RoundLaws, Section};
+use crate::rod::{Hardening, InPieces, RoundLaws, Section};
 use crate::settings::{SceneSettings, WireSettings};
 use std::f64::consts::PI;
 
@@ -130,7 +130,16 @@ pub(super) fn section(settings: &SceneSettings) -> Result<Wire, SceneError> {
     let d = wire.diameter;
     let metal = wire.metal();
     let laws = curve(settings)?.map(|(curve, shear)| {
-        let laws = curve.round(0.5 * d, shear);
+        // what was given for a law makes it bilinear; the metals of the library have two points
+        let points = !wire.stress_strain.is_empty();
+        let in_pieces = InPieces {
+            bend: points && [wire.ei, wire.ei_p, wire.m_y] == [0.0; 3],
+            // (custom wire gives its shear modulus so)
+            twist: points
+                && (wire.gj == 0.0 || wire.material == "custom")
+                && [wire.gj_p, wire.t_y] == [0.0; 2],
+        };
+        let laws = curve.round(0.5 * d, shear, in_pieces);
         (laws, curve.yield_stress(), curve.last_stress())
     });
     let of_material = match (wire.material.as_str(), &laws) {
@@ -188,6 +197,7 @@ pub(super) fn section(settings: &SceneSettings) -> Result<Wire, SceneError> {
         t_y: elastic(or(wire.t_y, t_y)),
         moment_cap: elastic(or(wire.moment_cap, cap)),
         strength: or(wire.strength, elastic(flow_stress * area)),
+        hardening: laws.map_or(Hardening::default(), |(laws, ..)| laws.hardening),
     };
     if section.moment_cap < section.m_y {
         let (key, allowed) = if wire.moment_cap > 0.0 {

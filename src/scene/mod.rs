@@ -23,7 +23,7 @@ mod stress_strain;
 mod warnings;
 mod write;
 
-pub use crate::rod::{Bilinear, RoundLaws, Section, Twist};
+pub use crate::rod::{Bilinear, Hardening, Pieces, RoundLaws, Section, Twist};
 pub use description::{
     Core, Decision, Features, Flange, Integrator, LiveContact, Preset, Scene, Solver, Window,
 };

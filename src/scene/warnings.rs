@@ -27,7 +27,7 @@ const fn keys_of(
     }
 }
 
-/// Difference of a bilinear law to the curve's, in percent of the last load, from which on it is told. Chosen: a section that
+/// Difference of a law to the curve's, in percent, from which on it is told. Chosen: a section that
 /// yields bit by bit is off by some 12 % at the corner of any bilinear law.
 const ROUGH: f64 = 15.0;
 
@@ -175,7 +175,7 @@ impl SceneSettings {
         warnings
     }
 
-    /// A curve that the bilinear laws of the mechanics follow badly.
+    /// A curve that the laws of the mechanics follow badly: stretch is bilinear, as are laws with limits of the scene's own.
     pub(super) fn rough_laws(&self, laws: &RoundLaws) -> Option<Warning> {
         let key = "wire.stress_strain";
         let errors = [laws.stretch, laws.bend, laws.twist].map(|law| 100.0 * law.error);
@@ -185,8 +185,8 @@ impl SceneSettings {
             key,
             value: self.shown(key),
             message: format!(
-                "the bilinear laws of this section miss the curve's by up to {:.0} % of the last force, {:.0} % of the last \
-                 moment and {:.0} % of the last torque; end the points at the largest strain that winding reaches",
+                "the laws of this section miss the curve's by up to {:.0} % of the force, {:.0} % of the moment and {:.0} % of the \
+                 torque; end the points at the largest strain that winding reaches",
                 errors[0], errors[1], errors[2]
             ),
         })

@@ -14,7 +14,7 @@ use crate::math::polar_angle;
 use crate::math::{V3, scaled};
 use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN};
 use crate::rod::Twist;
-use crate::rod::{Bend, Rod, Section};
+use crate::rod::{Bend, Hardening, Rod, Section};
 use crate::scene::{Core, Scene};
 use crate::system::{Support, System};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
@@ -321,6 +321,10 @@ fn with_bending(section: &Section, share: f64) -> Section {
         ei_p: share * section.ei_p,
         m_y: share * section.m_y,
         moment_cap: share * section.moment_cap,
+        hardening: Hardening {
+            bend: section.hardening.bend.map(|pieces| pieces.scaled(share)),
+            ..section.hardening
+        },
         ..section.clone()
     }
 }

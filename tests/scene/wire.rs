@@ -123,8 +123,17 @@ fn points_of_a_curve_make_the_section() {
     close(wire.moment_cap, 220e6 * 0.7e-3_f64.powi(3) / 6.0);
     close(wire.gj / wire.ei, 1.0 / 1.326);
     assert!(wire.ea_p > 0.0 && wire.ea_p < 0.05 * wire.ea);
-    assert!(wire.m_y > 92e6 * 0.7e-3_f64.powi(3) / 6.0 && wire.m_y < wire.moment_cap);
-    // a curve that bends much over a long way is told to be followed badly
+    // bending and torsion follow the curve from where the rim yields
+    let rim = PI * 0.7e-3_f64.powi(3) / 32.0;
+    close(wire.m_y, 92e6 * rim);
+    close(wire.t_y, 92e6 / 3.0_f64.sqrt() * 2.0 * rim);
+    assert!(wire.hardening.bend.is_some() && wire.hardening.twist.is_some());
+    let laws = scene.wire_laws.expect("laws of a curve");
+    assert!(
+        laws.bend.error < 0.012 && laws.twist.error < 0.012,
+        "{laws:?}"
+    );
+    // a curve that bends much over a long way is told to be followed badly in stretch
     let told = |points: &str| {
         let settings = parse(&format!("[wire]\nstress_strain = {points}")).unwrap();
         let (_, warnings) = settings.build_with_warnings().unwrap();
@@ -146,6 +155,8 @@ fn points_of_a_curve_make_the_section() {
         .build()
         .unwrap();
     assert_eq!(own.wire.m_y, 8e-3);
+    assert_eq!(own.wire.hardening.bend, None, "its law is bilinear");
+    assert_eq!(own.wire.hardening.twist, scene.wire.hardening.twist);
     let custom = parse(&format!("[wire]\nmaterial = 'custom'\nGJ = 1e-3\n{CURVE}"));
     close(custom.unwrap().build().unwrap().wire.gj, 1e-3);
 }

@@ -1,7 +1,7 @@
 //! Case files: one `kind`, the wire, what is checked how closely, and the cases.
 
 use super::VerifyError;
-use crate::rod::{ENAMEL_DENSITY, Section};
+use crate::rod::{ENAMEL_DENSITY, Hardening, Section};
 use crate::scene::Preset;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -235,6 +235,7 @@ fn section(wire: &Map<String, Value>) -> Result<Section, (&'static str, String)>
         m_y: number("M_y", true)?,
         t_y: number("T_y", true)?,
         moment_cap: f64::INFINITY,
+        hardening: Hardening::default(),
         strength: f64::INFINITY,
     })
 }

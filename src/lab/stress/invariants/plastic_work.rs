@@ -1,8 +1,8 @@
 //! Plastic work never comes back, hardening never fades, and the work that was booked is what hardening says.
 //!
-//! A bilinear law hardens by `H` times the plastic strain it has gone through, either way. So the rise `q` of the yield
-//! limit `Y` of a joint tells the plastic work done there since it was at `q0`, however many steps that took:
-//! `(Y (q - q0) + (q^2 - q0^2) / 2) / H` per length. Where the limit is at its cap, or does not rise, the way of the plastic
+//! A straight piece of hardening rises by `H` times the plastic strain it has gone through, either way. So the rise `q` of the
+//! yield limit `Y` of a joint tells the plastic work done there since it was at `q0`, however many steps that took:
+//! `(Y (q - q0) + (q^2 - q0^2) / 2) / H` per length and piece. Where the limit is at its cap, or does not rise, the way of the plastic
 //! strain between two looks is a lower bound of what it has gone through.
 
 use super::broken::{Broken, Found};
@@ -124,19 +124,18 @@ fn work(law: &Law, was: Set, is: Set) -> Result<f64, String> {
     }
     let [a, b] = [0, 1].map(|k| is.strain[k] - was.strain[k]);
     let way = libm::hypot(a, b);
-    let rise = is.rise - was.rise;
     let at_cap = law.limit + is.rise >= law.cap * (1.0 - 1e-12);
     if law.hardening == 0.0 || at_cap {
         // (a limit that never falls below what it was)
         return Ok((law.limit + was.rise) * way);
     }
-    if way * law.hardening > rise * (1.0 + OFF) + rounding {
+    let (for_rise, work) = law.hardened(was.rise, is.rise);
+    if way > for_rise * (1.0 + OFF) + rounding / law.hardening {
         return Err(format!(
-            "has set by {way:.3e} with a rise of its limit for {:.3e}",
-            rise / law.hardening
+            "has set by {way:.3e} with a rise of its limit for {for_rise:.3e}"
         ));
     }
-    Ok((law.limit + was.rise + 0.5 * rise) * rise / law.hardening)
+    Ok(work)
 }
 
 #[cfg(test)]
