@@ -8,7 +8,7 @@ use coilwind::measure::{DefectKind, STATIONS_PER_TURN, Verdict};
 use coilwind::settings::SceneSettings;
 use coilwind::signals::EventKind;
 use coilwind::simulation::Simulation;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 fn started(text: &str) -> Simulation {
@@ -79,6 +79,17 @@ fn three_layers_lie_in_their_grooves_between_the_flanges() {
         seen += 1;
     }
     assert!(seen > 1500, "{seen}");
+
+    // and so full is the coil
+    let coil = sim.product().coil.expect("wire");
+    let height = DIAMETER + 2.0 * rise;
+    assert!((coil.height_m / height - 1.0).abs() < 0.005, "{coil:?}");
+    let section = sim.product().turns * 0.25 * PI * DIAMETER * DIAMETER;
+    let full = section / ((TURNS as f64 + 0.5) * pitch * height);
+    assert!(
+        (coil.fill_bare / full - 1.0).abs() < 0.005,
+        "{coil:?} {full}"
+    );
 
     let window = 0.5 * (4.65e-3 - DIAMETER);
     for station in sim.coil().stations() {

@@ -9,6 +9,9 @@ use std::collections::BTreeMap;
 /// climbs, for up to one and a half turns until it has settled.
 const LAYER: f64 = 2.0;
 
+/// Sectors round the core in which heights are compared. Chosen: half of the usual crossover each.
+const SECTORS: usize = 12;
+
 /// Outer side of a layer over the core: the far side of its wire.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LayerContour {
@@ -20,39 +23,73 @@ pub struct LayerContour {
     pub height_min_m: f64,
     /// mean along the wire, m
     pub height_mean_m: f64,
-    /// height that half of the wire exceeds, m: that of wire in its groove, since crossovers take less than half a turn
+    /// height that half of the wire exceeds, m
     pub height_median_m: f64,
+    /// height of wire in its groove, m: that of half of the first layer, and for each layer after it the least rise over the
+    /// first in a twelfth of a turn. Crossovers stand higher, and from layer to layer they take more of a turn
+    pub height_groove_m: f64,
     /// highest place, m
     pub height_max_m: f64,
 }
 
 impl LayerContour {
-    /// That of a layer with these heights of its outer side, m, one a station and one at least.
-    fn of(layer: u32, mut heights: Vec<f64>) -> Self {
-        let count = heights.len();
+    /// That of a layer with these stations in a turn and heights of its outer side there, m; one at least. It rises so much over the
+    /// `first` layer in the grooves, m.
+    fn of(layer: u32, places: &[(usize, f64)], first: Option<&Self>, rise: f64) -> Self {
+        let count = places.len();
+        let mut heights: Vec<f64> = places.iter().map(|(_, height)| *height).collect();
         let sum: f64 = heights.iter().sum();
         heights.sort_by(f64::total_cmp);
+        let median = median(&heights);
         Self {
             layer,
             turns: count as f64 / STATIONS_PER_TURN as f64,
             height_min_m: heights[0],
             height_mean_m: sum / count as f64,
-            height_median_m: 0.5 * (heights[(count - 1) / 2] + heights[count / 2]),
+            height_median_m: median,
+            height_groove_m: first.map_or(median, |first| first.height_median_m + rise),
             height_max_m: heights[count - 1],
         }
     }
 }
 
+/// The median height in each sector, m; none where there is hardly any of the layer, which only begins or ends there.
+fn sectors(places: &[(usize, f64)]) -> [Option<f64>; SECTORS] {
+    let mut heights = [const { Vec::new() }; SECTORS];
+    for &(station, height) in places {
+        heights[station * SECTORS / STATIONS_PER_TURN].push(height);
+    }
+    heights.map(|mut heights| {
+        heights.sort_by(f64::total_cmp);
+        (2 * SECTORS * heights.len() >= places.len()).then(|| median(&heights))
+    })
+}
+
+/// The middle of values in order, one at least.
+fn median(values: &[f64]) -> f64 {
+    let count = values.len();
+    0.5 * (values[(count - 1) / 2] + values[count / 2])
+}
+
 impl Coil {
     /// Outer side of each layer that settled wire lies in, from the core outwards.
     pub fn contour(&self) -> Vec<LayerContour> {
-        let mut heights: BTreeMap<u32, Vec<f64>> = BTreeMap::new();
-        for station in self.stations() {
+        let mut places: BTreeMap<u32, Vec<(usize, f64)>> = BTreeMap::new();
+        for (index, station) in self.stations().enumerate() {
             let top = station.height + self.spec.diameter;
-            heights.entry(station.layer).or_default().push(top);
+            let place = (index % STATIONS_PER_TURN, top);
+            places.entry(station.layer).or_default().push(place);
         }
-        let of = |(layer, heights)| LayerContour::of(layer, heights);
-        heights.into_iter().map(of).collect()
+        let mut contour: Vec<LayerContour> = Vec::new();
+        let mut first: Option<[Option<f64>; SECTORS]> = None;
+        for (layer, places) in places {
+            let now = sectors(&places);
+            let rises = now.iter().zip(first.get_or_insert(now));
+            let rises = rises.filter_map(|(a, b)| Some((*a)? - (*b)?));
+            let rise = rises.reduce(f64::min).unwrap_or(0.0);
+            contour.push(LayerContour::of(layer, &places, contour.first(), rise));
+        }
+        contour
     }
 
     /// Layers of the settled wire.

@@ -33,7 +33,7 @@ pub struct Product {
     pub fill: f64,
     /// how full the winding window is; `None` without flanges
     pub window: Option<Fill>,
-    /// how full the coil is: its width, and the median height of its last layer; `None` without wire
+    /// how full the coil is: its width, and the height of its last layer in the grooves; `None` without wire
     pub coil: Option<Fill>,
     /// outer side of each layer over the core
     pub contour: Vec<LayerContour>,
@@ -92,7 +92,7 @@ impl Winding {
             fill: self.coil.fill_factor(),
             // the limit line is as high in the middle as it is on average
             window: limit.and_then(|Window { width, height, .. }| Some(fill(width?, height))),
-            coil: top.map(|layer| fill(self.coil.coil_width(), layer.height_median_m)),
+            coil: top.map(|layer| fill(self.coil.coil_width(), layer.height_groove_m)),
             contour,
             clearance_m: limit.and_then(|window| self.coil.clearance(window.height, window.taper)),
         }
