@@ -19,11 +19,17 @@ fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-/// Holds every table of a folder to be readable, with rows as long as the header; returns the rows of the history.
+/// Holds every file of a folder to be whole, with rows as long as the header; returns the rows of the history.
 fn rows(folder: &Path) -> usize {
     let mut history = 0;
-    for entry in std::fs::read_dir(folder).unwrap() {
+    let files = |folder: &Path| std::fs::read_dir(folder).into_iter().flatten();
+    for entry in files(folder).chain(files(&folder.join("frames"))) {
         let path = entry.unwrap().path();
+        let ends = |end: &str| path.to_string_lossy().ends_with(end);
+        assert!(!ends(".partial"), "{} is left", path.display());
+        if ends(".vtp") {
+            assert!(std::fs::read(&path).unwrap().ends_with(b"</VTKFile>\n"));
+        }
         if path.extension().is_none_or(|e| e != "csv" && e != "json") {
             continue;
         }
@@ -51,6 +57,20 @@ fn wait_for_rows(folder: &Path, child: &mut Child) {
     }
 }
 
+/// Rows leave together and whole. A kill within the write itself may stop at the end of any page of the file: then the last
+/// row is a part of one, and all others are whole.
+fn without_a_cut_row(folder: &Path) {
+    let history = folder.join("history.csv");
+    let text = std::fs::read_to_string(&history).unwrap();
+    let whole = text.rfind('\n').unwrap() + 1;
+    let at_a_border = text.len().is_multiple_of(PAGE);
+    assert!(whole == text.len() || at_a_border, "cut within a page");
+    std::fs::write(&history, &text[..whole]).unwrap();
+}
+
+/// Bytes that the system writes between two looks for a signal, at least.
+const PAGE: usize = 4096;
+
 /// The history ended in the middle of a number.
 #[test]
 fn a_killed_run_leaves_whole_lines() {
@@ -63,6 +83,11 @@ fn a_killed_run_leaves_whole_lines() {
         std::thread::sleep(Duration::from_millis(37 * k));
         child.kill().unwrap();
         child.wait().unwrap();
+        // What else a kill may leave.
+        for name in ["checkpoint.bin.partial", "frames.pvd.partial"] {
+            let _ = std::fs::remove_file(out.join(name));
+        }
+        without_a_cut_row(&out);
         least = least.min(rows(&out));
     }
     assert!(least > 5, "{least} rows");
@@ -89,20 +114,35 @@ fn as_typed(command: &Command) -> String {
     words.join(" ")
 }
 
-/// Files may not grow beyond 8 kB; the signal for it is ignored, so that the write fails.
+/// Files may not grow beyond a limit, as on a disk that is full by then; the signal for it is ignored, so that the write
+/// fails. What is there can be read: the history up to a whole row, other files whole or not at all.
 #[test]
 fn a_limit_on_the_size_of_files_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let inner = as_typed(&run(&out, 0.3));
-    let line = format!("trap '' XFSZ; ulimit -f 8; {}", inner);
-    let output = Command::new("bash").args(["-c", &line]).output().unwrap();
-    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
-    assert!(
-        said(&output).contains("File too large"),
-        "{}",
-        said(&output)
-    );
+    let mut inner = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    inner.args(["run", "fig8", "--quiet", "--force", "--frames", "3"]);
+    inner
+        .args(["--set", "spindle.turns=0.9", "--out"])
+        .arg(&out);
+    let inner = as_typed(&inner);
+    let mut most = 0;
+    // kB: less than a row, a few rows, many rows, the coil, its picture
+    for limit in [1, 8, 70, 250, 600] {
+        let line = format!("trap '' XFSZ; ulimit -f {limit}; {inner}");
+        let output = Command::new("bash").args(["-c", &line]).output().unwrap();
+        assert_eq!(output.status.code(), Some(2), "{limit}: {}", said(&output));
+        let told = said(&output);
+        assert!(told.contains("File too large"), "{limit}: {told}");
+        most = most.max(rows(&out));
+        if out.join("summary.json").exists() {
+            let mut report = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+            report.arg("report").arg(&out);
+            let report = report.output().unwrap();
+            assert!(report.status.success(), "{limit}: {}", said(&report));
+        }
+    }
+    assert!(most > 5, "{most} rows");
 }
 
 /// Whoever may write everywhere passes.

@@ -4,7 +4,7 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
 fn coilwind() -> Command {
@@ -207,7 +207,7 @@ fn what_goes_on_is_told_where_a_run_is_stopped() {
     let mut command = short(&out);
     command
         .args(["--set", "spindle.turns=50"])
-        .stderr(std::process::Stdio::piped());
+        .stderr(Stdio::piped());
     let child = command.spawn().unwrap();
     wait_for_checkpoint(&out);
     std::thread::sleep(Duration::from_millis(200));
@@ -301,27 +301,32 @@ fn a_folder_without_a_whole_run_says_what_to_do() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
+    let refused = |command: &mut Command, part: &str| {
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert_eq!(said(&output).lines().count(), 1, "{}", said(&output));
+        assert!(said(&output).contains(part), "{part}: {}", said(&output));
+    };
+    let report = || {
+        let mut command = coilwind();
+        command.arg("report").arg(&out).stderr(Stdio::piped());
+        command
+    };
+    refused(&mut report(), "go on with: coilwind run --resume");
     let whole = std::fs::read(&checkpoint).unwrap();
+    std::fs::remove_file(&checkpoint).unwrap();
+    refused(&mut report(), "scene.toml --out");
+    refused(&mut resume(&out), "checkpoint.bin is missing; begin again");
     let mut bent = whole.clone();
     bent[whole.len() / 2] ^= 1;
     for bytes in [&whole[..whole.len() / 2], &whole[..5], &bent] {
         std::fs::write(&checkpoint, bytes).unwrap();
-        let output = resume(&out).output().unwrap();
-        assert_eq!(output.status.code(), Some(2));
-        assert_eq!(said(&output).lines().count(), 1, "{}", said(&output));
-        assert!(
-            said(&output).contains("not whole") && said(&output).contains("--force"),
-            "{}",
-            said(&output)
+        refused(
+            &mut resume(&out),
+            "not whole; begin again with: coilwind run",
         );
     }
     std::fs::write(&checkpoint, &whole).unwrap();
     std::fs::write(out.join("history.csv"), "time\n0\n").unwrap();
-    let output = resume(&out).output().unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert!(
-        said(&output).contains("history.csv is not the one"),
-        "{}",
-        said(&output)
-    );
+    refused(&mut resume(&out), "history.csv is not the one");
 }

@@ -232,6 +232,12 @@ fn what_is_wound_is_not_wound_again() {
         assert!(said.contains(part) && said.contains("--force"), "{said}");
         assert_eq!(std::fs::read_to_string(&table).unwrap(), again);
     }
+    let plan = out.join("sweep.json");
+    let text = std::fs::read_to_string(&plan).unwrap();
+    std::fs::write(&plan, &text[..text.len() / 2]).unwrap();
+    let said = complaint(coilwind("sweep", out, &over), 2);
+    assert!(said.contains("its sweep.json is not whole"), "{said}");
+    std::fs::write(&plan, &text).unwrap();
     std::fs::write(&table, again.replace("60,1,", "61,1,")).unwrap();
     let said = complaint(coilwind("sweep", out, &over), 2);
     assert!(said.contains("sweep.csv:2: no row of this sweep"), "{said}");

@@ -5,17 +5,41 @@
 
 use super::drive::{Motion, Place};
 use super::failure::Failure;
-use coilwind::output::Mark;
+use coilwind::output::{Mark, write_whole_bytes};
 use coilwind::settings::SceneSettings;
 use serde::{Deserialize, Serialize};
-use std::fs::{self, File};
-use std::io::Write;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Name of the file in the folder of a run.
 pub(super) const FILE: &str = "checkpoint.bin";
 /// Changes whenever the layout does; the state has a version of its own.
 const MAGIC: &[u8; 8] = b"coilwck2";
+/// Bytes before the state: [`MAGIC`] and a checksum of what follows.
+const HEAD: usize = MAGIC.len() + size_of::<u32>();
+
+/// An error where a folder holds a run that was killed before it wrote its results.
+pub(super) fn refuse_stopped(directory: &Path) -> Result<(), Failure> {
+    let has = |name: &str| directory.join(name).exists();
+    if has("summary.json") || !has("scene.toml") {
+        return Ok(());
+    }
+    let place = directory.display();
+    let next = match has(FILE) {
+        true => format!("go on with: coilwind run --resume {place}"),
+        false => begin_again(directory),
+    };
+    Err(Failure::Resume {
+        directory: place.to_string(),
+        reason: format!("the run was stopped before it wrote its results; {next}"),
+    })
+}
+
+/// The command that winds the scene of a folder again, from its start.
+fn begin_again(directory: &Path) -> String {
+    let place = directory.display();
+    format!("begin again with: coilwind run {place}/scene.toml --out {place} --force")
+}
 
 /// What does not change during a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -101,25 +125,15 @@ fn checksum(path: &Path) -> Result<u32, Failure> {
 }
 
 impl Checkpoint {
-    /// Writes the file beside the one that is there, then renames it.
+    /// Writes the file in the place of the one that is there.
     pub(super) fn write(&self, directory: &Path) -> Result<(), Failure> {
         let path = directory.join(FILE);
-        let partial = directory.join("checkpoint.bin.partial");
-        let fail = |error| Failure::write(&path, error);
-        let body = postcard::to_stdvec(self).map_err(|error| fail(std::io::Error::other(error)))?;
-        let write = || {
-            let mut file = File::create(&partial)?;
-            file.write_all(MAGIC)?;
-            file.write_all(&crc32fast::hash(&body).to_le_bytes())?;
-            file.write_all(&body)?;
-            fs::rename(&partial, &path)
-        };
-        let written = write();
-        if written.is_err() {
-            // The first error is the one worth telling.
-            let _ = fs::remove_file(&partial);
-        }
-        written.map_err(fail)
+        let mut bytes = postcard::to_extend(self, vec![0; HEAD])
+            .map_err(|error| Failure::write(&path, std::io::Error::other(error)))?;
+        let checksum = crc32fast::hash(&bytes[HEAD..]).to_le_bytes();
+        bytes[..MAGIC.len()].copy_from_slice(MAGIC);
+        bytes[MAGIC.len()..HEAD].copy_from_slice(&checksum);
+        Ok(write_whole_bytes(&path, bytes)?)
     }
 
     /// Reads the file of a folder.
@@ -134,18 +148,16 @@ impl Checkpoint {
             reason,
         };
         let bytes = fs::read(&path).map_err(|_| {
-            resume(match directory.join("summary.json").exists() {
-                true => "the run has ended; wind it again with --force, or look at it with coilwind report".to_owned(),
-                false => format!(
+            let has = |name: &str| directory.join(name).exists();
+            resume(match (has("summary.json"), has("scene.toml")) {
+                (true, _) => "the run has ended; wind it again with --force, or look at it with coilwind report".to_owned(),
+                (_, true) => format!("{FILE} is missing; {}", begin_again(directory)),
+                _ => format!(
                     "there is no run that could go on ({FILE} is missing); begin one with: coilwind run SCENE --out {place}"
                 ),
             })
         })?;
-        let again = |what: &str| {
-            resume(format!(
-                "{FILE} {what}; begin again with: coilwind run {place}/scene.toml --out {place} --force"
-            ))
-        };
+        let again = |what: &str| resume(format!("{FILE} {what}; {}", begin_again(directory)));
         let body = bytes
             .strip_prefix(MAGIC)
             .ok_or_else(|| again("is of another version of coilwind, or not whole"))?;

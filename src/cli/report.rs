@@ -1,5 +1,6 @@
 //! `coilwind report`: the page of a run, or of two side by side, from the files that they left.
 
+use super::checkpoint;
 use super::failure::Failure;
 use super::terminal::print;
 use clap::Args;
@@ -27,6 +28,9 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
     let page = args.out.clone().unwrap_or(args.directory.join(name));
     let mut directories = vec![args.directory.as_path()];
     directories.extend(args.other.as_deref());
+    for directory in &directories {
+        checkpoint::refuse_stopped(directory)?;
+    }
     write_report(&directories, &page)?;
     print(&format!("report: {}\n", page.display()))
 }

@@ -4,7 +4,7 @@ use super::failure::Failure;
 use super::sweep_grid::Grid;
 use super::sweep_row::{COLUMNS, Row, Rows};
 use super::{sweep_map as map, sweep_page as page, sweep_statistics as statistics};
-use coilwind::output::write_summary;
+use coilwind::output::{write_summary, write_whole_bytes};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -180,6 +180,9 @@ fn difference(plan: &Value, found: Option<&Value>, begun: bool) -> Option<String
     let Some(found) = found else {
         return begun.then(|| format!("without {PLAN}"));
     };
+    if !found.is_object() {
+        return Some(format!("its {PLAN} is not whole"));
+    }
     let names = plan.as_object()?.keys();
     let names = names.filter(|name| plan[name.as_str()] != found[name.as_str()]);
     let names: Vec<&str> = names.map(String::as_str).collect();
@@ -206,9 +209,5 @@ fn replace(path: &Path, table: csv::Writer<Vec<u8>>) -> Result<(), Failure> {
     let bytes = table
         .into_inner()
         .map_err(|e| Failure::write(path, e.into_error()))?;
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
-    fs::write(&partial, bytes)
-        .and_then(|()| fs::rename(&partial, path))
-        .map_err(|e| Failure::write(path, e))
+    Ok(write_whole_bytes(path, bytes)?)
 }

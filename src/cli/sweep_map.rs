@@ -5,9 +5,9 @@ use super::sweep_grid::Grid;
 use super::sweep_page as page;
 use super::sweep_row::Rows;
 use super::sweep_statistics::{self as statistics, Ensemble};
+use coilwind::output::write_whole_bytes;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use std::fs;
 use std::path::Path;
 
 /// Name of the picture.
@@ -38,7 +38,7 @@ pub(super) fn write(directory: &Path, grid: &Grid, rows: &Rows) -> Result<bool, 
     let text = draw(grid, rows).map_err(|reason| {
         Failure::sweep(format!("{} cannot be drawn: {reason}", path.display()))
     })?;
-    fs::write(&path, text).map_err(|e| Failure::write(&path, e))?;
+    write_whole_bytes(&path, text)?;
     page::write(directory, grid, rows)?;
     Ok(true)
 }

@@ -4,8 +4,8 @@ use super::failure::Failure;
 use super::sweep_grid::Grid;
 use super::sweep_row::{Row, Rows};
 use super::sweep_statistics as statistics;
+use coilwind::output::write_whole_bytes;
 use serde_json::{Value, json};
-use std::fs;
 use std::path::Path;
 
 /// Name of the page.
@@ -20,7 +20,10 @@ pub(super) fn write(directory: &Path, grid: &Grid, rows: &Rows) -> Result<(), Fa
     let path = directory.join(FILE);
     // Text of a script ends at the first `</script`, wherever it stands.
     let data = data(grid, rows).to_string().replace('<', "\\u003c");
-    fs::write(&path, PAGE.replacen("{{data}}", &data, 1)).map_err(|e| Failure::write(&path, e))
+    Ok(write_whole_bytes(
+        &path,
+        PAGE.replacen("{{data}}", &data, 1),
+    )?)
 }
 
 fn data(grid: &Grid, rows: &Rows) -> Value {

@@ -7,13 +7,14 @@ use serde::{Deserialize, Serialize};
 #[cfg(not(windows))]
 use std::fs::TryLockError;
 use std::fs::{File, OpenOptions};
-use std::io::{Error, ErrorKind, Read, Write};
+use std::io::{Error, ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Rows reach the disk at least this often, so that a run that dies leaves what it computed.
 const FLUSH: Duration = Duration::from_millis(500);
-/// Bytes that the writer keeps at most. Rows leave it together and whole, so that a run that is killed leaves no half of one.
+/// Bytes that the writer keeps at most. Rows leave it together and whole, so that a file ends with a whole row. A kill within
+/// the write itself may still cut the last one: the system looks for signals at every page of a file.
 const BUFFER: usize = 1 << 17;
 /// Bytes from which on they leave; a row has some thousand.
 const FULL: usize = BUFFER / 2;
@@ -67,12 +68,18 @@ impl Counted {
     }
 }
 
+/// What is written at once is in the file afterwards, or nothing of it: a full disk leaves whole rows.
 impl Write for Counted {
     fn write(&mut self, data: &[u8]) -> std::io::Result<usize> {
-        let written = self.file.write(data)?;
-        self.bytes += written as u64;
-        self.checksum.update(&data[..written]);
-        Ok(written)
+        if let Err(error) = self.file.write_all(data) {
+            // (a device has no end to go back to)
+            let _ = self.file.set_len(self.bytes);
+            let _ = self.file.seek(SeekFrom::Start(self.bytes));
+            return Err(error);
+        }
+        self.bytes += data.len() as u64;
+        self.checksum.update(data);
+        Ok(data.len())
     }
 
     fn flush(&mut self) -> std::io::Result<()> {

@@ -14,6 +14,7 @@ mod tables;
 mod tube;
 mod vtk_xml;
 mod vtp;
+mod whole;
 
 pub use history::{History, Mark};
 pub use picture::{Colouring, CoreMesh, Picture, render, render_png};
@@ -23,6 +24,7 @@ pub use summary::write_summary;
 pub use tables::{write_defects, write_stations, write_turns};
 pub use tube::{TubeMesh, tube_mesh};
 pub use vtp::{WireFields, write_core_vtp, write_frame, write_series, write_vtp};
+pub use whole::{write_whole, write_whole_bytes};
 
 use std::path::{Path, PathBuf};
 

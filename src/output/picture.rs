@@ -3,12 +3,12 @@
 //! Triangles are drawn into a buffer that keeps the nearest one per pixel, at twice the size in
 //! each direction. Each such pixel is lit once, and four of them make one pixel of the picture.
 
-use super::OutputError;
 use super::camera::{Camera, Frame, Light};
 use super::raster::{NONE, Raster};
 use super::shade::{Lighting, Material, background, shade, to_srgb};
 use super::tube::tube_mesh;
 use super::vtp::{check_mesh, turns_of_nodes};
+use super::{OutputError, write_whole};
 use crate::math::V3;
 use crate::simulation::Centreline;
 use image::{Rgb, RgbImage};
@@ -83,12 +83,15 @@ pub fn render_png(path: &Path, picture: &Picture) -> Result<(), OutputError> {
     if let Some(core) = &picture.core {
         check_mesh(path, core.vertices, core.triangles)?;
     }
-    render(picture)
-        .save_with_format(path, image::ImageFormat::Png)
-        .map_err(|source| OutputError::Image {
-            path: path.to_owned(),
-            source,
-        })
+    let image = render(picture);
+    write_whole(path, |file| {
+        image
+            .write_to(file, image::ImageFormat::Png)
+            .map_err(|source| OutputError::Image {
+                path: path.to_owned(),
+                source,
+            })
+    })
 }
 
 /// Renders the picture. The core's triangles must name existing vertices.

@@ -1,6 +1,6 @@
 //! `turns.csv`, `stations.csv` and `defects.csv`: the measures as tables, SI units, empty where nothing applies.
 
-use super::OutputError;
+use super::{OutputError, write_whole};
 use crate::measure::{Defect, DefectKind, STATIONS_PER_TURN, Station, TurnMeasures, Verdict};
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -175,15 +175,16 @@ fn write_rows(
         path: path.to_owned(),
         source,
     };
-    let mut writer = csv::WriterBuilder::new()
-        .has_headers(false)
-        .from_path(path)
-        .map_err(wrap)?;
-    writer.write_record(header.split(',')).map_err(wrap)?;
-    for row in rows {
-        writer.serialize(row).map_err(wrap)?;
-    }
-    writer.flush().map_err(OutputError::io(path))
+    write_whole(path, |file| {
+        let mut writer = csv::WriterBuilder::new()
+            .has_headers(false)
+            .from_writer(file);
+        writer.write_record(header.split(',')).map_err(wrap)?;
+        for row in rows {
+            writer.serialize(row).map_err(wrap)?;
+        }
+        writer.flush().map_err(OutputError::io(path))
+    })
 }
 
 #[cfg(test)]

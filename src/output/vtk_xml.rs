@@ -1,6 +1,6 @@
 //! The XML that VTK files of points, cells and data are made of, with arrays in base64.
 
-use super::OutputError;
+use super::{OutputError, write_whole};
 use crate::math::V3;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -59,79 +59,84 @@ pub(super) fn write_poly_data<C: Iterator<Item = impl AsRef<[u32]>>>(
     path: &Path,
     piece: &Piece,
     cells: impl Fn() -> C,
-    point_data: impl FnOnce(&mut Xml<BufWriter<File>>) -> io::Result<()>,
+    point_data: impl FnOnce(&mut Xml<&mut BufWriter<File>>) -> io::Result<()>,
 ) -> Result<(), OutputError> {
-    let file = File::create(path).map_err(OutputError::io(path))?;
+    write_whole(path, |file| {
+        write_xml(file, piece, cells, point_data).map_err(OutputError::io(path))
+    })
+}
+
+fn write_xml<C: Iterator<Item = impl AsRef<[u32]>>>(
+    file: &mut BufWriter<File>,
+    piece: &Piece,
+    cells: impl Fn() -> C,
+    point_data: impl FnOnce(&mut Xml<&mut BufWriter<File>>) -> io::Result<()>,
+) -> io::Result<()> {
     let compact = piece.form == Form::Compact;
     let mut xml = Xml {
-        writer: Writer::new_with_indent(BufWriter::new(file), b' ', 1),
+        writer: Writer::new_with_indent(file, b' ', 1),
         compact,
     };
-    let write = || {
-        xml.writer
-            .write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
-        let mut root = vec![
-            ("type", "PolyData"),
-            ("version", "1.0"),
-            ("byte_order", "LittleEndian"),
-            ("header_type", "UInt64"),
-        ];
-        if compact {
-            root.push(("compressor", ZLIB));
+    xml.writer
+        .write_event(Event::Decl(BytesDecl::new("1.0", None, None)))?;
+    let mut root = vec![
+        ("type", "PolyData"),
+        ("version", "1.0"),
+        ("byte_order", "LittleEndian"),
+        ("header_type", "UInt64"),
+    ];
+    if compact {
+        root.push(("compressor", ZLIB));
+    }
+    xml.open("VTKFile", &root)?;
+    xml.open("PolyData", &[])?;
+    if !piece.field.is_empty() {
+        xml.open("FieldData", &[])?;
+        for &(name, value) in piece.field {
+            xml.tuples(name, &[("NumberOfTuples", "1")], 1, [value])?;
         }
-        xml.open("VTKFile", &root)?;
-        xml.open("PolyData", &[])?;
-        if !piece.field.is_empty() {
-            xml.open("FieldData", &[])?;
-            for &(name, value) in piece.field {
-                xml.tuples(name, &[("NumberOfTuples", "1")], 1, [value])?;
-            }
-            xml.close("FieldData")?;
+        xml.close("FieldData")?;
+    }
+    let (mut count, mut corners) = (0, 0);
+    for cell in cells() {
+        count += 1;
+        corners += cell.as_ref().len();
+    }
+    let (n_points, n_cells) = (piece.points.len().to_string(), count.to_string());
+    let number = format!("NumberOf{}", piece.cells);
+    let sizes = [("NumberOfPoints", &*n_points), (&number, &n_cells)];
+    xml.open("Piece", &sizes)?;
+    xml.open("PointData", piece.active)?;
+    point_data(&mut xml)?;
+    xml.close("PointData")?;
+    xml.open("Points", &[])?;
+    let numbers = 3 * piece.points.len();
+    match piece.form {
+        Form::Exact => {
+            let points = piece.points.iter().flat_map(components);
+            xml.array("Points", Some(3), numbers, points)?;
         }
-        let (mut count, mut corners) = (0, 0);
-        for cell in cells() {
-            count += 1;
-            corners += cell.as_ref().len();
+        Form::Compact => {
+            let points = piece.points.iter().flat_map(components32);
+            xml.array("Points", Some(3), numbers, points)?;
         }
-        let (n_points, n_cells) = (piece.points.len().to_string(), count.to_string());
-        let number = format!("NumberOf{}", piece.cells);
-        let sizes = [("NumberOfPoints", &*n_points), (&number, &n_cells)];
-        xml.open("Piece", &sizes)?;
-        xml.open("PointData", piece.active)?;
-        point_data(&mut xml)?;
-        xml.close("PointData")?;
-        xml.open("Points", &[])?;
-        let numbers = 3 * piece.points.len();
-        match piece.form {
-            Form::Exact => {
-                let points = piece.points.iter().flat_map(components);
-                xml.array("Points", Some(3), numbers, points)?;
-            }
-            Form::Compact => {
-                let points = piece.points.iter().flat_map(components32);
-                xml.array("Points", Some(3), numbers, points)?;
-            }
-        }
-        xml.close("Points")?;
-        xml.open(piece.cells, &[])?;
-        let connectivity = cells().flat_map(|cell| {
-            let corners: Vec<i32> = cell.as_ref().iter().map(|&k| k as i32).collect();
-            corners
-        });
-        xml.array("connectivity", None, corners, connectivity)?;
-        let offsets = cells().scan(0, |end, cell| {
-            *end += cell.as_ref().len() as i32;
-            Some(*end)
-        });
-        xml.array("offsets", None, count, offsets)?;
-        for element in [piece.cells, "Piece", "PolyData", "VTKFile"] {
-            xml.close(element)?;
-        }
-        let file: &mut BufWriter<File> = xml.writer.get_mut();
-        file.write_all(b"\n")?;
-        file.flush()
-    };
-    write().map_err(OutputError::io(path))
+    }
+    xml.close("Points")?;
+    xml.open(piece.cells, &[])?;
+    let connectivity = cells().flat_map(|cell| {
+        let corners: Vec<i32> = cell.as_ref().iter().map(|&k| k as i32).collect();
+        corners
+    });
+    xml.array("connectivity", None, corners, connectivity)?;
+    let offsets = cells().scan(0, |end, cell| {
+        *end += cell.as_ref().len() as i32;
+        Some(*end)
+    });
+    xml.array("offsets", None, count, offsets)?;
+    for element in [piece.cells, "Piece", "PolyData", "VTKFile"] {
+        xml.close(element)?;
+    }
+    xml.writer.get_mut().write_all(b"\n")
 }
 
 /// A number of an array, with the name that VTK has for its type.

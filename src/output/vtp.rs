@@ -1,8 +1,8 @@
 //! Wire and core as VTK XML PolyData, for ParaView and PyVista.
 
-use super::OutputError;
 use super::tube::tube_mesh;
 use super::vtk_xml::{Form, LINES, POLYGONS, Piece, components32, write_poly_data};
+use super::{OutputError, write_whole_bytes};
 use crate::math::V3;
 use crate::math::{polar_angle, unwrap_angles};
 use crate::simulation::Centreline;
@@ -196,7 +196,7 @@ pub fn write_series(path: &Path, frames: &[(f64, String)]) -> Result<(), OutputE
         ));
     }
     text.push_str(" </Collection>\n</VTKFile>\n");
-    std::fs::write(path, text).map_err(OutputError::io(path))
+    write_whole_bytes(path, text)
 }
 
 /// Writes the core's surface: `vertices` in m in the core frame, three indices per triangle.

@@ -8,11 +8,10 @@ mod error;
 mod folder;
 mod read_vtp;
 
-use super::OutputError;
+use super::{OutputError, write_whole_bytes};
 pub use error::ReportError;
 use folder::Run;
 use serde::Serialize;
-use std::fs;
 use std::path::Path;
 
 const PAGE: &str = include_str!("page/index.html");
@@ -57,13 +56,7 @@ pub fn write_report(directories: &[&Path], path: &Path) -> Result<(), ReportErro
     })?;
     let title: Vec<&str> = data.runs.iter().map(|run| run.name.as_str()).collect();
     let page = assemble(&title.join(" and "), &json);
-    let partial = path.with_extension("html.partial");
-    let written = fs::write(&partial, page).and_then(|()| fs::rename(&partial, path));
-    if written.is_err() {
-        // The first error is the one worth telling.
-        let _ = fs::remove_file(&partial);
-    }
-    Ok(written.map_err(OutputError::io(path))?)
+    Ok(write_whole_bytes(path, page)?)
 }
 
 /// The page with its parts put in. Each place is named once in the page, and what is put in is not looked at again.
