@@ -56,8 +56,7 @@ def main():
     started = sum(run.process is not None for run in runs)
     print(f"\n{started} of {len(runs)} runs in {clock(time.monotonic() - began)}\n", flush=True)
 
-    with_bobbin = arguments.bobbin and not interrupted
-    report(arguments.command, arguments.out, [run.directory for run in runs], with_bobbin)
+    report(arguments, runs, with_more=not interrupted)
     failed = [run for run in runs if run.failed]
     for run in failed:
         print(f"{run.label} failed: {run.reason()}", file=sys.stderr)
@@ -101,17 +100,31 @@ def tell(runs, jobs, elapsed):
     print(f"{clock(elapsed)}  {';  '.join(parts)};  in all {everything} left", flush=True)
 
 
-def wound_bobbin(command, out):
-    """A whole coil by the command: four layers on a bobbin."""
-    folder = out / "bobbin"
-    print("winding a bobbin with four layers, about half a minute", flush=True)
-    done = subprocess.run([command, "run", "bobbin", "--out", folder, "--quiet", "--force"])
+def wound(command, folder, scene, **settings):
+    """Whether the command has wound a packed scene into a folder."""
+    sets = [word for name, value in settings.items() for word in ("--set", f"spindle.{name}={value:g}")]
+    done = subprocess.run([command, "run", scene, *sets, "--out", folder, "--quiet", "--force"])
+    return done.returncode == 0
+
+
+def more_coils(command, arguments, runs):
+    """Title and folder of what the command winds: half the traverse at each speed, and a whole coil."""
+    print("winding fig8_gap, with half the traverse", flush=True)
+    for run in runs:
+        folder = arguments.out / "fig8_gap" / f"{run.speed:g}"
+        if wound(command, folder, "fig8_gap", speed=run.speed, turns=arguments.turns):
+            yield f"Half the traverse, {run.label}", folder
+    if arguments.bobbin:
+        print("winding a bobbin with four layers, about half a minute", flush=True)
+        folder = arguments.out / "bobbin"
+        if wound(command, folder, "bobbin"):
+            yield "A bobbin with four layers", folder
     print(flush=True)
-    return folder if done.returncode == 0 else None
 
 
-def report(command, out, directories, with_bobbin):
+def report(arguments, runs, with_more):
     """Table, figures and page of the runs that left something; one failing keeps none back."""
+    command, out, directories = arguments.command, arguments.out, [run.directory for run in runs]
     usable = [str(path) for path in directories if (path / "summary.json").exists()]
     if not usable:
         print("no run left results", file=sys.stderr)
@@ -125,9 +138,8 @@ def report(command, out, directories, with_bobbin):
         if subprocess.run([command, "report", path]).returncode != 0:
             print(f"no report of {path}", file=sys.stderr)
     # after the verdicts, which compare second turns
-    bobbin = wound_bobbin(command, out) if with_bobbin else None
-    more = ["--more", f"A bobbin with four layers={bobbin}"] if bobbin else []
-    script("report.py", out, *more)
+    coils = more_coils(command, arguments, runs) if with_more else []
+    script("report.py", out, *(word for title, folder in coils for word in ("--more", f"{title}={folder}")))
 
 
 def script(name, *arguments):
@@ -214,8 +226,9 @@ class Run:
             try:
                 self.share, self.turns, self.elapsed = (float(word) for word in line.split())
             except ValueError:
-                # Something else that wants to be seen.
-                print(f"{self.label}: {line.rstrip()}", flush=True)
+                # Something else that wants to be seen; fmpy also names every input that keeps its start value.
+                if not line.startswith("Warning: missing input"):
+                    print(f"{self.label}: {line.rstrip()}", flush=True)
 
     def left(self):
         """Estimate of the wall time left, s."""

@@ -3,11 +3,12 @@
 #
 #     scripts/demo.sh [--turns T] [--speeds RAD/S...] [--jobs N]
 #
-# Then it winds a bobbin with four layers by the command. Prints progress and the verdict table; leaves CSV, pictures, a
-# report of each run (target/demo/SPEED/report.html, target/demo/bobbin/report.html) and target/demo/index.html, which leads
-# to them. Needs Rust, a C linker and Python 3.10 or later. --turns 0.5 gives a quick look (the full job is 2.5 turns, so that
-# the second comes to rest), --speeds fewer or other speeds, --no-bobbin leaves out the bobbin, --jobs the runs at a time (2).
-# Ctrl-C ends the runs early and reports on what they have wound.
+# Then it winds fig8_gap, which has half the traverse, at these speeds and a bobbin with four layers by the command. Prints
+# progress and the verdict table; leaves CSV, pictures, a report of each run (target/demo/SPEED/report.html,
+# target/demo/fig8_gap/SPEED/report.html, target/demo/bobbin/report.html) and target/demo/index.html, which leads to them.
+# Needs Rust, a C linker and Python 3.10 or later. --turns 0.5 gives a quick look (the full job is 2.5 turns, so that the second
+# comes to rest), --speeds fewer or other speeds, --no-bobbin leaves out the bobbin, --jobs the runs at a time (2). Ctrl-C ends
+# the runs early and reports on what they have wound.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -13,6 +13,7 @@ import html
 import os
 from pathlib import Path
 
+from runs import open_run
 from verdicts import NOTE, STEADY_TURNS, Row, columns, runs_below
 
 FIGURES = [
@@ -49,7 +50,7 @@ PAGE = """<!DOCTYPE html>
              font-size: 13px; background: #e9ebee; color: #4b525c; }}
   .aligned {{ background: #dff1e6; color: #1d6b3f; }}
   .marginal {{ background: #fdf0d2; color: #80590a; }}
-  .gap, .overlap, .bulge {{ background: #fbe0da; color: #9b2c17; }}
+  .gap, .overlap, .bulge, .skipped_groove, .double_turn {{ background: #fbe0da; color: #9b2c17; }}
   figure {{ margin: 0; }}
   figure img {{ display: block; width: 100%; border-radius: 10px; }}
   figcaption {{ padding: 8px 4px 0; }}
@@ -86,7 +87,7 @@ def main():
         verdict_table(runs, arguments),
         figures(arguments.directory),
         pictures(runs, output.parent),
-        *(elsewhere(title, Path(folder), output.parent) for title, folder in more),
+        elsewhere([(title, open_run(folder)) for title, folder in more], output.parent),
     ]
     page = PAGE.format(
         title=html.escape(arguments.title), lead=lead(runs), body="\n".join(filter(None, body))
@@ -125,9 +126,11 @@ def row(kind, cells):
 
 def cell(column, run):
     text = html.escape(column.shown(run))
-    if column.heading in ("verdict", "paper") and text != "–":
-        return f'<span class="verdict {text}">{text}</span>'
-    return text
+    return badge(text) if column.heading in ("verdict", "paper") and text != "–" else text
+
+
+def badge(verdict):
+    return f'<span class="verdict {verdict}">{verdict.replace("_", " ")}</span>'
 
 
 def figures(directory):
@@ -154,14 +157,17 @@ def pictures(runs, directory):
     )
 
 
-def elsewhere(title, folder, directory):
-    """A run that is not of this table: its picture and its report."""
-    page, picture = folder / "report.html", folder / "coil.png"
-    if not page.exists():
-        return ""
-    title, href = html.escape(title), html.escape(os.path.relpath(page, directory))
-    shown = embed(picture, f"{title}, seen from the side") if picture.exists() else ""
-    return f'<h2>{title}</h2><figure>{shown}<figcaption><a href="{href}">report</a></figcaption></figure>'
+def elsewhere(runs, directory):
+    """Runs that are not of this table: their pictures, verdicts and reports."""
+    shown = []
+    for title, run in runs:
+        if not run.summary:
+            continue
+        picture, title = run.directory / "coil.png", html.escape(title)
+        image = embed(picture, f"{title}, seen from the side") if picture.exists() else ""
+        words = f"{title} {badge(html.escape(run.summary.get('verdict', '')))}{link(run, directory)}"
+        shown.append(f"<figure>{image}<figcaption>{words}</figcaption></figure>")
+    return f'<h2>More coils</h2><div class="pair">{"".join(shown)}</div>' if shown else ""
 
 
 def link(run, directory):

@@ -89,10 +89,11 @@ def by_speed(runs):
 
 
 def read_columns(path, needed):
-    """Columns of a CSV file as arrays; an empty cell is NaN. Exits with a message on bad input."""
+    """Columns of a table of a run as arrays; an empty cell is NaN, and a last row that a kill has cut is left out. Exits with a message on bad input."""
     try:
         with open(path, newline="") as file:
-            rows = list(csv.DictReader(file))
+            lines = file.read().splitlines(keepends=True)
+            rows = list(csv.DictReader(line for line in lines if line.endswith("\n")))
     except OSError as error:
         raise SystemExit(f"cannot read {path}: {error.strerror}") from error
     if not rows:

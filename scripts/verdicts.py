@@ -105,7 +105,7 @@ Turn {turn}, as far as it is at rest, without the neighbourhood of the clamp; d 
 distance to the turn before, less d; run: longest stretch above 0.15 d, a gap from 10 % on. bulge:
 height over the core; excess: over the quasi-static height of this wire. T: tension at the nozzle
 after the first {steady:g} turns (a short run: all of it). depth: deepest contact. energy: what the
-books leave unexplained over what was dissipated. RTF: simulated over wall time."""
+energy balance leaves unexplained over what was dissipated. RTF: simulated over wall time."""
 
 
 def main():
