@@ -300,6 +300,25 @@ mod tests {
         (spec, feed, past, step)
     }
 
+    /// The same at rest: a moving tensioner would leave the line slack if no wire came.
+    fn at_rest() -> (FeedSpec, Feed, Past, StepFormula) {
+        let (spec, mut feed, mut past, step) = setting();
+        (feed.rate, feed.paid_rate) = (0.0, 0.0);
+        past.fed = [feed.fed; 2];
+        (past.paid, past.paid_rate) = (feed.paid, 0.0);
+        (spec, feed, past, step)
+    }
+
+    /// The tension at `length` (m) is that of wire of the edge, with its plastic stretch, and wire that came, with its own.
+    fn assert_pulls_by_its_wire(edge: &NozzleEdge, length: f64, plastic: [f64; 2]) {
+        let (rest, tension) = (edge.rest(length), edge.stretched(length).tension);
+        let came = rest - edge.start;
+        let passing = if came > 0.0 { plastic[1] } else { plastic[0] };
+        let free = edge.start * (1.0 + plastic[0]) + came * (1.0 + passing);
+        let wire = edge.ea * (length - free) / rest;
+        assert!((wire - tension).abs() < 1e-6, "{length}: {wire} {tension}");
+    }
+
     #[test]
     fn wire_and_line_pull_alike() {
         let (spec, feed, past, step) = setting();
@@ -349,11 +368,7 @@ mod tests {
     /// Tension is one branch of another with friction at the exit, never jumps, and derives from the potential.
     #[test]
     fn friction_at_the_exit_holds_wire_between_two_tensions() {
-        let (spec, mut feed, mut past, step) = setting();
-        // at rest: a moving tensioner would leave the line slack if no wire came
-        (feed.rate, feed.paid_rate) = (0.0, 0.0);
-        past.fed = [feed.fed; 2];
-        (past.paid, past.paid_rate) = (feed.paid, 0.0);
+        let (spec, feed, past, step) = at_rest();
         let (ea, grip) = (48_900.0, 1.4);
         let edge = NozzleEdge::new(
             &spec,
@@ -398,10 +413,7 @@ mod tests {
     /// Wire of the edge keeps its plastic stretch while virgin wire comes out.
     #[test]
     fn virgin_wire_comes_out_behind_stretched_wire() {
-        let (spec, mut feed, mut past, step) = setting();
-        (feed.rate, feed.paid_rate) = (0.0, 0.0);
-        past.fed = [feed.fed; 2];
-        (past.paid, past.paid_rate) = (feed.paid, 0.0);
+        let (spec, feed, past, step) = at_rest();
         let (ea, rest, plastic) = (48_900.0, 3e-3, [0.02, 0.001]);
         for grip in [1.0, 1.3] {
             let edge = NozzleEdge::new(&spec, &feed, &past, &step, (rest, 15.0, grip, ea, plastic));
@@ -409,12 +421,8 @@ mod tests {
             let mut before = edge.stretched(turn - 2e-5);
             for k in -199..400 {
                 let length = turn + f64::from(k) * 1e-7;
-                let (y, s) = (edge.rest(length), edge.stretched(length));
-                let came = y - rest;
-                let passing = if came > 0.0 { plastic[1] } else { plastic[0] };
-                let free = rest * (1.0 + plastic[0]) + came * (1.0 + passing);
-                let tension = ea * (length - free) / y;
-                assert!((tension - s.tension).abs() < 1e-6, "{k}: {tension} {s:?}");
+                let s = edge.stretched(length);
+                assert_pulls_by_its_wire(&edge, length, plastic);
                 assert!((s.tension - before.tension).abs() < 2.5, "{k}: no jump");
                 let work = s.energy - before.energy;
                 let mean = 0.5 * (s.tension + before.tension) * 1e-7;
@@ -449,12 +457,9 @@ mod tests {
             let mut before: Option<Stretched> = None;
             for k in 0..4000 {
                 let length = rest * 1.02 - 1e-4 + f64::from(k) * 2e-7;
-                let (y, s) = (edge.rest(length), edge.stretched(length));
-                let came = y - rest;
-                let passing = if came > 0.0 { plastic[1] } else { plastic[0] };
-                let free = rest * (1.0 + plastic[0]) + came * (1.0 + passing);
-                let tension = ea * (length - free) / y;
-                assert!((tension - s.tension).abs() < 1e-6, "{k}: {tension} {s:?}");
+                let s = edge.stretched(length);
+                let came = edge.rest(length) - rest;
+                assert_pulls_by_its_wire(&edge, length, plastic);
                 let line = curve.tension(feed.fed + came - passed);
                 if came != 0.0 {
                     let held = if came > 0.0 { grip } else { 1.0 / grip };
