@@ -1,10 +1,13 @@
 //! Wire in the V grooves of a drum given as STL: it touches both walls of a groove, and lies in the middle between them.
 
+#[path = "common/stl.rs"]
+mod stl;
+
 use coilwind::measure::STATIONS_PER_TURN;
 use coilwind::settings::SceneSettings;
 use coilwind::simulation::Simulation;
 use std::f64::consts::{SQRT_2, TAU};
-use std::path::Path;
+use stl::write_revolved;
 
 const SIDES: usize = 180;
 const DIAMETER_MM: f64 = 0.7;
@@ -34,38 +37,10 @@ fn outline() -> Vec<[f64; 2]> {
     points
 }
 
-fn write_stl(path: &Path) {
-    let at = |[y, r]: [f64; 2], side: usize| {
-        let a = TAU * (side % SIDES) as f64 / SIDES as f64;
-        [r * a.cos(), y, r * a.sin()].map(|c| c as f32)
-    };
-    let mut triangles = Vec::new();
-    let mut triangle = |corners: [[f32; 3]; 3]| {
-        triangles.push(stl_io::Triangle {
-            normal: stl_io::Normal::new([0.0; 3]),
-            vertices: corners.map(stl_io::Vertex::new),
-        });
-    };
-    let outline = outline();
-    let (first, last) = (outline[0], outline[outline.len() - 1]);
-    let hub = |[y, _]: [f64; 2]| [0.0, y as f32, 0.0];
-    for side in 0..SIDES {
-        for pair in outline.windows(2) {
-            let [low, high] = [pair[0], pair[1]];
-            triangle([at(low, side), at(high, side), at(high, side + 1)]);
-            triangle([at(low, side), at(high, side + 1), at(low, side + 1)]);
-        }
-        triangle([hub(first), at(first, side), at(first, side + 1)]);
-        triangle([hub(last), at(last, side + 1), at(last, side)]);
-    }
-    let mut file = std::fs::File::create(path).expect("created");
-    stl_io::write_stl(&mut file, triangles.iter()).expect("written");
-}
-
 #[test]
 fn wire_lies_on_both_walls_of_a_groove() {
     let folder = tempfile::tempdir().expect("a folder");
-    write_stl(&folder.path().join("drum.stl"));
+    write_revolved(&folder.path().join("drum.stl"), &outline(), SIDES);
     let start = middle(0);
     let text = format!(
         "

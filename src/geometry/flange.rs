@@ -122,6 +122,48 @@ mod tests {
         }
     }
 
+    /// Plates beside a mesh are those of the box or cylinder that it is a mesh of.
+    #[test]
+    fn plates_beside_a_mesh_are_flanges() {
+        let far = |mesh: &str| -> Surface {
+            let core = match mesh {
+                "box" => generate::rounded_box(12e-3, 30e-3, 20e-3, 2e-3, 48),
+                _ => generate::cylinder(8e-3, 20e-3, 192),
+            };
+            let plates = generate::Plates {
+                half_inner: 5e-3,
+                height: 4e-3,
+                thickness: 2e-3,
+                edge_radius: 0.5e-3,
+            };
+            let joined = generate::with_plates(&core.unwrap(), &plates, 48, 24);
+            Surface::new(joined.unwrap())
+        };
+        for (core, mesh, most) in [(BOX, "box", 2e-6), (ROUND, "cylinder", 5e-6)] {
+            let (flanges, surface) = (flanges(core.clone(), 0.5e-3), far(mesh));
+            let mut seen = 0;
+            for k in 0..2000 {
+                let k = f64::from(k);
+                let within = |seed: f64, half: f64| half * (2.0 * (k * seed).fract() - 1.0);
+                let p = V3::new(
+                    within(0.618, 20e-3),
+                    within(0.2713, 9e-3),
+                    within(0.3819, 22e-3),
+                );
+                // (the mesh goes on beyond the plates)
+                let core = core.outline(p).distance;
+                let union = core.min(flanges.nearness(p).distance);
+                if union < 1e-5 {
+                    continue;
+                }
+                seen += 1;
+                let off = (surface.nearest(p).distance - union).abs();
+                assert!(off < most, "{p:?} {off}");
+            }
+            assert!(seen > 500, "{seen}");
+        }
+    }
+
     #[test]
     fn the_inner_face_stands_where_it_is_said() {
         let flanges = flanges(BOX, 0.3e-3);

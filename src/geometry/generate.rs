@@ -9,6 +9,7 @@
 
 use super::error::MeshError;
 use super::flange::Flanges;
+use super::hull::Hull;
 use super::mesh::TriMesh;
 use super::shape::Shape;
 use crate::math::V3;
@@ -17,6 +18,9 @@ use std::f64::consts::{PI, TAU};
 
 /// Most chords of a full turn. Chosen: a sagitta of 3e-6 radii at most is lost.
 const MOST_SEGMENTS: usize = 4096;
+
+/// Share of its distance by which the section at a flange's inner face is taken before it: single precision in an STL file.
+const AT_FACE: f64 = 1e-6;
 
 /// Height of an arc of `radius` (m) over its chord, for `segments` chords in a full turn, m.
 #[cfg(any(test, feature = "lab"))]
@@ -125,42 +129,18 @@ pub fn flanged(
             return Err(MeshError::Dimension {
                 name: "core",
                 value: f64::NAN,
-                allowed: "a box or a cylinder; a mesh has its flanges in itself".to_owned(),
+                allowed: "a box or a cylinder; plates beside a mesh are part of it".to_owned(),
             });
         }
     };
-    for (name, value) in [
-        ("inner_distance", flanges.half_inner),
-        ("height", flanges.height),
-        ("thickness", flanges.thickness),
-    ] {
-        check_positive(name, value)?;
-    }
-    check_count("corner_segments", corner_chords, 1, MOST_SEGMENTS / 4)?;
-    check_count("edge_segments", edge_chords, 1, MOST_SEGMENTS / 4)?;
-
-    // from the core to the outer face of the flange on +y: place along y and height over the core
-    let edge = flanges.edge_radius;
-    let (inner, outer) = (flanges.half_inner, flanges.half_inner + flanges.thickness);
-    let chords = if edge > 0.0 { edge_chords } else { 0 };
-    let mut wall = vec![[inner, 0.0]];
-    let rim = flanges.height - edge;
-    for step in 0..=chords {
-        let (cos, sin) = unit_in_quarter(step, chords);
-        wall.push([inner + edge - edge * cos, rim + edge * sin]);
-    }
-    for step in 0..=chords {
-        let (cos, sin) = unit_in_quarter(step, chords);
-        wall.push([outer - edge + edge * sin, rim + edge * cos]);
-    }
-    if chords == 0 {
-        // both quarters are a corner
-        wall = vec![
-            [inner, 0.0],
-            [inner, flanges.height],
-            [outer, flanges.height],
-        ];
-    }
+    let plates = Plates {
+        half_inner: flanges.half_inner,
+        height: flanges.height,
+        thickness: flanges.thickness,
+        edge_radius: flanges.edge_radius,
+    };
+    plates.check(corner_chords, edge_chords)?;
+    let wall = plates.wall(edge_chords);
     let mirrored = wall.iter().rev().map(|&[y, s]| [-y, s]);
     let profile: Vec<[f64; 2]> = mirrored.chain(wall.iter().copied()).collect();
     let ring = |s: f64| {
@@ -178,6 +158,89 @@ pub fn flanged(
         .map(|&[y, s]| ring(s).iter().map(|&[x, z]| V3::new(x, y, z)).collect())
         .collect();
     sewn(&rings)
+}
+
+/// Two plates beside a core, the same on both sides of y = 0, m.
+#[derive(Clone, Copy, Debug)]
+pub struct Plates {
+    /// half the distance between their inner faces
+    pub half_inner: f64,
+    /// how far the rim stands above the core
+    pub height: f64,
+    /// along y
+    pub thickness: f64,
+    /// radius of the edges of the rim
+    pub edge_radius: f64,
+}
+
+impl Plates {
+    /// From the core to the outer face on +y: place along y and height over the core, m.
+    fn wall(&self, edge_chords: usize) -> Vec<[f64; 2]> {
+        let (inner, outer) = (self.half_inner, self.half_inner + self.thickness);
+        let edge = self.edge_radius;
+        if edge == 0.0 {
+            return vec![[inner, 0.0], [inner, self.height], [outer, self.height]];
+        }
+        let rim = self.height - edge;
+        let mut wall = vec![[inner, 0.0]];
+        for step in 0..=edge_chords {
+            let (cos, sin) = unit_in_quarter(step, edge_chords);
+            wall.push([inner + edge - edge * cos, rim + edge * sin]);
+        }
+        for step in 0..=edge_chords {
+            let (cos, sin) = unit_in_quarter(step, edge_chords);
+            wall.push([outer - edge + edge * sin, rim + edge * cos]);
+        }
+        wall
+    }
+
+    fn check(&self, corner_chords: usize, edge_chords: usize) -> Result<(), MeshError> {
+        for (name, value) in [
+            ("inner_distance", self.half_inner),
+            ("height", self.height),
+            ("thickness", self.thickness),
+        ] {
+            check_positive(name, value)?;
+        }
+        check_count("corner_segments", corner_chords, 1, MOST_SEGMENTS / 4)?;
+        check_count("edge_segments", edge_chords, 1, MOST_SEGMENTS / 4)
+    }
+}
+
+/// A core and two plates beside it as one surface; chords as in [`flanged`]. Each plate has the hull of the core's section at its
+/// inner face, and its rim stands the same height further out all round.
+pub fn with_plates(
+    core: &TriMesh,
+    plates: &Plates,
+    corner_chords: usize,
+    edge_chords: usize,
+) -> Result<TriMesh, MeshError> {
+    plates.check(corner_chords, edge_chords)?;
+    let wall = plates.wall(edge_chords);
+    let mut parts = vec![core.clone()];
+    for side in [-1.0, 1.0] {
+        // (a core that ends at the inner face has a section just before it)
+        let section = core.section_points(side * plates.half_inner * (1.0 - AT_FACE));
+        let hull = Hull::of(section.iter().map(|p| [p.x, p.z]).collect());
+        let Some(hull) = hull else {
+            return Err(MeshError::Dimension {
+                name: "inner_distance",
+                value: 2.0 * plates.half_inner,
+                allowed: "such that the core goes round its axis at both inner faces".to_owned(),
+            });
+        };
+        let ring = |&[y, out]: &[f64; 2]| -> Vec<V3> {
+            let outline = hull.outline(out, corner_chords);
+            let at = |&[x, z]: &[f64; 2]| V3::new(x, side * y, z);
+            outline.iter().map(at).collect()
+        };
+        let mut rings: Vec<Vec<V3>> = wall.iter().map(ring).collect();
+        if side < 0.0 {
+            rings.reverse();
+        }
+        parts.push(sewn(&rings)?);
+    }
+    TriMesh::together(&parts)
 }
 
 /// Pulley about y with a V groove at y = 0, `bottom_radius` (m) at its lowest, walls that include `angle` (rad) and rise by

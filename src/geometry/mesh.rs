@@ -72,6 +72,18 @@ impl TriMesh {
         })
     }
 
+    /// Closed meshes as one. They may reach into each other: from outside only the outer surface is seen.
+    pub(super) fn together(parts: &[Self]) -> Result<Self, MeshError> {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for part in parts {
+            let first = vertices.len() as u32;
+            vertices.extend(&part.vertices);
+            let numbered = part.triangles.iter().map(|t| t.map(|v| v + first));
+            triangles.extend(numbered);
+        }
+        Self::new(vertices, triangles)
+    }
+
     /// Number of triangles.
     pub fn len(&self) -> usize {
         self.triangles.len()

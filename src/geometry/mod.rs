@@ -3,7 +3,7 @@
 //! The frame: the axis is +y through the origin, the section lies in x-z. Lengths in metres.
 //!
 //! * [`TriMesh`]: a closed, outward triangle mesh with what every query needs, worked out once
-//! * [`generate`]: meshes of the rounded box and the cylinder
+//! * [`generate`]: meshes of the rounded box and the cylinder, and flanges beside any mesh
 //! * [`stl`]: meshes from STL files
 //! * [`Bvh`]: the search for triangles near a point
 //! * [`Touch`]: where a sphere touches the mesh (paper eq. 3-7, mended)
@@ -24,6 +24,7 @@ mod feature;
 mod flange;
 mod flank;
 mod grid;
+mod hull;
 mod level;
 mod mesh;
 mod shape;

@@ -148,7 +148,11 @@ impl SceneSettings {
             return None;
         }
         // Insulation stands on the core and on the inner faces; rim and outer faces stay where they are.
-        let (under, beside) = (self.core.insulation, f.insulation);
+        let on_core = match self.core.shape.as_str() {
+            "mesh" => 0.0,
+            _ => self.core.insulation,
+        };
+        let (under, beside) = (on_core, f.insulation);
         if under >= f.height {
             let reason = "the insulation of the core reaches the rim of the flanges";
             let allowed = format!("less than {} m", si(f.height));
@@ -231,14 +235,22 @@ impl SceneSettings {
                     "inch" => 0.0254,
                     _ => 1e-3,
                 };
+                let flange = self.flange(problems);
                 let extent = self.mesh_extent(unit)?;
-                Ok((
-                    Core::Mesh {
-                        path: PathBuf::from(&c.file),
-                        unit,
-                    },
-                    extent,
-                ))
+                let reach = extent.y_max.min(-extent.y_min);
+                if flange.is_some_and(|f| 0.5 * f.inner_distance > reach) {
+                    problems.add(self.impossible(
+                        "core.flange.inner_distance",
+                        "the mesh ends before the flanges",
+                        format!("at most {} m, or 0 for no flanges", si(2.0 * reach)),
+                    ));
+                }
+                let core = Core::Mesh {
+                    path: PathBuf::from(&c.file),
+                    unit,
+                    flange,
+                };
+                Ok((core, extent.with(flange)))
             }
             _ => {
                 let (half_x, half_z) = (0.5 * c.width_x, 0.5 * c.height_z);

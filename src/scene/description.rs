@@ -98,6 +98,8 @@ pub enum Core {
         path: PathBuf,
         /// metres per file unit
         unit: f64,
+        /// flanges beside it, if it has none of its own
+        flange: Option<Flange>,
     },
 }
 
@@ -149,13 +151,14 @@ impl Core {
         matches!(self, Self::Mesh { .. }) || self.flange().is_some()
     }
 
-    /// Flanges of a shape that has keys for them.
+    /// Flanges that the scene has keys for.
     // Inlined, the flag of one shape's flanges is read before the shape is known: harmless, but memory checkers tell of it.
     #[inline(never)]
     pub fn flange(&self) -> Option<Flange> {
         match self {
-            Self::RoundedBox { flange, .. } | Self::Cylinder { flange, .. } => *flange,
-            Self::Mesh { .. } => None,
+            Self::RoundedBox { flange, .. }
+            | Self::Cylinder { flange, .. }
+            | Self::Mesh { flange, .. } => *flange,
         }
     }
 }

@@ -27,4 +27,19 @@ impl Extent {
             window: flange.map(|f| f.inner_distance),
         }
     }
+
+    /// The same with flanges beside it.
+    pub(super) fn with(self, flange: Option<Flange>) -> Self {
+        let Some(f) = flange else {
+            return self;
+        };
+        let outer = 0.5 * f.inner_distance + f.thickness;
+        Self {
+            turning_radius: self.turning_radius + f.height,
+            y_min: self.y_min.min(-outer),
+            y_max: self.y_max.max(outer),
+            window: Some(f.inner_distance),
+            ..self
+        }
+    }
 }

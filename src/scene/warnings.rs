@@ -45,15 +45,7 @@ const KEYS_OF_CHOICES: [KeysOf; 11] = [
     keys_of(
         SHAPE,
         &["rounded-box", "cylinder"],
-        &[
-            "core.length_y",
-            "core.insulation",
-            "core.flange.inner_distance",
-            "core.flange.height",
-            "core.flange.thickness",
-            "core.flange.edge_radius",
-            "core.flange.insulation",
-        ],
+        &["core.length_y", "core.insulation"],
     ),
     keys_of(SHAPE, &["mesh"], &["core.file", "core.unit"]),
     keys_of(MODE, &["by-input", "by-angle"], &["traverse.per_turn"]),
@@ -226,8 +218,10 @@ impl SceneSettings {
             }
         }
         if self.core.flange.inner_distance > 0.0 {
-            let message = "has no effect: between flanges the core ends at their outer faces";
-            warn("core.length_y", message.to_owned());
+            if self.core.shape != "mesh" {
+                let message = "has no effect: between flanges the core ends at their outer faces";
+                warn("core.length_y", message.to_owned());
+            }
         } else {
             let message = "has no effect: there are no flanges without core.flange.inner_distance";
             warn("core.flange.insulation", message.to_owned());

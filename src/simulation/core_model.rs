@@ -1,7 +1,9 @@
 //! The core of a scene as a triangle mesh and as a shape for contact.
 
 use super::SimError;
-use crate::geometry::generate::{cylinder, flanged, rounded_box, segments_for_sagitta};
+use crate::geometry::generate::{
+    Plates, cylinder, flanged, rounded_box, segments_for_sagitta, with_plates,
+};
 use crate::geometry::{Flanges, Shape, Surface, TriMesh};
 use crate::scene::Core;
 use std::sync::Arc;
@@ -16,8 +18,8 @@ const SAGITTA: f64 = 0.5e-6;
 /// If the file of a mesh cannot be read, or the mesh is refused; the message names the reason.
 pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
     let fail = |e: String| SimError::setup(format!("core: {e}"));
+    let quarter = |radius: f64| segments_for_sagitta(radius, SAGITTA).div_ceil(4).max(2);
     if let Some(flanges) = core_flanges(core) {
-        let quarter = |radius: f64| segments_for_sagitta(radius, SAGITTA).div_ceil(4).max(2);
         let rim = match core {
             Core::RoundedBox { corner_radius, .. } => *corner_radius,
             Core::Cylinder { radius, .. } => *radius,
@@ -33,28 +35,42 @@ pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
             length_y,
             corner_radius,
             ..
-        } => {
-            let segments = segments_for_sagitta(*corner_radius, SAGITTA)
-                .div_ceil(4)
-                .max(2);
-            rounded_box(*width_x, *height_z, *length_y, *corner_radius, segments)
-                .map_err(|e| fail(e.to_string()))?
-        }
+        } => rounded_box(
+            *width_x,
+            *height_z,
+            *length_y,
+            *corner_radius,
+            quarter(*corner_radius),
+        )
+        .map_err(|e| fail(e.to_string()))?,
         Core::Cylinder {
             radius, length_y, ..
         } => cylinder(*radius, *length_y, segments_for_sagitta(*radius, SAGITTA))
             .map_err(|e| fail(e.to_string()))?,
-        Core::Mesh { path, unit } => {
+        Core::Mesh { path, unit, flange } => {
             let file = std::fs::File::open(path)
                 .map_err(|e| fail(format!("cannot open {}: {e}", path.display())))?;
-            crate::geometry::stl::read(&mut std::io::BufReader::new(file), *unit)
-                .map_err(|e| fail(format!("{}: {e}", path.display())))?
+            let mesh = crate::geometry::stl::read(&mut std::io::BufReader::new(file), *unit)
+                .map_err(|e| fail(format!("{}: {e}", path.display())))?;
+            match flange {
+                Some(f) => {
+                    let plates = Plates {
+                        half_inner: 0.5 * f.inner_distance,
+                        height: f.height,
+                        thickness: f.thickness,
+                        edge_radius: f.edge_radius,
+                    };
+                    let [corner, edge] = [f.height, f.edge_radius].map(quarter);
+                    with_plates(&mesh, &plates, corner, edge).map_err(|e| fail(e.to_string()))?
+                }
+                None => mesh,
+            }
         }
     };
     Ok(Surface::new(mesh))
 }
 
-/// The flanges of a core that has keys for them, core frame.
+/// The flanges beside what wire is wound on where that has a formula, core frame; beside a mesh they are part of the surface.
 pub(super) fn core_flanges(core: &Core) -> Option<Flanges> {
     let flange = core.flange()?;
     Some(Flanges {

@@ -435,6 +435,7 @@ mod tests {
             core: Core::Mesh {
                 path: "unused".into(),
                 unit: 1e-3,
+                flange: None,
             },
             ..scene
         };

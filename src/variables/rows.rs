@@ -357,7 +357,7 @@ table! {
     fixed(1105, "core.radius", core.radius, "m", "mm", 5e-5, 1.0, 1e-2, "cylinder: radius");
     text(1106, "core.file", (core.file), [], "mesh: STL file, relative to the scene file, set in the FMU relative to its resources or as given; axis along y");
     text(1107, "core.unit", (core.unit), ["m", "mm", "um", "inch"], "mesh: unit of the STL file");
-    fixed(1108, "core.flange.inner_distance", core.flange.inner_distance, "m", "mm", 0.0, 10.0, 1e-2, "rounded box and cylinder: distance of the inner faces of two flanges; 0: no flanges");
+    fixed(1108, "core.flange.inner_distance", core.flange.inner_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance of the inner faces of two flanges; 0: no flanges");
     fixed(1109, "core.flange.height", core.flange.height, "m", "mm", 1e-5, 1.0, 1e-3, "how far the rim of the flanges stands above the core");
     fixed(1110, "core.flange.thickness", core.flange.thickness, "m", "mm", 1e-5, 1.0, 1e-3, "thickness of each flange along the axis");
     fixed(1111, "core.flange.edge_radius", core.flange.edge_radius, "m", "mm", 0.0, 1.0, 1e-4, "radius of the edges of the flanges' rim");

@@ -236,7 +236,8 @@ fn mesh_files_are_found_beside_the_scene() {
         built.core,
         Core::Mesh {
             path: folder.path().join("tube.stl"),
-            unit: 1e-3
+            unit: 1e-3,
+            flange: None,
         }
     );
 

@@ -1,0 +1,97 @@
+//! Flanges by key beside a core from an STL file, against the same bobbin by formula.
+
+#[path = "common/bobbin.rs"]
+mod bobbin;
+#[path = "common/stl.rs"]
+mod stl;
+
+use bobbin::{DIAMETER, STRAIGHT, TURNS, small_bobbin};
+use coilwind::measure::STATIONS_PER_TURN;
+use coilwind::settings::SceneSettings;
+use coilwind::simulation::Simulation;
+use std::f64::consts::TAU;
+use std::path::Path;
+use stl::write_revolved;
+
+/// Facets lie at most 0.2 um inside of the barrel's 6 mm.
+const SIDES: usize = 360;
+/// Heights may differ by this, m rms.
+const SAME: f64 = 20e-6;
+/// Into the second layer.
+const WOUND: f64 = TURNS as f64 + 3.5;
+
+/// The small bobbin with its barrel from a file, `half` its length, mm.
+fn with_barrel(folder: &Path, half: f64) -> SceneSettings {
+    write_revolved(
+        &folder.join("barrel.stl"),
+        &[[-half, 6.0], [half, 6.0]],
+        SIDES,
+    );
+    let text = small_bobbin(3, 20.0).replace(
+        "shape = 'cylinder'\nradius_mm = 6",
+        "shape = 'mesh'\nfile = 'barrel.stl'",
+    );
+    SceneSettings::from_toml_str(&text, "bobbin.toml", folder).expect("reads")
+}
+
+fn wound(settings: &SceneSettings) -> Simulation {
+    let mut sim = Simulation::new(&settings.build().expect("a scene")).expect("starts");
+    let end = sim.motion_profile().time_at(WOUND * TAU);
+    sim.advance_profile(end).expect("the run goes on");
+    sim
+}
+
+#[test]
+fn a_barrel_between_flanges_winds_as_the_bobbin_does() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let by_formula =
+        SceneSettings::from_toml_str(&small_bobbin(3, 20.0), "bobbin.toml", Path::new(""))
+            .expect("reads");
+    // the barrel ends within the flanges, or goes on beyond them
+    for half in [3.0, 5.0] {
+        let sims = [by_formula.clone(), with_barrel(folder.path(), half)].map(|s| wound(&s));
+        let (mut sum, mut count, mut highest) = (0.0, 0, 0.0_f64);
+        let stations = sims[0].coil().stations().zip(sims[1].coil().stations());
+        for (k, (a, b)) in stations.enumerate() {
+            // crossovers are where they are to a degree or two
+            if a.measured && b.measured && STRAIGHT.contains(&(k % STATIONS_PER_TURN)) {
+                sum += (a.height - b.height).powi(2);
+                count += 1;
+                highest = highest.max(b.height);
+            }
+        }
+        let off = (sum / f64::from(count)).sqrt();
+        println!("{half} mm: {:.2} um rms over {count} stations", 1e6 * off);
+        assert!(count > 600, "{count}");
+        assert!(off < SAME, "{off} m");
+        assert!(highest > 0.8 * DIAMETER, "no second layer: {highest} m");
+        for (a, b) in sims[0].turns().iter().zip(sims[1].turns()) {
+            if a.settled == 1.0 && b.settled == 1.0 {
+                assert_eq!(
+                    (a.layer, a.verdict),
+                    (b.layer, b.verdict),
+                    "turn {}",
+                    a.turn
+                );
+            }
+        }
+        let [depth, deep] = sims.map(|sim| sim.summary().penetration.largest_over_d);
+        assert!(deep < 0.02, "{depth} and {deep} diameters deep");
+    }
+}
+
+#[test]
+fn a_mesh_that_ends_before_the_flanges_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let refused = with_barrel(folder.path(), 2.0)
+        .build()
+        .unwrap_err()
+        .to_string();
+    for word in [
+        "core.flange.inner_distance",
+        "ends before the flanges",
+        "at most 0.004 m",
+    ] {
+        assert!(refused.contains(word), "{refused}");
+    }
+}
