@@ -102,7 +102,8 @@ FLANGE = (3.0, 1.0)
 AHEAD = -7.0
 """Degrees by which a far nozzle is ahead of the angle by which the free span trails.
 
-Coils of one to four layers have no gap from -12 to +2 on the box (at +5 turns beside a flange stand off), and on the cylinder from -7 to +2."""
+Coils of four layers have no defect from -15 to 0 on the box (at +5 turns beside a flange stand off), and from -10 to 0 on the
+cylinder (at -15 wire of 300 rad/s goes slack)."""
 FAR, NEAR = 25.0, 1.5
 """Nozzle from the axis, and over the flanges where it shall guide the wire over the turns below."""
 PULL = 2.5

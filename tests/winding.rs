@@ -108,8 +108,9 @@ fn distance_between(a: &Simulation, b: &Simulation) -> (f64, f64) {
 /// The paper's central saving: wire at rest leaves the computation, and live wire must not notice.
 ///
 /// What is left of a difference is wire that would have gone on creeping, by less than the policy's limit: 2 um/rad
-/// over the 0.9 turns, 11 um. Single pairs of runs scatter (nozzle distances 0.1 um apart: 7.9 to 10.3 um rms, at most 17 to
-/// 23 um where a bow moves as a whole; two runs without freezing differ by 1.6 um rms), so this is a mean of three.
+/// over the 0.9 turns, 11 um. This is a mean of three, since single pairs of runs scatter. With nozzle
+/// distances 0.1 um apart they differ by 7.9 to 10.3 um rms, at most by 17 to 23 um where a bow moves as a whole. Two runs without
+/// freezing differ by 1.6 um rms.
 #[test]
 fn live_wire_does_not_notice_a_correct_exclusion() {
     // the production method's is in freezing.rs
