@@ -355,13 +355,11 @@ impl Default for SceneSettings {
             freeze: Freeze {
                 enabled: true,
                 window: 1.0,
-                // ten periods of the free span's slowest ringing (60 mm of 0.7 mm wire at 15 N: 1.8
-                // ms)
-                time: 0.02,
-                creep: 2e-6,
+                time: 0.0,
+                creep: 0.0,
                 patience: 0.75,
                 keep_length: 0.0,
-                margin: 5e-3,
+                margin: 0.0,
             },
             defects: DefectLimits {
                 gap: 0.15,

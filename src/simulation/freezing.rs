@@ -7,7 +7,8 @@
 //! `margin` of the core. Nodes freeze in order from the clamp, and not before they are a bending
 //! length behind lift-off.
 
-use crate::math::V3;
+use crate::math::{V3, scaled};
+use crate::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// The limits.
@@ -21,6 +22,8 @@ pub struct FreezePolicy {
     pub displacement: f64,
     /// polar angle behind lift-off from which on the displacement may be larger, rad
     pub patience: f64,
+    /// largest displacement over the window however far behind lift-off, m
+    pub most: f64,
     /// length behind lift-off that stays live, m
     pub keep_length: f64,
     /// largest height of the wire's surface over the core, m
@@ -32,10 +35,38 @@ pub struct FreezePolicy {
 /// micrometres. With one limit for all, live wire would grow with the number of turns.
 const DOUBLING: f64 = 0.25 * std::f64::consts::TAU;
 
+/// Largest displacement of wire at rest, in its diameters: a third of the gap that is a defect by default. Wire that moves
+/// farther in a window may still become one, or cease to be one.
+const MOST: f64 = 0.05;
+
+/// Periods of the free span's slowest ringing over which motion is judged while the spindle stands.
+const PERIODS: f64 = 10.0;
+
 impl FreezePolicy {
+    /// That of a scene that starts with a free span of length `span`, m, under `tension`, N. What the scene leaves open goes with
+    /// its wire.
+    pub(super) fn of(scene: &Scene, span: f64, tension: f64) -> Self {
+        let (given, wire) = (&scene.freeze, &scene.wire);
+        let or = |given: f64, own: f64| if given > 0.0 { given } else { own };
+        // slowest mode of a beam under tension on two bearings
+        let holds = tension + wire.ei * (std::f64::consts::PI / span).powi(2);
+        let period = 2.0 * span * (wire.mass_per_length() / holds).sqrt();
+        let pull = tension.max(0.01 * scene.tensioner.tension);
+        Self {
+            window: given.window,
+            time: or(given.time, PERIODS * period),
+            displacement: given.window * or(given.creep, scaled(2e-6, wire.diameter)),
+            patience: given.patience * std::f64::consts::TAU,
+            most: MOST * wire.diameter,
+            keep_length: or(given.keep_length, 1.75 * (wire.ei / pull).sqrt()),
+            margin: or(given.margin, scaled(5e-3, wire.diameter)),
+        }
+    }
+
     /// Largest displacement over the window of wire at rest that lies `behind` lift-off, rad; m.
     pub fn limit(&self, behind: f64) -> f64 {
-        self.displacement * libm::exp2(((behind - self.patience) / DOUBLING).max(0.0))
+        let grown = self.displacement * libm::exp2(((behind - self.patience) / DOUBLING).max(0.0));
+        grown.min(self.most.max(self.displacement))
     }
 }
 
@@ -154,6 +185,7 @@ mod tests {
             time: 1.0,
             displacement: 1e-6,
             patience: 4.0,
+            most: 1e-5,
             keep_length: 0.0,
             margin: 1e-3,
         }
@@ -228,9 +260,43 @@ mod tests {
     }
 
     #[test]
+    fn limits_go_with_the_wire() {
+        use crate::settings::SceneSettings;
+        let of = |diameter: &str| {
+            let mut settings = SceneSettings::load("fig8").expect("packed");
+            settings.set_text("wire.material", "copper").expect("valid");
+            settings.set_text("wire.diameter", diameter).expect("valid");
+            settings.set_text("tensioner.tension", "0.1").expect("valid");
+            let scene = settings.build().expect("a valid scene");
+            (FreezePolicy::of(&scene, 0.06, 15.0), scene)
+        };
+        let (usual, scene) = of("0.7e-3");
+        assert_eq!(
+            (usual.displacement, usual.margin, usual.most),
+            (2e-6, 5e-3, 0.05 * 0.7e-3)
+        );
+        let (thin, _) = of("0.07e-3");
+        for (thin, usual) in [
+            (thin.displacement, usual.displacement),
+            (thin.margin, usual.margin),
+            (thin.most, usual.most),
+        ] {
+            assert!((10.0 * thin / usual - 1.0).abs() < 1e-12);
+        }
+        // a string of so much mass, a little faster for its stiffness
+        let string = 2.0 * 0.06 * (scene.wire.mass_per_length() / 15.0).sqrt();
+        assert!(usual.time < 10.0 * string && usual.time > 8.0 * string);
+    }
+
+    #[test]
     fn patience_ends() {
         let p = policy();
         assert_eq!(p.limit(3.9), 1e-6);
         assert!((p.limit(4.0 + std::f64::consts::PI) - 4e-6).abs() < 1e-20);
+        assert_eq!(
+            p.limit(100.0),
+            1e-5,
+            "wire that moves farther is not at rest"
+        );
     }
 }

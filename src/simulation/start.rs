@@ -310,19 +310,8 @@ impl Winding {
         let (stepper, last_step) = stepper_for(scene)?;
         sys.refresh();
         sys.state.balance.initial = sys.stored() + sys.kinetic();
-        let policy = FreezePolicy {
-            window: scene.freeze.window,
-            time: scene.freeze.time,
-            displacement: scene.freeze.creep * scene.freeze.window,
-            keep_length: if scene.freeze.keep_length > 0.0 {
-                scene.freeze.keep_length
-            } else {
-                1.75 * (scene.wire.ei / inputs.tension_setpoint.max(0.01 * scene.tensioner.tension))
-                    .sqrt()
-            },
-            patience: scene.freeze.patience * std::f64::consts::TAU,
-            margin: scene.freeze.margin,
-        };
+        let rest = &sys.state.rod.rest;
+        let policy = FreezePolicy::of(scene, rest.iter().sum(), inputs.tension_setpoint);
         let run = RunState {
             watch: Watch::new(sys.state.rod.nodes(), sys.state.spindle.angle),
             policy,

@@ -427,11 +427,11 @@ table! {
 
     switch(2000, "freeze.enabled", freeze.enabled, "false keeps all wire in the computation");
     fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");
-    fixed(2002, "freeze.creep", freeze.creep, "m/rad", "um/rad", 0.0, 1.0, 1e-6, "largest motion of wire at rest per core angle");
+    fixed(2002, "freeze.creep", freeze.creep, "m/rad", "um/rad", 0.0, 1.0, 1e-6, "largest motion of wire at rest per core angle; 0: as the wire's diameter, 2 um/rad for 0.7 mm");
     fixed(2003, "freeze.keep_length", freeze.keep_length, "m", "mm", 0.0, 100.0, 1e-2, "settled wire kept live behind lift-off; 0: 1.75 sqrt(EI/T)");
-    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core or the layer below");
-    fixed(2005, "freeze.time", freeze.time, "s", "ms", 1e-6, 1e6, 1e-2, "time over which motion is judged while the spindle stands");
-    fixed(2006, "freeze.patience", freeze.patience, "1", "", 0.0, 1000.0, 1.0, "turns behind lift-off from which on creep may double each quarter of a turn");
+    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core or the layer below; 0: as the wire's diameter, 5 mm for 0.7 mm");
+    fixed(2005, "freeze.time", freeze.time, "s", "ms", 0.0, 1e6, 1e-2, "time over which motion is judged while the spindle stands; 0: ten periods of the free span's slowest ringing at the start");
+    fixed(2006, "freeze.patience", freeze.patience, "1", "", 0.0, 1000.0, 1.0, "turns behind lift-off from which on creep may double each quarter of a turn, up to a twentieth of the diameter in all");
 
     tunable(2100, "defects.gap", defects.gap, "1", "", 0.0, 100.0, 0.1, "gap above this many diameters ...");
     tunable(2101, "defects.gap_fraction", defects.gap_fraction, "1", "", 0.0, 1.0, 0.1, "... over at least this fraction of a turn in one run");
