@@ -23,7 +23,7 @@ minutes_of() {
         lab) echo 8 ;;
         docs) echo 9 ;;
         rust) echo 12 ;;
-        fmu) echo 8 ;;
+        fmu) echo 11 ;;
     esac
 }
 

@@ -11,6 +11,7 @@ and the corners of the core within a turn.
 import argparse
 import csv
 import json
+import math
 import subprocess
 import sys
 import zipfile
@@ -41,7 +42,12 @@ SHOWN = (
     ("spindle", "torque"),
     ("dancer", "position"),
     ("traverse", "position"),
+    ("coil", "free_length"),
 )
+LANDED = 2e-3
+"""A free span that is shorter by so much, m, after a step has landed on a corner."""
+BOUNCE = 25
+"""Steps after a landing within which another one is the same."""
 
 
 def pack(fmu, out):
@@ -149,28 +155,37 @@ def by_libcosim(archive, out):
 def plot(rows, path):
     column = {"time": 0} | {f"{part}.{name}": k + 1 for k, (part, name) in enumerate(SHOWN)}
     data = {name: [row[k] for row in rows] for name, k in column.items()}
+    angle, free = data["coil.spindle_angle"], data["coil.free_length"]
+    # (wire that bounces lands twice)
+    landed = [k for k in range(1, len(rows)) if free[k] < free[k - 1] - LANDED]
+    landings = [k for before, k in zip([-len(rows), *landed], landed) if k > before + BOUNCE]
     figure, axes = plt.subplots(3, 2, figsize=(11, 8), sharex="col", constrained_layout=True)
-    # one turn at full speed: the corners of the core
-    late = [k for k, angle in enumerate(data["coil.spindle_angle"]) if angle > data["coil.spindle_angle"][-1] - 6.3]
+    late = [k for k, turned in enumerate(angle) if turned > angle[-1] - math.tau]
     for side, points in enumerate((range(len(rows)), late)):
-        time = [1e3 * data["time"][k] for k in points]
+        across = [1e3 * data["time"][k] if side == 0 else math.degrees(angle[k] - angle[-1]) + 360 for k in points]
 
-        def draw(row, name, label, side=side, points=points, time=time):
-            axes[row][side].plot(time, [data[name][k] for k in points], label=label, linewidth=1)
+        def draw(row, name, label, side=side, points=points, across=across):
+            axes[row][side].plot(across, [data[name][k] for k in points], label=label, linewidth=1)
 
-        draw(0, "spindle.torque", "drive")
-        draw(0, "coil.spindle_torque_total", "wire")
+        draw(0, "spindle.torque", "of the drive")
+        draw(0, "coil.spindle_torque_total", "of the wire")
         draw(1, "spindle.setpoint", "asked for")
-        draw(1, "spindle.speed", "spindle")
-        draw(2, "coil.wire_tension", "wire")
-        draw(2, "coil.tension_setpoint", "dancer")
-        axes[2][side].set_xlabel("time ms")
+        draw(1, "spindle.speed", "of the spindle")
+        draw(2, "coil.wire_tension", "of the wire")
+        draw(2, "coil.tension_setpoint", "pull of the dancer")
     for row, label in enumerate(("torque N m", "speed rad/s", "tension N")):
+        for k in landings:
+            if k in late:
+                place = math.degrees(angle[k] - angle[-1]) + 360
+                axes[row][1].axvline(place, color="0.6", linestyle="--", linewidth=1, zorder=0)
         axes[row][0].set_ylabel(label)
         axes[row][0].legend(loc="best", fontsize="small")
     axes[0][0].set_title("the whole run")
-    axes[0][1].set_title("the last turn")
-    figure.savefig(path, dpi=120)
+    axes[0][1].set_title("the last turn; dashed: wire lands on a corner of the core")
+    axes[2][0].set_xlabel("time ms")
+    axes[2][1].set_xlabel("angle of the core deg")
+    axes[2][1].set_xticks(range(0, 361, 90))
+    figure.savefig(path, dpi=100)
     plt.close(figure)
 
 

@@ -139,7 +139,10 @@ impl SceneSettings {
         match by_name(name).map(|v| (v, v.access)) {
             Some((v, Access::Parameter { get, .. })) => {
                 let unit = if v.unit == "1" { "" } else { v.unit };
-                format!("{} {unit}", get(self)).trim_end().to_owned()
+                match get(self) {
+                    Value::String(text) if text.is_empty() => "\"\"".to_owned(),
+                    value => format!("{value} {unit}").trim_end().to_owned(),
+                }
             }
             _ => String::new(),
         }

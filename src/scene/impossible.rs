@@ -22,7 +22,7 @@ impl SceneSettings {
 }
 
 /// A length or force for a message: six digits are enough to act on.
-pub(super) fn si(x: f64) -> String {
+pub(crate) fn si(x: f64) -> String {
     let rounded = format!("{x:.5e}").parse().unwrap_or(x);
     crate::variables::Value::Real(rounded).to_string()
 }

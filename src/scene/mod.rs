@@ -29,6 +29,7 @@ pub use description::{
 };
 pub use error::{SceneError, Warning};
 pub use file::packed_names;
+pub(crate) use impossible::si;
 pub use key::{assignment, unit_suffixes};
 pub use nozzle_law::{NozzleLaw, Piece};
 

@@ -2,7 +2,7 @@
 
 use super::{SimError, Winding};
 use crate::math::V3;
-use crate::scene::Scene;
+use crate::scene::{Scene, si};
 use crate::signals::Inputs;
 
 /// Place of the nozzle by its inputs, in the frame at rest, m.
@@ -48,8 +48,10 @@ impl Winding {
             time: self.run.time,
             node: None,
             reason: format!(
-                "nozzle_offset_x = {} m and nozzle_offset_z = {} m put the nozzle into the circle of radius {least} m that the core sweeps; allowed: more than that from the axis",
-                end.nozzle_offset_x, end.nozzle_offset_z
+                "nozzle_offset_x = {} m and nozzle_offset_z = {} m put the nozzle into the circle of radius {} m that the core sweeps; allowed: more than that from the axis",
+                si(end.nozzle_offset_x),
+                si(end.nozzle_offset_z),
+                si(least)
             ),
         })
     }

@@ -19,7 +19,7 @@ use crate::math::turn_about_y;
 use crate::math::{Spin, V3, scaled};
 use crate::measure::{Coil, CoilSpec};
 use crate::rod::{Rod, Scalar};
-use crate::scene::{Core, Integrator, Scene};
+use crate::scene::{Core, Integrator, Scene, si};
 use crate::signals::{Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
 use std::f64::consts::FRAC_PI_2;
@@ -120,8 +120,8 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     if surface.radius_max() + radius >= distance {
         return Err(SimError::setup(format!(
             "nozzle.distance = {} m lies inside the circle of radius {} m that the core sweeps; allowed: more than that radius",
-            distance,
-            surface.radius_max() + radius
+            si(distance),
+            si(surface.radius_max() + radius)
         )));
     }
     // the core begins turned towards the nozzle, the way round on which its spindle lays wire

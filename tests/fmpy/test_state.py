@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import ERROR
+from conftest import ERROR, ROOT
 from fmpy.fmi1 import FMICallException
 from signals import duration, winding_signals
 
@@ -139,3 +139,13 @@ def test_history_is_cut_back_to_the_restored_state(make_slave, tmp_path):
         slave.fmu.terminate()
     for name in ("history.csv", "turns.csv", "coil.vtp"):
         assert (tmp_path / "plain" / name).read_bytes() == (tmp_path / "back" / name).read_bytes()
+
+
+def test_the_script_that_measures_costs(fmu_path):
+    line = [sys.executable, ROOT / "scripts/state_costs.py", "--fmu", fmu_path, "--turns", "1"]
+    said = subprocess.run(line, capture_output=True, text=True, timeout=300, check=True).stdout
+    head, _, row = [[cell.strip() for cell in text.strip("|").split("|")] for text in said.splitlines()]
+    costs = {name: float(cell) for name, cell in zip(head, row, strict=True)}
+    assert 1.0 <= costs["turns"] < 6.0 and costs["bytes kB"] > 100.0
+    # one derivative takes some steps, a state hardly any of one
+    assert costs["get ms"] < costs["step ms"] < costs["derivative ms"]

@@ -212,7 +212,10 @@ fn impossible_scenes_say_what_would_do() {
             "[wire]\nmoment_cap = 1e-3",
             &["wire.moment_cap = 0.001 N.m", "0.00571667"],
         ),
-        ("[core]\nshape = 'mesh'", &["core.file", "needs a file"]),
+        (
+            "[core]\nshape = 'mesh'",
+            &["core.file = \"\" is impossible", "needs a file"],
+        ),
         (
             "[core]\nshape = 'mesh'\nfile = 'none.stl'",
             &["test.toml:3", "none.stl", "cannot be opened"],
