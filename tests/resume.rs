@@ -282,6 +282,40 @@ fn a_folder_with_another_run_is_not_overwritten() {
     assert_eq!(output.status.code(), Some(2), "{}", said(&output));
 }
 
+/// Files on their way when a run was killed stayed for ever where the run that goes on does not write them.
+#[test]
+fn what_a_kill_left_on_its_way_goes() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let leftover = [
+        out.join("coil.png.partial"),
+        out.join("frames/frame_9999.vtp.partial"),
+    ];
+    let own = out.join("own.partial");
+    let leave = || {
+        std::fs::create_dir_all(out.join("frames")).unwrap();
+        for path in leftover.iter().chain([&own]) {
+            std::fs::write(path, "half").unwrap();
+        }
+    };
+    let gone = |command: &mut Command| {
+        let output = command.output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+        assert!(!leftover.iter().any(|path| path.exists()), "{command:?}");
+        assert!(own.exists(), "a file of somebody else");
+    };
+    let mut child = short(&out).spawn().unwrap();
+    wait_for_checkpoint(&out);
+    child.kill().unwrap();
+    child.wait().unwrap();
+    leave();
+    gone(&mut resume(&out));
+    leave();
+    gone(coilwind().arg("report").arg(&out).stderr(Stdio::piped()));
+    leave();
+    gone(short(&out).arg("--force"));
+}
+
 #[test]
 fn a_folder_without_a_whole_run_says_what_to_do() {
     let folder = tempfile::tempdir().unwrap();

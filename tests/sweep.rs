@@ -299,6 +299,8 @@ fn what_no_sweep_can_do_is_told_before_anything_is_wound() {
         for part in parts {
             assert!(said.contains(part), "{more:?}: {said}");
         }
+        // Without any range the usage follows.
+        assert!(more.is_empty() || said.lines().count() == 1, "{said}");
     }
     assert!(!out.exists());
 }

@@ -1,11 +1,15 @@
 //! `coilwind check`: is this scene possible?
 
 use super::failure::Failure;
+use super::members::rounded;
 use super::scene::SceneArgs;
 use super::terminal::print;
 use clap::Args;
 use coilwind::scene::Bilinear;
 use coilwind::simulation::Simulation;
+
+/// Digits of numbers that people read.
+const DIGITS: usize = 6;
 
 /// Arguments of `check`.
 #[derive(Args, Debug)]
@@ -30,17 +34,20 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
     let seconds = simulation.motion_profile().end();
     let wire = &scene.wire;
     let enamel = match wire.diameter > wire.bare_diameter {
-        true => format!(" ({} mm with its enamel)", wire.diameter * 1e3),
+        true => format!(
+            " ({} mm with its enamel)",
+            rounded(wire.diameter * 1e3, DIGITS)
+        ),
         false => String::new(),
     };
     print(&format!(
         "{}: valid; {} wire of {} mm{enamel} at {} N, {} turns at {} rad/s in {seconds:.4} s\n",
         args.scene.scene,
         scene.wire_material,
-        wire.bare_diameter * 1e3,
-        scene.tensioner.tension,
-        scene.spindle.turns,
-        (1e4 * scene.spindle.speed).round() / 1e4,
+        rounded(wire.bare_diameter * 1e3, DIGITS),
+        rounded(scene.tensioner.tension, DIGITS),
+        rounded(scene.spindle.turns, DIGITS),
+        rounded(scene.spindle.speed, DIGITS),
     ))?;
     let Some(laws) = &scene.wire_laws else {
         return Ok(());

@@ -3,6 +3,7 @@
 use super::checkpoint;
 use super::failure::Failure;
 use super::frames;
+use coilwind::output::PARTIAL;
 use coilwind::settings::SceneSettings;
 use std::fs;
 use std::path::Path;
@@ -66,8 +67,27 @@ pub(super) fn begin(directory: &Path, settings: &SceneSettings) -> Result<(), Fa
             fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
         }
     }
+    clear_partial(directory);
     let path = directory.join("scene.toml");
     fs::write(&path, settings.to_toml()).map_err(|e| Failure::write(&path, e))
+}
+
+/// Removes what a run that was killed left of files on their way; only those that a run writes, and of no run that goes on.
+pub(super) fn clear_partial(directory: &Path) {
+    let names = SIGNS.iter().chain(&RESULTS).chain(&["compare.html"]);
+    let frames = fs::read_dir(directory.join("frames")).into_iter().flatten();
+    let frames = frames.filter_map(|entry| Some(entry.ok()?.path()));
+    let is_frame = |path: &std::path::PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with("frame_") && name.ends_with(PARTIAL)
+    };
+    for path in names
+        .map(|name| directory.join(format!("{name}{PARTIAL}")))
+        .chain(frames.filter(is_frame))
+    {
+        // What cannot be removed harms nobody.
+        let _ = fs::remove_file(path);
+    }
 }
 
 /// Holds the history of a run that goes on; an error where another run writes it.

@@ -31,6 +31,7 @@ mod terminal;
 mod variables;
 mod verify;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use std::process::ExitCode;
 
@@ -72,7 +73,11 @@ enum Command {
 
 /// Parses the arguments, runs the command and turns its failure into an exit code.
 pub(crate) fn main() -> ExitCode {
-    let result = match Cli::parse().command {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(error) => return not_understood(&error),
+    };
+    let result = match cli.command {
         Command::Run(args) => match args.ensemble {
             Some(count) => ensemble::run(&args, count),
             None => run::run(&args),
@@ -93,4 +98,15 @@ pub(crate) fn main() -> ExitCode {
             failure.exit_code()
         }
     }
+}
+
+/// Tells what is wrong with the arguments. A value that is refused says itself what would do, in one line.
+fn not_understood(error: &clap::Error) -> ExitCode {
+    if error.kind() != ErrorKind::ValueValidation {
+        error.exit();
+    }
+    let text = error.to_string();
+    let line = text.lines().next().unwrap_or_default();
+    eprintln!("coilwind: {}", line.trim_start_matches("error: "));
+    ExitCode::from(2)
 }

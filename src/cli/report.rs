@@ -2,6 +2,7 @@
 
 use super::checkpoint;
 use super::failure::Failure;
+use super::folder;
 use super::terminal::print;
 use clap::Args;
 use coilwind::output::write_report;
@@ -30,6 +31,10 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
     directories.extend(args.other.as_deref());
     for directory in &directories {
         checkpoint::refuse_stopped(directory)?;
+        // Held meanwhile, so that a run that goes on keeps its files.
+        if let Ok(_hold) = folder::hold(directory) {
+            folder::clear_partial(directory);
+        }
     }
     write_report(&directories, &page)?;
     print(&format!("report: {}\n", page.display()))

@@ -278,6 +278,7 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
         reason,
     };
     let hold = folder::hold(directory)?;
+    folder::clear_partial(directory);
     let checkpoint = Checkpoint::read(directory)?;
     let plan = checkpoint.plan;
     plan.check_inputs()?;

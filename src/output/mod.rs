@@ -24,7 +24,7 @@ pub use summary::write_summary;
 pub use tables::{write_defects, write_stations, write_turns};
 pub use tube::{TubeMesh, tube_mesh};
 pub use vtp::{WireFields, write_core_vtp, write_frame, write_series, write_vtp};
-pub use whole::{write_whole, write_whole_bytes};
+pub use whole::{PARTIAL, write_whole, write_whole_bytes};
 
 use std::path::{Path, PathBuf};
 

@@ -5,6 +5,9 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
+/// Ending of the name of a file on its way.
+pub const PARTIAL: &str = ".partial";
+
 /// Writes a file by way of one beside it, which takes its name at the end.
 ///
 /// A reader finds the old file or the new one, never half of it, also after a kill and on a full disk. A device is
@@ -21,7 +24,7 @@ pub fn write_whole(
         return fill(path, path, write);
     }
     let mut partial = path.as_os_str().to_owned();
-    partial.push(".partial");
+    partial.push(PARTIAL);
     let partial = Path::new(&partial);
     let written = fill(partial, path, write)
         .and_then(|()| fs::rename(partial, path).map_err(OutputError::io(path)));

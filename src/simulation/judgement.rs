@@ -56,7 +56,7 @@ impl Winding {
             BulgeLimit::Fallback { limit_m } => Some((
                 EventKind::Judgement,
                 format!(
-                    "the height of this wire at rest on this core is not known, so wire bulges that stands more than {:.3} mm (one diameter) off; set defects.bulge_absolute to judge by another height",
+                    "the height of this wire at rest on this core is not known, so wire counts as a bulge where it stands off by more than {:.3} mm (one diameter); set defects.bulge_absolute to judge by another height",
                     1e3 * limit_m
                 ),
             )),

@@ -82,11 +82,33 @@ async function look(scheme) {
   await page.goto(pathToFileURL(resolve(given.page)).href);
   const canvas = page.locator(".view canvas").first();
   await canvas.waitFor();
-  const settle = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 60)))));
-  await settle();
+  const pictures = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 60)))));
+  // Until all stands there, and each view shows its fine picture.
+  const settle = async () => {
+    await pictures();
+    await page.waitForFunction(() => document.body.dataset.whole && [...document.querySelectorAll(".view")].every((view) => view.dataset.drawn === "fine"));
+    await pictures();
+  };
+  await pictures();
   const took = Date.now() - began;
   const { script, all } = await spent();
   check(`${scheme}: drawn within ${MOST_MS} ms`, took < MOST_MS, `${took} ms; ${script} ms of processor time in the page, ${all} ms with drawing`);
+  await settle();
+  const drawn = await page.locator(".view").first().evaluate((view) => ({ ...view.dataset }));
+  check(`${scheme}: one draft is drawn, then one fine picture`, drawn.pictures === "2", drawn.pictures);
+  check(`${scheme}: a view that stands still is not drawn`, await page.evaluate(async (before) => {
+    await new Promise((done) => setTimeout(done, 600));
+    return document.querySelector(".view").dataset.pictures === before;
+  }, drawn.pictures));
+  // A tube has 20 triangles a node, a draft of it 5.
+  const [draft, fine] = [Number(drawn.draftTriangles), Number(drawn.fineTriangles)];
+  await page.locator("select.core").first().selectOption("hidden");
+  await settle();
+  const wire = Number(await page.locator(".view").first().getAttribute("data-fine-triangles"));
+  check(`${scheme}: the draft has a quarter of the wire's triangles`, Math.abs(draft - (fine - 0.75 * wire)) < 40, `${draft} of ${fine}, ${wire} of them wire`);
+  check(`${scheme}: a coil of 100 turns stays below 400 000 triangles`, fine < 400_000, `${fine}`);
+  await page.locator("select.core").first().selectOption("solid");
+  await settle();
   check(`${scheme}: runs on the page`, (await page.locator(".run").count()) === Number(given.runs));
 
   const shot = async () => {
@@ -175,8 +197,8 @@ async function look(scheme) {
   await settle();
   check(`${scheme}: the section moves`, (await compare(page, cut, await section.screenshot())).different > 1e-3);
   check(`${scheme}: no section or curve is blank`, (await compare(page, cut, cut)).colours > 3);
-  const drawn = await page.locator(".chart canvas").count();
-  check(`${scheme}: curves are drawn, or missed`, drawn >= 2 || (await page.getByText("history.csv is missing").count()) > 0, `${drawn}`);
+  const curves = await page.locator(".chart canvas").count();
+  check(`${scheme}: curves are drawn, or missed`, curves >= 2 || (await page.getByText("history.csv is missing").count()) > 0, `${curves}`);
   check(`${scheme}: the console is quiet`, complaints.length === 0, complaints.join(" | "));
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   check(`${scheme}: nothing sticks out sideways`, wide <= 0, `${wide} px`);

@@ -20,12 +20,14 @@ const UPLOT_STYLE: &str = include_str!("vendor/uplot.min.css");
 const VENDOR: &str = include_str!("vendor/vendor.min.js");
 const LICENSES: &str = include_str!("vendor/LICENSES.txt");
 /// In the order in which they use each other.
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 9] = [
     include_str!("page/base.js"),
     include_str!("page/colour.js"),
     include_str!("page/charts.js"),
     include_str!("page/map.js"),
     include_str!("page/section.js"),
+    include_str!("page/tube.js"),
+    include_str!("page/paint.js"),
     include_str!("page/view.js"),
     include_str!("page/main.js"),
 ];

@@ -89,7 +89,19 @@ function choice(names, chosen, choose) {
   return el("span", { class: "group", role: "group" }, ...buttons);
 }
 
-/** A canvas in the pixels of the screen that draws itself again when its width or the theme changes. */
+/** Work that waits until the page has shown its first picture, in the order of the page. */
+const waiting = [];
+const later = (work) => waiting.push(work);
+
+/** Does the work that waits, a piece between two pictures, so that the page answers meanwhile. */
+function doWhatWaits() {
+  const next = waiting.shift();
+  if (!next) return void (document.body.dataset.whole = "yes");
+  next();
+  setTimeout(doWhatWaits);
+}
+
+/** A canvas in the pixels of the screen that draws itself again when its width or the theme changes; first when all else is shown. */
 function canvas(height, draw, attributes = {}) {
   const made = el("canvas", { class: "own", ...attributes });
   const paint = () => {
@@ -104,13 +116,16 @@ function canvas(height, draw, attributes = {}) {
     draw(pen, width, tall);
   };
   let before = 0;
-  new ResizeObserver(() => {
-    if (made.clientWidth !== before) {
-      before = made.clientWidth;
-      paint();
-    }
-  }).observe(made);
-  onTheme(paint);
+  const fit = () => {
+    if (made.clientWidth === before) return;
+    before = made.clientWidth;
+    paint();
+  };
+  later(() => {
+    fit();
+    new ResizeObserver(fit).observe(made);
+    onTheme(paint);
+  });
   made.paint = paint;
   return made;
 }

@@ -46,12 +46,16 @@ function chart(title, axis, x, unit, curves, marks, go, note) {
     bands: curves.length === 3 ? [{ series: [3, 2], fill: () => css("--band") }] : [],
     hooks: { draw: [(u) => drawMarks(u, marks)] },
   };
-  const plot = new Vendor.uPlot(options, [x, ...curves.map((curve) => curve.values)], box);
-  plot.over.addEventListener("click", () => {
-    if (plot.cursor.left >= 0) go(plot.posToVal(plot.cursor.left, "x"));
+  later(() => {
+    options.width = box.clientWidth || options.width;
+    const plot = new Vendor.uPlot(options, [x, ...curves.map((curve) => curve.values)], box);
+    plot.over.addEventListener("click", () => {
+      if (plot.cursor.left >= 0) go(plot.posToVal(plot.cursor.left, "x"));
+    });
+    const fit = () => box.clientWidth && box.clientWidth !== plot.width && plot.setSize({ width: box.clientWidth, height: 250 });
+    new ResizeObserver(fit).observe(box);
+    onTheme(() => plot.redraw());
   });
-  new ResizeObserver(() => box.clientWidth && plot.setSize({ width: box.clientWidth, height: 250 })).observe(box);
-  onTheme(() => plot.redraw());
   return section;
 }
 

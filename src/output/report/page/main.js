@@ -172,4 +172,10 @@ page.classList.toggle("pair", data.runs.length > 1);
 const runs = data.runs.map((one) => new Run(one));
 runs.forEach((run) => (run.all = runs));
 page.append(...runs.map(layOut));
+runs.forEach((run) => run.view?.resize());
+requestAnimationFrame(() => requestAnimationFrame(() => {
+  runs.forEach((run) => run.view?.painter?.wait());
+  // The picture needs a moment more to come to the screen.
+  setTimeout(doWhatWaits, 100);
+}));
 document.getElementById("made").textContent = `Made by coilwind ${data.version} from the files of the run. Contains three.js and uPlot.`;

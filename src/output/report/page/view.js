@@ -1,92 +1,4 @@
-// The coil in three dimensions: tubes round the nodes of the wire, made here, and the core. Lengths in mm.
-
-const SIDES = 10;
-const SCALE = 1e3;
-/** Colours of the screen as light, by the curve of sRGB. */
-const LIGHT = Float32Array.from({ length: 256 }, (_, k) => {
-  const c = k / 255;
-  return c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
-});
-
-/** A tube along a wire: geometry whose colours can be set per node. */
-class Tube {
-  constructor(points, radius) {
-    this.nodes = points.length / 3;
-    const n = this.nodes;
-    const place = new Float32Array(3 * SIDES * n);
-    const normal = new Float32Array(3 * SIDES * n);
-    const index = new Uint32Array(Math.max(0, 6 * SIDES * (n - 1)));
-    const circle = Array.from({ length: SIDES }, (_, k) => [Math.cos((TURN * k) / SIDES), Math.sin((TURN * k) / SIDES)]);
-    const v = (k) => new Vendor.Vector3(points[3 * k], points[3 * k + 1], points[3 * k + 2]).multiplyScalar(SCALE);
-    const [along, u, w] = [new Vendor.Vector3(), new Vendor.Vector3(0.3, 1, 0.2), new Vendor.Vector3()];
-    let [before, here] = [v(0), v(0)];
-    for (let k = 0; k < n; k += 1) {
-      const after = k + 1 < n ? v(k + 1) : here;
-      along.subVectors(after, before).normalize();
-      // Carried along with the least turn, so that the surface does not twist.
-      u.addScaledVector(along, -u.dot(along)).normalize();
-      w.crossVectors(along, u);
-      for (let side = 0; side < SIDES; side += 1) {
-        const [c, s] = circle[side];
-        const at = 3 * (k * SIDES + side);
-        const [x, y, z] = [c * u.x + s * w.x, c * u.y + s * w.y, c * u.z + s * w.z];
-        normal.set([x, y, z], at);
-        place.set([here.x + radius * x, here.y + radius * y, here.z + radius * z], at);
-      }
-      [before, here] = [here, after];
-    }
-    let at = 0;
-    for (let k = 0; k + 1 < n; k += 1) {
-      for (let side = 0; side < SIDES; side += 1) {
-        const [a, b] = [k * SIDES + side, k * SIDES + ((side + 1) % SIDES)];
-        index.set([a, b, a + SIDES, b, b + SIDES, a + SIDES], at);
-        at += 6;
-      }
-    }
-    this.geometry = new Vendor.BufferGeometry();
-    this.geometry.setAttribute("position", new Vendor.BufferAttribute(place, 3));
-    this.geometry.setAttribute("normal", new Vendor.BufferAttribute(normal, 3));
-    this.geometry.setAttribute("color", new Vendor.BufferAttribute(new Float32Array(3 * SIDES * n), 3));
-    this.geometry.setIndex(new Vendor.BufferAttribute(index, 1));
-  }
-
-  /** Colours the nodes. */
-  paint(values, colours) {
-    const colour = this.geometry.getAttribute("color");
-    for (let k = 0; k < this.nodes; k += 1) {
-      const light = colours.of(values[k]).map((c) => LIGHT[Math.round(c)]);
-      for (let side = 0; side < SIDES; side += 1) colour.array.set(light, 3 * (k * SIDES + side));
-    }
-    colour.needsUpdate = true;
-  }
-}
-
-/** The core as triangles that meet at edges. */
-function coreMesh(core) {
-  const place = new Float32Array(3 * core.corners.length);
-  core.corners.forEach((corner, k) => {
-    for (let axis = 0; axis < 3; axis += 1) place[3 * k + axis] = SCALE * core.points[3 * corner + axis];
-  });
-  const geometry = new Vendor.BufferGeometry();
-  geometry.setAttribute("position", new Vendor.BufferAttribute(place, 3));
-  geometry.computeVertexNormals();
-  const material = new Vendor.MeshStandardMaterial({ flatShading: true, roughness: 0.9, metalness: 0, side: Vendor.DoubleSide });
-  return new Vendor.Mesh(geometry, material);
-}
-
-/** The wire at a frame: what lay already, then what the frame has. */
-function wireAt(run, frame) {
-  if (frame == null) return run.wire;
-  const { keep, wire } = run.frames[frame];
-  const join = (name, per) => {
-    const [first, rest] = [run.wire[name].subarray(0, per * keep), wire[name]];
-    const joined = new first.constructor(first.length + rest.length);
-    joined.set(first);
-    joined.set(rest, first.length);
-    return joined;
-  };
-  return Object.fromEntries(Object.keys(run.wire).map((name) => [name, join(name, name === "points" ? 3 : 1)]));
-}
+// The coil in three dimensions, to turn, zoom and colour. Lengths in mm.
 
 class View {
   constructor(run) {
@@ -99,12 +11,12 @@ class View {
     this.scene = new Vendor.Scene();
     this.camera = new Vendor.PerspectiveCamera(32, 1, 0.5, 5000);
     try {
-      this.renderer = new Vendor.WebGLRenderer({ antialias: true });
+      this.renderer = new Vendor.WebGLRenderer();
     } catch {
       this.box.replaceChildren(el("p", { style: "padding: 16px" }, "This browser shows no WebGL; the other parts of the page do not need it."));
       return;
     }
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio || 1, 2));
+    this.painter = new Painter(this);
     this.box.prepend(this.renderer.domElement);
     this.controls = new Vendor.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
@@ -113,7 +25,7 @@ class View {
     lamp.position.set(-0.4, 0.8, 1);
     this.camera.add(lamp);
     this.scene.add(sky, this.camera);
-    this.material = new Vendor.MeshStandardMaterial({ vertexColors: true, roughness: 0.5, metalness: 0.1 });
+    this.material = new Vendor.MeshPhongMaterial({ vertexColors: true, specular: 0x303030, shininess: 24 });
     this.mark = new Vendor.Mesh(new Vendor.SphereGeometry(1, 24, 16),
       new Vendor.MeshBasicMaterial({ transparent: true, opacity: 0.28, depthWrite: false }));
     this.mark.scale.setScalar(1.25 * run.diameter * SCALE);
@@ -148,8 +60,7 @@ class View {
   /** Shows the first turns only, so that lower layers can be seen; no number shows all. */
   peel(turns) {
     this.upTo = turns;
-    const nodes = turns == null ? this.tube.nodes : lowerBound(this.run.turnOf, turns);
-    this.tube.geometry.setDrawRange(0, 6 * SIDES * Math.max(0, Math.min(nodes, this.tube.nodes) - 1));
+    this.tube.show(turns == null ? this.tube.nodes : lowerBound(this.run.turnOf, turns));
     if (this.peeler) {
       this.peeler.value = turns == null ? this.peeler.max : Math.ceil(turns);
       this.peeled.textContent = turns == null ? "all" : `${Number(turns.toFixed(2))}`;
@@ -191,7 +102,8 @@ class View {
 
   resize() {
     const [width, height] = [this.box.clientWidth, this.box.clientHeight];
-    if (!width || !height) return;
+    if (!width || !height || (width === this.wide && height === this.high)) return;
+    [this.wide, this.high] = [width, height];
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
@@ -244,14 +156,9 @@ class View {
     step(began);
   }
 
-  /** Draws once before the screen is next painted. */
+  /** Draws once before the screen is next painted, as soon as it is known how large. */
   draw() {
-    if (this.waits || !this.renderer) return;
-    this.waits = true;
-    requestAnimationFrame(() => {
-      this.waits = false;
-      this.renderer.render(this.scene, this.camera);
-    });
+    if (this.wide) this.painter.ask();
   }
 
   /** The card: view, its switches, and the slider over time where frames were kept. */
