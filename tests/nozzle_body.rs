@@ -1,5 +1,6 @@
 //! The nozzle's body: what it meets ends the winding, and what it passes does not.
 
+#[allow(dead_code, reason = "its measures are not needed here")]
 #[path = "common/bobbin.rs"]
 mod bobbin;
 

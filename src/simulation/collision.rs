@@ -5,7 +5,7 @@
 //! that stands at that instant, against frozen wire, and against live wire up to lift-off. The free span may pass beside it.
 
 use super::Winding;
-use crate::geometry::RoundedRod;
+use crate::geometry::{Nearness, RoundedRod};
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
 use crate::measure::DefectKind;
 use crate::settings::Nozzle;
@@ -22,7 +22,7 @@ struct Meeting {
 
 /// The nozzle's body, its axis from the exit along +x; none of a nozzle that is a point.
 fn body_of(nozzle: &Nozzle) -> Option<RoundedRod> {
-    (nozzle.outer_diameter > 0.0).then(|| RoundedRod {
+    (nozzle.outer_diameter > 0.0).then_some(RoundedRod {
         radius: 0.5 * nozzle.outer_diameter,
         length: match nozzle.length {
             0.0 => f64::INFINITY,
@@ -103,7 +103,7 @@ impl Winding {
             let start = V3::new(0.0, exit.y + aside, 0.0) - exit;
             let point = body.meets(start, |p| {
                 let (near, _) = solid(p).expect("there is a core");
-                crate::geometry::Nearness {
+                Nearness {
                     normal: spin.to_lab(near.normal),
                     ..near
                 }
