@@ -3,9 +3,12 @@
 use super::shape::Nearness;
 use crate::math::V3;
 
-/// Steps of [`RoundedRod::meets`] at most. A plane that is `depth` deep in a round of radius `r` is found to be so after about
-/// `r / (2 depth)` steps: 3 um of 6 mm.
+/// Steps of [`RoundedRod::meets`] at most. A plane before a round of radius `r` is found to be nearer than `gap` after about
+/// `r / (2 gap)` steps: 3 um of 6 mm.
 const MOST_STEPS: usize = 1024;
+
+/// Distance up to which bodies meet, m. Points of bodies that overlap come nearer step by step and never quite to each other.
+const MEETS: f64 = 0.5e-6;
 
 /// A rod whose axis runs from the origin along +x, lengths in m.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,7 +65,7 @@ impl RoundedRod {
         let mut p = self.nearest(start);
         for _ in 0..MOST_STEPS {
             let near = solid(p);
-            if near.distance <= 0.0 {
+            if near.distance <= MEETS {
                 return Some(p);
             }
             let next = self.nearest(p - near.normal * near.distance);
@@ -158,12 +161,12 @@ mod tests {
         let from_edge = |n: V3| V3::new(turned * (n.x + n.z), n.y, turned * (n.z - n.x));
         let corner = turned * (5e-3 + 3e-3) + 1e-3;
         for rod in RODS {
-            for (gap, meets) in [(1e-6, false), (-1e-6, true)] {
+            for (gap, meets) in [(2e-6, false), (-2e-6, true)] {
                 let aside = V3::new(0.0, 0.0, 4e-3 + rod.radius + gap);
                 let start = |exit: V3| V3::new(0.0, exit.y, 0.0) - exit;
                 let found = rod.meets(start(aside), |p| solid.nearness(p + aside));
                 assert_eq!(found.is_some(), meets, "{rod:?} beside, {gap}");
-                let ahead = V3::new(corner + gap, 1e-3, 0.0);
+                let ahead = V3::new(corner + gap, 1e-3, -turned * 2e-3);
                 let found = rod.meets(start(ahead), |p| {
                     let near = solid.nearness(to_edge(p + ahead));
                     Nearness {
