@@ -1,5 +1,6 @@
 //! Wire that yields by the friction at the nozzle's exit.
 
+use coilwind::rod::ExitBend;
 use coilwind::settings::SceneSettings;
 use coilwind::signals::Inputs;
 use coilwind::simulation::Simulation;
@@ -42,4 +43,48 @@ fn wire_that_yields_at_the_exit_pulls_as_hard_as_the_spindle_says() {
         "{} of {dissipated} J",
         b.numerical
     );
+}
+
+/// The pull in the free span is the tensioner's and the work of bending and straightening over the edge, per length.
+#[test]
+fn wire_that_yields_over_the_edge_of_the_exit_takes_more_pull() {
+    let wound = |exit_radius: f64| {
+        let mut s = SceneSettings::default();
+        s.core.shape = "cylinder".to_owned();
+        s.core.radius = 18e-3;
+        s.nozzle.distance = 25e-3;
+        s.nozzle.exit_radius = exit_radius;
+        s.tensioner.tension = 20.0;
+        let mut sim = Simulation::new(&s.build().unwrap()).unwrap();
+        for _ in 0..300 {
+            let inputs = Inputs {
+                spindle_speed: 10.0,
+                ..sim.inputs()
+            };
+            sim.advance(inputs, 1e-3).unwrap();
+        }
+        sim
+    };
+    assert!((wound(0.0).outputs().wire_tension / 20.0 - 1.0).abs() < 1e-3);
+    // on a wide edge the wire lies, on a tight one it bends as far as its pull bends it
+    for (exit_radius, lies) in [(20e-3, true), (1e-3, false)] {
+        let sim = wound(exit_radius);
+        let system = sim.system();
+        let nodes = &system.state.rod.x;
+        let n = nodes.len() - 1;
+        let last = nodes[n] - nodes[n - 1];
+        let deflection = libm::acos(last.x / last.norm());
+        let edge = 1.0 / (exit_radius + 0.35e-3);
+        let bend = ExitBend::over(&system.model.laws.bend, edge, deflection, 20.0);
+        assert_eq!(bend.curvature == edge, lies, "{bend:?}");
+        assert!(bend.work > 0.1 && bend.set > 1.0, "{bend:?}");
+        let more = sim.outputs().wire_tension - 20.0;
+        assert!(
+            (more / bend.work - 1.0).abs() < 0.02,
+            "{more} N more, {bend:?}"
+        );
+        let b = system.state.balance;
+        let dissipated = b.plastic.iter().sum::<f64>() + b.friction + b.damping;
+        assert!(b.numerical.abs() < 0.05 * dissipated, "{b:?}");
+    }
 }

@@ -37,6 +37,8 @@ pub struct FeedSpec {
     pub line_damping: f64,
     /// exit friction coefficient
     pub exit_friction: f64,
+    /// curvature of the wire on the edge of the exit, 1/m (0: bending over it does not count)
+    pub exit_curvature: f64,
     /// length of the line, m: that much wire is as tight as the line
     pub line_length: f64,
     /// mass of the line's wire, kg (0: it does not count); needs a tensioner with mass and a line of some length
@@ -227,6 +229,7 @@ mod tests {
             line_stiffness: k,
             line_damping: 0.2 * (k * m).sqrt(),
             exit_friction: 0.0,
+            exit_curvature: 0.0,
             line_length: 0.5,
             line_mass: 0.0,
             pulley: None,

@@ -1,4 +1,6 @@
 //! The convex hull of a core's section, and the outline that lies everywhere as far outside of it.
+//!
+//! The hull is our own: of the crates that have one, `geo` and `parry2d` bring a dozen others, and `chull` has it in space only.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -69,6 +71,9 @@ impl Hull {
     }
 
     /// The outline `out` (m) outside, arcs in chords of a `chords`th of a right angle at most; as many points for every `out`.
+    ///
+    /// A corner that bends by one such chord or less is one mitred point. Its share `1 / cos(turn / 2) - 1` of `out` too far
+    /// outside is to fourth order that by which the chord would be inside.
     pub(super) fn outline(&self, out: f64, chords: usize) -> Vec<[f64; 2]> {
         let normals: Vec<[f64; 2]> = self
             .edges()
@@ -83,6 +88,14 @@ impl Hull {
             let (first, next) = (normals[k], normals[(k + 1) % normals.len()]);
             let turn = libm::atan2(cross(first, next), first[0] * next[0] + first[1] * next[1]);
             let steps = ((turn / FRAC_PI_2 * chords as f64 - SAME).ceil() as usize).max(1);
+            if steps == 1 {
+                let mitre = out / (1.0 + first[0] * next[0] + first[1] * next[1]);
+                outline.push([
+                    x + mitre * (first[0] + next[0]),
+                    z + mitre * (first[1] + next[1]),
+                ]);
+                continue;
+            }
             for step in 0..=steps {
                 let (sin, cos) = libm::sincos(turn * step as f64 / steps as f64);
                 let normal = match step {
@@ -123,6 +136,26 @@ mod tests {
             let beyond = libm::hypot((x.abs() - 2.0).max(0.0), (z.abs() - 1.0).max(0.0));
             assert!((beyond - 0.5).abs() < 1e-12, "{x} {z}");
         }
+    }
+
+    /// Mitred points stand no farther outside than chords of the same turn would lie inside.
+    #[test]
+    fn a_hull_that_hardly_bends_has_one_point_at_each_corner() {
+        let sides = 360;
+        let angle = |k: usize| std::f64::consts::TAU * k as f64 / sides as f64;
+        let points = (0..sides).map(|k| [libm::cos(angle(k)), libm::sin(angle(k))]);
+        let hull = Hull::of(points.collect()).expect("round the axis");
+        let (out, half) = (0.5, 0.5 * angle(1));
+        let outline = hull.outline(out, 90);
+        assert_eq!(outline.len(), sides);
+        for [x, z] in outline {
+            let beyond = libm::hypot(x, z) - 1.0 - out;
+            let far = out * (1.0 / libm::cos(half) - 1.0);
+            assert!((beyond - far).abs() < 1e-12, "{beyond}");
+            assert!(far < 1.001 * out * (1.0 - libm::cos(half)), "{far}");
+        }
+        // with finer chords each is an arc
+        assert_eq!(hull.outline(out, 180).len(), 3 * sides);
     }
 
     #[test]

@@ -27,6 +27,7 @@ mod grid;
 mod hull;
 mod level;
 mod mesh;
+mod rounded_rod;
 mod shape;
 mod spline;
 mod surface;
@@ -43,6 +44,7 @@ pub use error::MeshError;
 pub use feature::Nearest;
 pub use flange::Flanges;
 pub use mesh::TriMesh;
+pub use rounded_rod::RoundedRod;
 pub use shape::{Nearness, Shape};
 #[cfg(feature = "lab")]
 pub use spline::Foot;

@@ -286,6 +286,29 @@ impl Tube {
         (p - a - d * t).norm()
     }
 
+    /// The node at or before the place of the centreline that is nearest by `distance` (m), and that distance, where it is below
+    /// `reach`. Nodes and the middles between them are looked at. The distance, of a point in the core frame (m), grows by no
+    /// more than the way.
+    pub fn nearest_by(&self, reach: f64, distance: impl Fn(V3) -> f64) -> Option<(usize, f64)> {
+        let mut best = (0, reach);
+        for (c, b) in self.chunks.iter().enumerate() {
+            let (centre, half) = (0.5 * (b.min + b.max), 0.5 * (b.max - b.min).norm());
+            if distance(centre) - half >= best.1 {
+                continue;
+            }
+            for s in self.segments_of(c) {
+                let [from, to] = [self.points[s], self.points[s + 1]];
+                for p in [from, 0.5 * (from + to), to] {
+                    let here = distance(p);
+                    if here < best.1 {
+                        best = (s, here);
+                    }
+                }
+            }
+        }
+        (best.1 < reach).then_some(best)
+    }
+
     /// Segments whose surface is within `reach` (m) of `p` (core frame, m) and which end before
     /// `arc` (m), ascending.
     pub fn near(&self, p: V3, reach: f64, arc: f64, out: &mut Vec<u32>) {

@@ -6,6 +6,7 @@
 
 pub mod batch;
 mod bending;
+mod exit_bend;
 mod flow_curve;
 mod forces;
 mod joint;
@@ -25,6 +26,7 @@ pub use bending::bent;
 #[cfg(feature = "lab")]
 pub use bending::{Bent, Symmetric, add_square};
 pub use bending::{Stretched, stretched, turning};
+pub use exit_bend::ExitBend;
 pub use flow_curve::{Bilinear, FlowCurve, FlowCurveError, InPieces, MOST_STRAIN, RoundLaws};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
 pub use joint::Joint;

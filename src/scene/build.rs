@@ -88,6 +88,7 @@ impl SceneSettings {
             _ => Integrator::Implicit,
         };
         self.check_line(integrator, &mut problems);
+        self.check_nozzle_body(&wire, integrator, &mut problems);
         let mut decisions = Decisions::default();
         self.plasticity(&mut wire, &mut decisions);
         let twist = problems.note(self.twist(integrator, &wire, &mut decisions));
@@ -104,6 +105,7 @@ impl SceneSettings {
         let window = self.window(core.flange(), &mut problems);
         let mut warnings = self.warnings(&solver, &wire, &core, &extent, &nozzle_law);
         warnings.extend(laws.and_then(|laws| self.rough_laws(&laws)));
+        warnings.extend(self.yielding_exit(&wire, &extent));
 
         let mut scene = Scene {
             name: self.name.clone(),

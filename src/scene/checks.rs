@@ -84,13 +84,18 @@ impl SceneSettings {
         let distance = self.nozzle.distance;
         let clear = extent.turning_radius + wire.diameter;
         if distance <= clear {
+            let with_flanges = extent.turning_radius > extent.winding_radius;
+            let (who, or) = match with_flanges {
+                true => ("flanges need", ", or a lower core.flange.height"),
+                false => ("core needs", ""),
+            };
             problems.add(self.impossible(
                 "nozzle.distance",
                 format!(
-                    "the nozzle is inside the circle the turning core needs, {} m and the wire",
+                    "the nozzle is inside the circle the turning {who}, {} m and the wire",
                     si(extent.turning_radius)
                 ),
-                format!("more than {} m", si(clear)),
+                format!("more than {} m{or}", si(clear)),
             ));
         }
         // Further out the wire would leave the core at more than 45 degrees.

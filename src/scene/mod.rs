@@ -15,6 +15,7 @@ mod file;
 mod impossible;
 mod key;
 mod material;
+mod nozzle_body;
 mod nozzle_law;
 mod nozzle_plan;
 mod problems;

@@ -273,18 +273,22 @@ impl SceneSettings {
         // where wire crosses wire a layer is a diameter high
         let top = |number: usize| extent.winding_radius + number as f64 * d;
         let count = layers.layers.len();
-        if top(count) + d >= self.nozzle.distance {
-            let meets = (1..=count).find(|&number| top(number) + d >= self.nozzle.distance);
+        let meets = (1..=count).find(|&number| top(number) + d >= self.nozzle.distance);
+        if let Some(number) = meets {
+            let below = &layers.layers[..number - 1];
+            let turn = 1 + below.iter().map(|layer| layer.turns).sum::<u32>();
+            let fewer = match number {
+                1 => String::new(),
+                _ => format!(", or at most {} winding.layers", number - 1),
+            };
             problems.add(self.impossible(
                 "nozzle.distance",
                 format!(
-                    "the coil meets the nozzle in layer {}",
-                    meets.unwrap_or(count)
+                    "the coil meets the nozzle in layer {number}, from turn {turn} at y = {} m on: it stands up to {} m from the axis there",
+                    si(layers.layers[number - 1].first),
+                    si(top(number))
                 ),
-                format!(
-                    "more than {} m, or fewer winding.layers",
-                    si(top(count) + d)
-                ),
+                format!("more than {} m{fewer}", si(top(count) + d)),
             ));
         }
     }

@@ -226,6 +226,12 @@ impl SceneSettings {
             let message = "has no effect: there are no flanges without core.flange.inner_distance";
             warn("core.flange.insulation", message.to_owned());
         }
+        if self.nozzle.outer_diameter == 0.0 {
+            for key in ["nozzle.length", "nozzle.edge_radius"] {
+                let message = "has no effect: a nozzle without nozzle.outer_diameter is a point";
+                warn(key, message.to_owned());
+            }
+        }
         if self.wire.enamelled_diameter == 0.0 {
             let message = "has no effect: wire without wire.enamelled_diameter is bare";
             warn("wire.enamel_density", message.to_owned());

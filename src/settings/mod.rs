@@ -291,6 +291,11 @@ impl Default for SceneSettings {
                 y_start: 0.0,
                 exit_friction: 0.0,
                 position_at_start: false,
+                outer_diameter: 0.0,
+                length: 0.0,
+                edge_radius: 0.0,
+                bore: 0.0,
+                exit_radius: 0.0,
             },
             tensioner: Tensioner {
                 tension: 15.0,

@@ -11,6 +11,26 @@ pub struct Nozzle {
     pub exit_friction: f64,
     /// whether inputs without a rate say where the nozzle is at the start of a communication step, not at its end
     pub position_at_start: bool,
+    /// outer diameter of the body, which goes from the exit outwards along +x, m; 0: the nozzle is a point
+    pub outer_diameter: f64,
+    /// length of the body, m; 0: without end
+    pub length: f64,
+    /// radius of the rim of the body's faces, m
+    pub edge_radius: f64,
+    /// diameter of the hole, m; 0: not said
+    pub bore: f64,
+    /// radius of the edge of the hole at the exit, m; 0: bending over it does not count
+    pub exit_radius: f64,
+}
+
+impl Nozzle {
+    /// Largest curvature, 1/m, that the edge of the exit bends the centreline of wire of this radius, m, to; 0: it does not count.
+    pub fn exit_curvature(&self, wire_radius: f64) -> f64 {
+        match self.exit_radius > 0.0 {
+            true => 1.0 / (self.exit_radius + wire_radius),
+            false => 0.0,
+        }
+    }
 }
 
 /// Constant pull through an equivalent mass and an elastic line.

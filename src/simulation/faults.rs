@@ -48,12 +48,18 @@ impl Winding {
 
     /// No wire can be wound after what happened at a live node; from now on it stays as it is.
     pub(super) fn note_end(&mut self, kind: DefectKind, node: usize, text: String) {
-        self.run.over = true;
+        let (angle, place) = self.place_of(node);
         if kind == DefectKind::Break {
             let before: f64 = self.sys.state.rod.rest[..node].iter().sum();
             self.run.outputs.break_position = self.sys.state.arc0 + before;
         }
-        self.note_fault(kind, node);
+        self.note_end_at(kind, angle, place, text);
+    }
+
+    /// The same of what happened at an angle along the wire from the clamp, rad, at a place in the core frame, m.
+    pub(super) fn note_end_at(&mut self, kind: DefectKind, angle: f64, place: V3, text: String) {
+        self.run.over = true;
+        self.keep_fault(kind, angle, place);
         let event = match kind {
             DefectKind::Collision => EventKind::Collision,
             DefectKind::Runaway => EventKind::Runaway,
@@ -62,12 +68,23 @@ impl Winding {
         self.report(event, text);
     }
 
-    /// Keeps a fault of the wire at a live node; what is not laid yet counts to the place where wire is laid.
-    fn note_fault(&mut self, kind: DefectKind, node: usize) {
+    /// Angle along the wire from the clamp to a live node, rad, and its place in the core frame, m; what is not laid yet counts
+    /// to the angle where wire is laid.
+    fn place_of(&self, node: usize) -> (f64, V3) {
         let (angle, _) = self.wound_to(node.min(self.lift_off()));
+        let spin = Spin::new(self.sys.state.spindle.angle);
+        (angle, spin.to_core(self.sys.state.rod.x[node]))
+    }
+
+    /// Keeps a fault of the wire at a live node.
+    fn note_fault(&mut self, kind: DefectKind, node: usize) {
+        let (angle, place) = self.place_of(node);
+        self.keep_fault(kind, angle, place);
+    }
+
+    fn keep_fault(&mut self, kind: DefectKind, angle: f64, place: V3) {
         let angle = angle.max(0.0);
         let now = self.sys.state.time;
-        let place: V3 = Spin::new(self.sys.state.spindle.angle).to_core(self.sys.state.rod.x[node]);
         self.run.faults.push(Defect {
             kind,
             turn: (angle / TAU) as u32 + 1,

@@ -29,25 +29,40 @@ impl Winding {
         let x = &self.sys.state.rod.x;
         let lies = scaled(LIES, self.scene.wire.diameter);
         let radius = self.scene.wire.radius();
-        let clearance = |i: usize| match self.sys.touches(i) {
-            true => 0.0,
-            false => {
-                let height = self.sys.distance_to_core(spin.to_core(self.sys.centre(i)));
-                (height - radius).max(0.0)
-            }
+        let height = |i: usize| {
+            let place = spin.to_core(self.sys.centre(i));
+            self.sys.distance_to_core(place) - radius
         };
         let last = x.len() - 1;
-        // clearances of the two nodes beyond
-        let mut beyond = [f64::INFINITY; 2];
-        let mut node = last - 1;
-        loop {
-            // the clamp lies on the core
-            let here = if node == 0 { 0.0 } else { clearance(node) };
-            if here <= lies {
-                break;
+        // a node and its height: wire so far off reaches the core no sooner than after that way
+        let (mut seen, mut off) = (last - 1, 0.0);
+        let mut lies_at = |i: usize| {
+            if self.sys.touches(i) {
+                return true;
             }
-            (node, beyond) = (node - 1, [here, beyond[0]]);
+            let way = (self.sys.centre(i) - self.sys.centre(seen)).norm();
+            if off - way > 2.0 * lies {
+                return false;
+            }
+            (seen, off) = (i, height(i));
+            off <= lies
+        };
+        // the clamp lies on the core
+        let mut node = last - 1;
+        while node > 0 && !lies_at(node) {
+            node -= 1;
         }
+        let clearance = |i: usize| {
+            if i >= last {
+                f64::INFINITY
+            } else if self.sys.touches(i) {
+                0.0
+            } else {
+                height(i).max(0.0)
+            }
+        };
+        // clearances of the two nodes beyond
+        let beyond = [clearance(node + 1), clearance(node + 2)];
         // wire that bends away lifts off with the square of the way, so that roots lie on a line
         let length = |j: usize| (x[j + 1] - x[j]).norm();
         let [near, far, lies] = [beyond[0], beyond[1], lies].map(f64::sqrt);

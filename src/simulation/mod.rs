@@ -6,6 +6,7 @@
 mod ahead;
 mod broken;
 mod coarsen;
+mod collision;
 mod communication;
 mod core_model;
 mod course;

@@ -371,25 +371,6 @@ impl Winding {
         if left > 0.0 { 0 } else { i }
     }
 
-    /// The coil must not reach the nozzle: no wire could leave it freely there.
-    fn check_clearance(&mut self) {
-        let node = self.lift_off();
-        let x = self.sys.state.rod.x[node];
-        let reach = libm::hypot(x.x, x.z) + self.scene.wire.radius();
-        let distance = self.nozzle_distance();
-        if node == 0 || node + 1 == self.sys.state.rod.nodes() || reach < distance {
-            return;
-        }
-        let (angle, _) = self.wound_to(node);
-        let text = format!(
-            "the coil has grown into the nozzle: wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm; set nozzle.distance to more, or let the nozzle travel so that fewer turns lie on each other",
-            (angle.max(0.0) / std::f64::consts::TAU) as u32 + 1,
-            1e3 * reach,
-            1e3 * distance
-        );
-        self.note_end(DefectKind::Collision, node, text);
-    }
-
     /// Values must be finite, the wire below its strength and where it was sent.
     fn check_health(&mut self) -> Result<(), SimError> {
         for (i, (x, v)) in self
@@ -414,6 +395,7 @@ impl Winding {
         }
         self.check_feed();
         self.check_clearance();
+        self.check_body();
         if self.run.over {
             return Ok(());
         }

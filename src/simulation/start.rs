@@ -183,6 +183,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
             0.0
         },
         exit_friction: scene.nozzle.exit_friction,
+        exit_curvature: scene.nozzle.exit_curvature(section.radius()),
         line_length: t.line_length,
         line_mass: if t.line_inertia {
             section.mass_per_length() * t.line_length

@@ -34,8 +34,7 @@ pub use support::{Spindle, Support};
 use crate::feed::{Feed, FeedSpec};
 use crate::math::turn_about_y;
 use crate::math::{Quat, Spin, V3, spin_velocity};
-use crate::rod::Twist;
-use crate::rod::{Laws, Rod, Section};
+use crate::rod::{ExitBend, Laws, Rod, Section, Twist};
 
 /// Rod with everything that acts on it.
 #[derive(Clone, Debug)]
@@ -152,19 +151,30 @@ impl System {
     }
 
     /// Tension after over tension before the nozzle's exit while wire comes out, by friction over the
-    /// deflection there.
+    /// deflection there and by bending over its edge.
     pub(crate) fn exit_grip(&self) -> f64 {
         let Some(spec) = &self.model.feed else {
             return 1.0;
         };
-        if spec.exit_friction == 0.0 {
+        if spec.exit_friction == 0.0 && spec.exit_curvature == 0.0 {
             return 1.0;
         }
         let n = self.state.rod.nodes() - 1;
         let d = self.state.rod.x[n] - self.state.rod.x[n - 1];
         let out = V3::new(self.state.rod.x[n].x, 0.0, self.state.rod.x[n].z).normalize();
         let deflection = libm::acos((d.dot(&out) / d.norm()).clamp(-1.0, 1.0));
-        libm::exp(spec.exit_friction * deflection)
+        let grip = libm::exp(spec.exit_friction * deflection);
+        let before = self.state.feed.map_or(0.0, |feed| feed.line_tension);
+        if spec.exit_curvature == 0.0 || before <= 0.0 {
+            return grip;
+        }
+        let bend = ExitBend::over(
+            &self.model.laws.bend,
+            spec.exit_curvature,
+            deflection,
+            before,
+        );
+        grip + bend.work / before
     }
 
     /// Lets the wire through the nozzle for `dt`; call after the nodes have moved.

@@ -5,7 +5,7 @@ use crate::contact::{
     ContactPoint, LineContact, LineModel, LineScratch, LineState, NodalModel, NodalScratch,
     NodalState, far,
 };
-use crate::geometry::{FrozenNode, Shape};
+use crate::geometry::{FrozenNode, Nearness, Shape};
 use crate::math::V3;
 use std::sync::Arc;
 
@@ -101,6 +101,24 @@ impl System {
             ContactModel::Line(line) => line.distance(p),
             ContactModel::Nodal(nodal) => nodal.surface.nearest(p).distance,
             ContactModel::None => f64::INFINITY,
+        }
+    }
+
+    /// Signed distance of a point from the core with its gradient, core frame, m, and whether a flange by key is nearest; none
+    /// without a core.
+    pub(crate) fn nearness_to_core(&self, p: V3) -> Option<(Nearness, bool)> {
+        match &self.model.contact {
+            ContactModel::Line(line) => {
+                let core = line.shape.nearness(p);
+                let flange = line.flange(p).filter(|f| f.distance < core.distance);
+                Some((flange.unwrap_or(core), flange.is_some()))
+            }
+            ContactModel::Nodal(nodal) => {
+                let near = nodal.surface.nearest(p);
+                let (distance, normal) = (near.distance, near.normal);
+                Some((Nearness { distance, normal }, false))
+            }
+            ContactModel::None => None,
         }
     }
 

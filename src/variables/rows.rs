@@ -370,6 +370,11 @@ table! {
     fixed(1201, "nozzle.y_start", nozzle.y_start, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis at the start");
     fixed(1202, "nozzle.exit_friction", nozzle.exit_friction, "1", "", 0.0, 2.0, 0.1, "friction at the exit, share of tension per rad of deflection");
     switch(1203, "nozzle.position_at_start", nozzle.position_at_start, "what a place of the nozzle means that comes without its rate; false: where the nozzle is at the end of the step; true: where it is at the start, from where it goes on as between the last two places");
+    fixed(1204, "nozzle.outer_diameter", nozzle.outer_diameter, "m", "mm", 0.0, 1.0, 1e-3, "outer diameter of the nozzle's body, a round rod from the exit outwards along +x; 0: the nozzle is a point");
+    fixed(1205, "nozzle.length", nozzle.length, "m", "mm", 0.0, 10.0, 1e-2, "length of the nozzle's body; 0: without end");
+    fixed(1206, "nozzle.edge_radius", nozzle.edge_radius, "m", "mm", 0.0, 0.5, 1e-3, "radius of the outer rim of the nozzle's body, at its exit and at its end");
+    fixed(1207, "nozzle.bore", nozzle.bore, "m", "mm", 0.0, 1.0, 1e-3, "diameter of the nozzle's hole; 0: not said");
+    fixed(1208, "nozzle.exit_radius", nozzle.exit_radius, "m", "mm", 0.0, 1.0, 1e-3, "radius of the edge of the nozzle's hole at its exit, over which wire that leaves at an angle bends; 0: bending does not count");
 
     fixed(1300, "tensioner.tension", tensioner.tension, "N", "", 0.0, 1e4, 10.0, "set pull; start value of tension_setpoint");
     fixed(1301, "tensioner.mass", tensioner.mass, "kg", "g", 0.0, 100.0, 1e-3, "equivalent mass of the tensioner; 0: constant pull at the nozzle");

@@ -275,6 +275,7 @@ mod tests {
             line_stiffness: 97_800.0,
             line_damping: 2.0,
             exit_friction: 0.0,
+            exit_curvature: 0.0,
             line_length: 0.5,
             line_mass: 0.0,
             pulley: None,

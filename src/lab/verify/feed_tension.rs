@@ -84,6 +84,7 @@ fn feed(ctx: &Context) -> Result<FeedSpec, VerifyError> {
         line_stiffness,
         line_damping: 2.0 * ctx.number("line_damping_ratio")? * (line_stiffness * mass).sqrt(),
         exit_friction: 0.0,
+        exit_curvature: 0.0,
         line_length: ctx.elastic().ea / line_stiffness,
         line_mass: ctx.number("line_mass_kg")?,
         pulley: (pulley.mass > 0.0 || pulley.friction > 0.0).then_some(pulley),

@@ -245,6 +245,7 @@ impl<'a> Wound<'a> {
             line_stiffness: f64::INFINITY,
             line_damping: 0.0,
             exit_friction: 0.0,
+            exit_curvature: 0.0,
             line_length: 0.0,
             line_mass: 0.0,
             pulley: None,
