@@ -266,7 +266,9 @@ mod tests {
             let mut settings = SceneSettings::load("fig8").expect("packed");
             settings.set_text("wire.material", "copper").expect("valid");
             settings.set_text("wire.diameter", diameter).expect("valid");
-            settings.set_text("tensioner.tension", "0.1").expect("valid");
+            settings
+                .set_text("tensioner.tension", "0.1")
+                .expect("valid");
             let scene = settings.build().expect("a valid scene");
             (FreezePolicy::of(&scene, 0.06, 15.0), scene)
         };
