@@ -1,6 +1,6 @@
 //! The convex hull of a core's section, and the outline that lies everywhere as far outside of it.
 //!
-//! The hull is our own: of the crates that have one, `geo` and `parry2d` bring a dozen others, and `chull` has it in space only.
+//! The hull is our own: forty lines, where a crate of geometry would bring others with it.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -6,8 +6,8 @@
 //! radius is small.
 //!
 //! Under little tension, or at a small angle, the wire does not lie on the edge; it bends no further than its tension bends it.
-//! In a span under the tension T only the ends carry load, so that with the angle a to its far end T sin(a) is the slope of
-//! the moment, and T (1 - cos(a)) the area beside the moment's curve over the curvature (the elastica, for any law of bending).
+//! In a span under the tension T only the ends carry load. With the angle a to its far end, T sin(a) is the slope of the moment.
+//! T (1 - cos(a)) is the area beside the moment's curve over the curvature (the elastica, for any law of bending).
 
 use super::Law;
 use super::plasticity::{Scalar, respond_scalar};
