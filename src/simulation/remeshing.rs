@@ -333,6 +333,8 @@ impl Winding {
         if let Some(l) = self.sys.line_contact() {
             l.state.forget_surroundings();
         }
+        // what was frozen wire to the wire on it is live wire now, and is lost sight of until it is watched
+        self.watch_live_wire();
     }
 
     fn tell(&mut self, turns: f64, defects: u32) {

@@ -37,7 +37,7 @@ pub struct State {
     pub set_rate: f64,
     /// unstretched length from the clamp to the first live node, m
     pub arc0: f64,
-    /// wire lost to chords where nodes went, m: arcs became that much shorter
+    /// wire that went where nodes did and arcs became chords, less what came where nodes did, m; both count as fed
     pub joined_away: f64,
     /// energy balance
     pub balance: EnergyBalance,

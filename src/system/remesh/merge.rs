@@ -32,7 +32,7 @@ impl System {
     /// Takes inner node `i` out and joins its edges; plastic state is shared out by length.
     ///
     /// The joined edge is as stretched as the two were on average: the chord is shorter than they
-    /// were. At the nozzle the difference counts as wire that went back through it.
+    /// were. The difference counts as wire that went back through the nozzle.
     pub fn merge(&mut self, i: usize) {
         let nodes = self.state.rod.nodes();
         debug_assert!(i > 0 && i + 1 < nodes, "an inner node");
@@ -43,17 +43,11 @@ impl System {
             part.merge(&merge);
         }
         self.move_points(i);
-        let [a, b] = merge.rest;
         if at_nozzle {
-            let lost = merge.joined - a - b;
-            if let Some(f) = &mut self.state.feed {
-                f.shift(lost);
-            }
-            self.state.past.shift_feed(lost);
             self.state.balance.inflow += self.kinetic() - kinetic;
-        } else {
-            self.state.joined_away += a + b - merge.joined;
         }
+        let [a, b] = merge.rest;
+        self.count_as_fed(merge.joined - a - b);
     }
 
     fn plan_merge(&self, i: usize, at_nozzle: bool) -> Merge {

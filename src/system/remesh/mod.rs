@@ -46,6 +46,15 @@ impl System {
         self.state.balance.remeshing += self.energy_residual(None) - unexplained;
     }
 
+    /// Counts wire that came where a chord became an arc, or went where an arc became a chord, m, as fed; no pull changes.
+    fn count_as_fed(&mut self, wire: f64) {
+        if let Some(f) = &mut self.state.feed {
+            f.shift(wire);
+        }
+        self.state.past.shift_feed(wire);
+        self.state.joined_away -= wire;
+    }
+
     /// The parts that follow a change of the wire.
     fn parts(&mut self) -> [&mut dyn Remesh; 4] {
         [

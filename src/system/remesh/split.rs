@@ -36,12 +36,16 @@ pub(in crate::system) struct Split {
 impl System {
     /// Splits edge `j` in two halves at the same stretch.
     ///
-    /// The new node lies on the cubic through both ends, so that the curvature stays smooth, and
+    /// The new node lies on the cubic through both ends, halfway along it, so that the curvature stays smooth, and
     /// moves with their mean velocity, which keeps the momentum. Last edge: on the chord, since
     /// the wire leaves the nozzle straight.
+    ///
+    /// The halves are longer than the chord was, and as much longer unstretched: wire that only looks straight because its
+    /// edges are long does not yield by being looked at more closely. The difference counts as fed.
     pub fn split(&mut self, j: usize) {
         let at_nozzle = j + 1 == self.state.rod.edges() && self.state.feed.is_some();
         let kinetic = if at_nozzle { self.kinetic() } else { 0.0 };
+        let rest = self.state.rod.rest[j];
         let split = self.plan_split(j, at_nozzle);
         for part in self.parts() {
             part.split(&split);
@@ -50,6 +54,7 @@ impl System {
             // the half edge at the nozzle was not in the energy balance before
             self.state.balance.inflow += self.kinetic() - kinetic;
         }
+        self.count_as_fed(2.0 * split.half - rest);
     }
 
     fn plan_split(&self, j: usize, at_nozzle: bool) -> Split {
@@ -60,14 +65,15 @@ impl System {
         let mid = if j == last || j == 0 {
             (a + b) * 0.5
         } else {
-            // on an arc an edge has the direction at its middle: at a node between edges of different
-            // length the shorter one counts more
-            let before = a - rod.x[j - 1];
-            let after = rod.x[j + 2] - b;
-            let l = [before.norm(), chord.norm(), after.norm()];
-            let ta = (before * (l[1] / l[0]) + chord * (l[0] / l[1])).normalize();
-            let tb = (chord * (l[2] / l[1]) + after * (l[1] / l[2])).normalize();
-            (a + b) * 0.5 + (ta - tb) * (l[1] / 8.0)
+            // the bend of both ends and of the new node has the least energy there
+            let (before, after) = (a - rod.x[j - 1], b - rod.x[j + 2]);
+            let l = chord.norm();
+            let own = [rod.rest[j - 1], rod.rest[j + 1]].map(|r| 0.5 * r + 0.25 * rod.rest[j]);
+            let along = chord / l;
+            let turn = (before.normalize() - along) / own[0] + (after.normalize() + along) / own[1];
+            let aside = turn
+                * (0.5 * l / (1.0 / own[0] + 8.0 / rod.rest[j] + 1.0 / own[1]));
+            (a + b) * 0.5 + aside - chord * (aside.dot(&chord) / chord.norm_squared())
         };
         let velocity = if at_nozzle {
             // at the nozzle the material moves in along the wire at the feed rate
@@ -84,7 +90,7 @@ impl System {
         } else {
             0.25 * rod.rest[j] * self.twist_along(j)
         };
-        let half = 0.5 * rod.rest[j];
+        let half = rod.rest[j] * ((mid - a).norm() / chord.norm());
         let frame = rod.frame[j];
         let mut bend = rod.bend[j + 1];
         let mut twist = rod.twist[j + 1];
