@@ -59,7 +59,10 @@ fn a_split_stretches_no_wire() {
         assert!((stretch - 1.0).abs() < 1e-12, "stretched by {stretch}");
     }
     let more = wire_and_fed(sys);
-    assert!(more.0 - wire > 1e-4 * rest, "an arc is longer than its chord");
+    assert!(
+        more.0 - wire > 1e-4 * rest,
+        "an arc is longer than its chord"
+    );
     assert!(((more.0 - wire) - (more.1 - fed)).abs() < 1e-12 * wire);
 }
 

@@ -36,9 +36,9 @@ pub(in crate::system) struct Split {
 impl System {
     /// Splits edge `j` in two halves at the same stretch.
     ///
-    /// The new node lies on the cubic through both ends, halfway along it, so that the curvature stays smooth, and
-    /// moves with their mean velocity, which keeps the momentum. Last edge: on the chord, since
-    /// the wire leaves the nozzle straight.
+    /// The new node lies as far from both ends, where the bends there and its own have the least energy, and moves with
+    /// their mean velocity, which keeps the momentum. First and last edge: on the chord, since the wire leaves the nozzle
+    /// straight.
     ///
     /// The halves are longer than the chord was, and as much longer unstretched: wire that only looks straight because its
     /// edges are long does not yield by being looked at more closely. The difference counts as fed.
@@ -65,14 +65,12 @@ impl System {
         let mid = if j == last || j == 0 {
             (a + b) * 0.5
         } else {
-            // the bend of both ends and of the new node has the least energy there
             let (before, after) = (a - rod.x[j - 1], b - rod.x[j + 2]);
             let l = chord.norm();
             let own = [rod.rest[j - 1], rod.rest[j + 1]].map(|r| 0.5 * r + 0.25 * rod.rest[j]);
             let along = chord / l;
             let turn = (before.normalize() - along) / own[0] + (after.normalize() + along) / own[1];
-            let aside = turn
-                * (0.5 * l / (1.0 / own[0] + 8.0 / rod.rest[j] + 1.0 / own[1]));
+            let aside = turn * (0.5 * l / (1.0 / own[0] + 8.0 / rod.rest[j] + 1.0 / own[1]));
             (a + b) * 0.5 + aside - chord * (aside.dot(&chord) / chord.norm_squared())
         };
         let velocity = if at_nozzle {

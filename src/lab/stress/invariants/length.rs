@@ -6,8 +6,11 @@ use crate::simulation::Simulation;
 
 /// Wire that is there may differ from what was fed by this share: rounding of sums; ...
 const ROUNDING: f64 = 1e-9;
-/// ... and so much of it may have gone where arcs became chords, or come where chords became arcs.
+/// ... and so much of it may have gone where arcs became chords, node by node; ...
 const JOINED: f64 = 2e-4;
+/// ... or have come where chords became arcs: wire that bends by an angle from edge to edge, rad, is longer than its chords by a 32nd of
+/// the square of that angle. Chosen: a coarse span may bend by 0.2 rad.
+const ARCS: f64 = 0.2 * 0.2 / 32.0;
 
 /// Remembers how much wire there was.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +30,7 @@ impl Length {
         let (is, fed) = (wire_length(sim), sim.outputs().fed_length);
         let joined = sim.system().state.joined_away;
         let all = self.start + fed.abs();
-        if joined.abs() > JOINED * all {
+        if joined > JOINED * all || -joined > ARCS * all {
             let text = format!("{joined:.3e} m of {all:.3e} m lost where nodes went and came");
             return Err(Broken::new(Invariant::Length, text));
         }
