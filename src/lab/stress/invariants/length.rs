@@ -70,7 +70,7 @@ mod tests {
         let mut sim = planted::wound(0.5);
         let length = Length::new(&planted::wound(0.0));
         let lost = 1e-3 * wire_length(&sim);
-        for much in [lost, -2.0 * lost] {
+        for much in [lost, -3.0 * lost] {
             sim.system_mut().state.joined_away += much;
             planted::sees(length.look(&sim), Invariant::Length);
         }
