@@ -77,6 +77,10 @@ const LOOKS: usize = 4;
 /// Chosen: wire that creeps on with the core at the limit's rate would move by 9 nm.
 const STANDING: f64 = 1e-3;
 
+/// Relative shortfall that counts as reached. Round speeds and round communication steps end a step on the very
+/// angle of a look, and the last bit of a sum must not decide whether wire joins in this step or the next.
+const ROUNDED: f64 = 1e-9;
+
 /// Remembers where each live node was, look by look.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
@@ -133,10 +137,12 @@ impl Watch {
 
     /// Whether the next look is due: by core angle, or by time where the spindle stands.
     pub fn due(&self, policy: &FreezePolicy, angle: f64, speed: f64, time: f64) -> bool {
+        let reached = |passed: f64, asked: f64| passed >= (1.0 - ROUNDED) * asked;
         let turned = (angle - self.last).abs();
         let apart = policy.time / LOOKS as f64;
         let standing = speed.abs() * apart <= STANDING * policy.window;
-        turned >= policy.window / LOOKS as f64 || (standing && time - self.last_time >= apart)
+        let passed = time - self.last_time;
+        reached(turned, policy.window / LOOKS as f64) || (standing && reached(passed, apart))
     }
 
     /// Takes a look; returns how many nodes from the clamp on have stayed in place over the window.
@@ -240,6 +246,21 @@ mod tests {
             0,
             "unseen wire is not at rest"
         );
+    }
+
+    #[test]
+    fn the_last_bit_of_a_sum_decides_nothing() {
+        let p = policy();
+        let (look, apart) = (p.window / LOOKS as f64, p.time / LOOKS as f64);
+        for start in [0.0, 0.1, 2.3, 1234.567] {
+            let w = Watch::new(1, start);
+            for bits in [-8.0, 0.0, 8.0] {
+                let rounded = bits * f64::EPSILON * (start + look);
+                assert!(w.due(&p, start + look + rounded, 1.0, 0.0));
+                assert!(w.due(&p, start, 0.0, apart * (1.0 + bits * f64::EPSILON)));
+            }
+            assert!(!w.due(&p, start + 0.999 * look, 1.0, 0.0));
+        }
     }
 
     #[test]
