@@ -66,6 +66,26 @@ fn a_split_stretches_no_wire() {
     assert!(((more.0 - wire) - (more.1 - fed)).abs() < 1e-12 * wire);
 }
 
+/// Coarse wire far from the core bent by 0.3 rad an edge before it was halved where it came near: a split then made energy of the order of
+/// what the motion had.
+#[test]
+fn coarse_wire_is_halved_where_it_bends() {
+    let wound_with = |aside: f64| {
+        let mut sim = Simulation::new(&SceneSettings::default().build().unwrap()).unwrap();
+        let sys = sim.system_mut();
+        // in the coarse part of the free span
+        let node = sys.state.rod.nodes() - 8;
+        sys.state.rod.x[node].y += aside * sys.state.rod.rest[node];
+        sys.refresh();
+        let before = sim.system().state.rod.nodes();
+        sim.advance(sim.inputs(), 1e-6).unwrap();
+        sim.system().state.rod.nodes() - before
+    };
+    assert_eq!(wound_with(0.02), 0, "straight enough");
+    // the wire turns by 0.08 rad at the neighbours, and by 0.16 rad at the node: the edges on either side of it
+    assert_eq!(wound_with(0.08), 2);
+}
+
 /// Unstretched and present length of an edge, m.
 fn edge_of(sys: &System, edge: usize) -> (f64, f64) {
     let rod = &sys.state.rod;

@@ -16,6 +16,10 @@ const FEWEST_NODES: usize = 4;
 /// 1.3e-5 shorter than they are.
 const STRAIGHT: f64 = 0.99995;
 
+/// Angle between edges from which on the longer one is halved, rad: the arc through their nodes is then longer than they
+/// are by half the strain at which copper yields, so that wire that bends on does not come as a surprise to a split.
+const BENT: f64 = 0.1;
+
 /// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
 /// turn back.
 const WHOLE: f64 = 0.85;
@@ -96,7 +100,7 @@ impl Winding {
         self.sys.state.rod.rest[last] >= 2.0 * self.scene.solver.spacing_free
     }
 
-    /// Edges of the free span that came near the core and are too long for it, ascending.
+    /// Edges that are too long for where they came or how they bend, ascending.
     fn edges_to_refine(&self) -> Vec<usize> {
         let solver = self.scene.solver;
         if solver.spacing_free < 1.5 * solver.spacing_near {
@@ -114,9 +118,23 @@ impl Winding {
         (first..rod.edges() - 1)
             .filter(|&j| {
                 rod.rest[j] > 1.5 * solver.spacing_near
-                    && self.sys.distance_to_core(spin.to_core(rod.x[j])) < reach
+                    && (self.is_bent(j)
+                        || self.sys.distance_to_core(spin.to_core(rod.x[j])) < reach)
             })
             .collect()
+    }
+
+    /// Whether the wire bends strongly at an end of edge `j`, and the edge there is no shorter than its neighbour.
+    fn is_bent(&self, j: usize) -> bool {
+        let rod = &self.sys.state.rod;
+        [(j, j.wrapping_sub(1)), (j + 1, j + 1)]
+            .into_iter()
+            .any(|(node, next)| {
+                node > 0
+                    && node < rod.edges()
+                    && rod.rest[j] >= rod.rest[next]
+                    && rod.tangent(node - 1).dot(&rod.tangent(node)) < BENT.cos()
+            })
     }
 
     /// Height of the layers below the one that is wound, m: lengths that count from the core count from there.
