@@ -82,8 +82,8 @@ fn coarse_wire_is_halved_where_it_bends() {
         sim.system().state.rod.nodes() - before
     };
     assert_eq!(wound_with(0.02), 0, "straight enough");
-    // the wire turns by 0.08 rad at the neighbours, and by 0.16 rad at the node: the edges on either side of it
-    assert_eq!(wound_with(0.08), 2);
+    // the wire turns by 0.15 rad at the neighbours, and by 0.3 rad at the node: the edges on either side of it
+    assert_eq!(wound_with(0.15), 2);
 }
 
 /// Unstretched and present length of an edge, m.

@@ -16,9 +16,9 @@ const FEWEST_NODES: usize = 4;
 /// 1.3e-5 shorter than they are.
 const STRAIGHT: f64 = 0.99995;
 
-/// Angle between edges from which on the longer one is halved, rad: the arc through their nodes is then longer than they
-/// are by half the strain at which copper yields, so that wire that bends on does not come as a surprise to a split.
-const BENT: f64 = 0.1;
+/// Angle between edges from which on the longer one is halved, rad. Chosen: from 0.3 rad on, a split made as much energy as
+/// slack wire has.
+const BENT: f64 = 0.2;
 
 /// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
 /// turn back.
