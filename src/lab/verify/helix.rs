@@ -1,7 +1,8 @@
 //! A straight elastic wire held in a helix by an axial force and couple.
 //!
-//! The wire makes one turn. Its ends are clamped in place, direction and roll as on the helix; the
-//! rest finds its equilibrium. The wrench is what the clamp at the far end exerts on the wire.
+//! The wire makes half a turn, or less where it is much twisted, so that the helix is stable. Its
+//! ends are clamped in place, direction and roll as on the helix; the rest finds its equilibrium.
+//! The wrench is what the clamp at the far end exerts on the wire.
 
 use super::equilibrium::settle_with_twist;
 use super::{Answer, Answers, Context, VerifyError};
@@ -9,10 +10,18 @@ use crate::math::{Quat, V3};
 use crate::rod::Rod;
 use crate::system::{Support, System};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
-/// Edges of the turn.
+/// Edges of a turn.
 const EDGES: f64 = 300.0;
+
+/// Turn that the wire makes about the axis at most, rad. A whole turn springs over into a helix of
+/// the other hand.
+const ARC: f64 = PI;
+
+/// Twisting torque times length over bending stiffness, at most. Straight clamped wire buckles at
+/// 8.99.
+const TWIST: f64 = PI;
 
 /// The helix about +z.
 struct Helix {
@@ -59,21 +68,27 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     };
     // the normal itself turns about the wire by the helix's torsion
     helix.roll = density - pitch / TAU / (helix.rate() * helix.rate());
-    let length = TAU * helix.rate();
+    let section = ctx.elastic();
+    let twisted = density.abs() * section.gj / section.ei * helix.rate();
+    let arc = ARC.min(TWIST / twisted);
+    let length = arc * helix.rate();
     // neither bend nor twist of a joint may come near half a turn
-    let n = ctx.edges(length, length / EDGES.max(density.abs() * length / 0.1))?;
+    let n = ctx.edges(
+        length,
+        length / (EDGES * arc / TAU).max(density.abs() * length / 0.1),
+    )?;
     let points: Vec<V3> = (0..=n)
-        .map(|i| helix.point(TAU * i as f64 / n as f64))
+        .map(|i| helix.point(arc * i as f64 / n as f64))
         .collect();
     let mut rod = Rod::through(&points, None);
     for j in 0..n {
-        rod.frame[j] = helix.frame(TAU * (j as f64 + 0.5) / n as f64);
+        rod.frame[j] = helix.frame(arc * (j as f64 + 0.5) / n as f64);
     }
     rod.realign();
-    let mut sys = System::new(ctx.elastic(), rod);
+    let mut sys = System::new(section, rod);
     sys.state.support = [
         Support::clamped(points[0], helix.frame(0.0)),
-        Support::clamped(points[n], helix.frame(TAU)),
+        Support::clamped(points[n], helix.frame(arc)),
     ];
     settle_with_twist(ctx, &mut sys)?;
     let force = -sys.state.load.force[n];

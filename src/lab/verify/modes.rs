@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 const NUDGE: f64 = 1e-5;
 
 /// Amplitude of a stepped mode in wire diameters, looks at it a swing, and swings.
-const AMPLITUDE: f64 = 0.1;
+const AMPLITUDE: f64 = 0.02;
 const LOOKS: f64 = 100.0;
 const SWINGS: f64 = 3.0;
 

@@ -10,10 +10,10 @@ use super::{Answer, Answers, Context, VerifyError};
 const HALVINGS: usize = 13;
 
 /// A piece that has come this far, in wire radii, slides; a bristle yields by 1e-5.
-const SLIDES: f64 = 2e-3;
+const SLIDES: f64 = 1e-2;
 
 /// Time it has for that, in `sqrt(m' r / q)`: 0.1 % beyond the angle of friction are enough.
-const PATIENCE: f64 = 5.0;
+const PATIENCE: f64 = 10.0;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
