@@ -301,3 +301,37 @@ fn landed_wire_has_no_speed_into_or_out_of_what_it_touches() {
         assert!(fastest < 0.01 * SPEED, "steps of {fixed} s: {fastest} m/s");
     }
 }
+
+/// Load on a lightly pressed wire as an acceleration, m/s^2, and the longest step that a master leaves, s.
+const LOAD: f64 = 15e3;
+const OFTEN: f64 = 7.6e-6;
+
+/// What a solve leaves was the same in steps of any length: it pushed wire at rest over the core, step by step, by up to
+/// 1.6 mm/s, even against its load.
+#[test]
+fn short_steps_push_no_lightly_pressed_wire_that_friction_holds() {
+    for (mu, held) in [(0.116, 0.5), (0.07, 0.3), (0.07, 0.69)] {
+        let mut scene = scene();
+        (scene.friction.static_, scene.friction.kinetic) = (mu, mu);
+        let mut sys = falling(&scene, Onto::Flat, 1e-6);
+        sys.state.rod.v.fill(V3::z() * 0.1);
+        sys.model.loads.gravity = V3::new(-1.0, 0.0, held * mu) * LOAD;
+        sys.refresh();
+        let mut method = Implicit::new(Scheme::Bdf2, scene.solver.tolerance, 1e-9, OFTEN);
+        let mut place_after = |steps: usize| {
+            for _ in 0..steps {
+                let mut left = OFTEN;
+                while left > 0.0 {
+                    left -= method.step(&mut sys, left).expect("a step");
+                }
+            }
+            sys.state.rod.x[NODES / 2].z
+        };
+        let at_rest = place_after(200);
+        let crept = (place_after(400) - at_rest).abs();
+        assert!(
+            crept < 1e-3 * scene.solver.tolerance,
+            "{crept} m, held by {held} of {mu}"
+        );
+    }
+}

@@ -5,7 +5,7 @@ use super::predictor::{moved, step_of};
 use super::step_control::{MOST_TURN, SHORT};
 use super::unknowns::Unknowns;
 use super::work::Work;
-use super::{CLOSE, Implicit, Scheme, StepError, newton};
+use super::{Implicit, Scheme, StepError, newton};
 use crate::system::System;
 
 impl Implicit {
@@ -47,7 +47,7 @@ impl Implicit {
             let solved = newton::solve(
                 &mut model,
                 work,
-                CLOSE * self.tolerance,
+                self.close(h),
                 newton::NewtonLimits::of_step(
                     failures > 2 || h < SHORT * self.shortest || self.fixed.is_some(),
                     if h > self.shortest && self.fixed.is_none() {

@@ -164,12 +164,14 @@ impl Context<'_> {
         Ok(2 * (pairs.ceil() as usize).max(2))
     }
 
-    /// The same for wire that is far from all that it could touch: a wind has longer edges there.
+    /// The same for wire that is far from all that it could touch: a wind has longer edges there, which grow from those
+    /// near the core.
     pub fn free_edges(&self, length: f64, spacing: f64) -> Result<usize, VerifyError> {
+        let of_wind = |s: f64| spacing.clamp(s, FREE * s);
         let free = Context {
             spacing: self
                 .spacing
-                .map(|s| if self.winds() { FREE * s } else { s }),
+                .map(|s| if self.winds() { of_wind(s) } else { s }),
             ..*self
         };
         free.edges(length, spacing)

@@ -5,8 +5,8 @@
 //! made symmetric) is positive definite. The torque is read at the clamp. Rolls of the edges are
 //! left out: to first order they do not couple with sideways motion of a straight wire.
 //!
-//! In the set-up of a wind that is the first guess. A small bow is then set off a little below and above it, and the rate at which
-//! it dies or grows in the wind's own steps tells where it would stay.
+//! In the set-up of a wind that is the first guess. The bow that is held back least is then set off a little below and
+//! above it, and the rate at which it dies or grows in the wind's own steps tells where it would stay.
 
 use super::bench::Stepper;
 use super::equilibrium::method;
@@ -16,21 +16,30 @@ use crate::math::{align, frame_along};
 use crate::rod::{Rod, Section, Twist};
 use crate::scene::Integrator;
 use crate::system::{Support, System};
-use nalgebra::DMatrix;
-use std::f64::consts::PI;
+use nalgebra::{DMatrix, DVector};
 
 /// Fewest edges, and edges per bending length `sqrt(EI/T)`; the error falls with the square.
 const EDGES: f64 = 80.0;
 const PER_BENDING_LENGTH: f64 = 12.0;
 
-/// Share of the rotation below and above the critical one at which growth is looked at.
-const BESIDE: f64 = 0.02;
+/// Fewest edges over the rotation at which the wire is likely to leave its axis, 1/rad.
+const PER_RADIAN: f64 = 2.5;
+
+/// Share of the rotation below and above the critical one at which growth is looked at: small enough that drag
+/// holds the bow back more than its mass does, and growth goes evenly with the rotation.
+const BESIDE: f64 = 0.005;
 /// Lowest frequency of a clamped wire in `sqrt(EI/m)/L^2`.
 const CLAMPED: f64 = 22.4;
-/// Bow that is set off, in wire diameters, longest step and time of a watch, both over the inverse of that frequency.
+/// Bow that is set off, in wire diameters, longest step, time until it has its shape and longest watch, all over the
+/// inverse of that frequency.
 const BOW: f64 = 0.1;
 const LOOK: f64 = 0.1;
+const START: f64 = 5.0;
 const WATCH: f64 = 20.0;
+/// Steps of inverse iteration; each takes the other bows back by a factor of about ten.
+const INVERSE_STEPS: usize = 10;
+/// A bow that has grown or gone back by this factor has shown its rate.
+const ENOUGH: f64 = 10.0;
 
 /// Bisections once the torque is known to a factor of two.
 const HALVINGS: usize = 16;
@@ -40,9 +49,15 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let (length, pull) = (ctx.number("L_m")?, ctx.number("T_N")?);
     let section = ctx.elastic();
     let bending_lengths = length * (pull.max(0.0) / section.ei).sqrt();
-    let fit = EDGES.max(PER_BENDING_LENGTH * bending_lengths).min(400.0);
+    // of a string, and of a wire without tension
+    let likely = (4.0 * section.ei * pull.max(0.0)).sqrt() + 8.99 * section.ei / length;
+    let fit = EDGES
+        .max(PER_BENDING_LENGTH * bending_lengths)
+        .max(PER_RADIAN * likely * length / section.gj)
+        .min(400.0);
     let edges = ctx.free_edges(length, length / fit)?;
-    let stable = |rotation: f64| Straight::new(&section, length, pull, rotation, edges).stable(ctx);
+    let straight = |rotation: f64| Straight::new(&section, length, pull, rotation, edges);
+    let stable = |rotation: f64| straight(rotation).stiffness(ctx).cholesky().is_some();
     let mut low = 0.0;
     let mut high = 1.0;
     while stable(high) {
@@ -65,8 +80,9 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     }
     let mut rotation = 0.5 * (low + high);
     if ctx.winds() {
-        let growth =
-            |share: f64| Straight::new(&section, length, pull, share * rotation, edges).growth(ctx);
+        let bow = softest(straight((1.0 - BESIDE) * rotation).stiffness(ctx))
+            .ok_or_else(|| VerifyError::NoAnswer("no bow is softest".to_owned()))?;
+        let growth = |share: f64| straight(share * rotation).growth(ctx, &bow);
         let [below, above] = [growth(1.0 - BESIDE)?, growth(1.0 + BESIDE)?];
         if !(below < 0.0 && above > 0.0) {
             return Err(VerifyError::NoAnswer(format!(
@@ -75,11 +91,24 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         }
         rotation *= 1.0 - BESIDE * (above + below) / (above - below);
     }
-    let critical = Straight::new(&section, length, pull, rotation, edges);
     Ok(vec![(
         "critical_torque_Nm",
-        Answer::Number(critical.torque()),
+        Answer::Number(straight(rotation).torque()),
     )])
+}
+
+/// The displacement that a positive definite stiffness holds back least, largest component 1, by inverse iteration; `None`
+/// where it is not positive definite.
+fn softest(stiffness: DMatrix<f64>) -> Option<DVector<f64>> {
+    let inverse = stiffness.cholesky()?;
+    let n = inverse.l_dirty().nrows();
+    // along every bow, and the same everywhere
+    let mut bow = DVector::from_fn(n, |i, _| 1.0 + libm::sin(i as f64));
+    for _ in 0..INVERSE_STEPS {
+        inverse.solve_mut(&mut bow);
+        bow /= bow.amax();
+    }
+    Some(bow)
 }
 
 /// The straight wire along z, its far end turned.
@@ -115,18 +144,16 @@ impl Straight {
         self.sys.state.load.clamp_moment[0].z.abs()
     }
 
-    /// Rate at which a small bow grows under drag as the wind's own steps have it, 1/s; negative if it goes back.
-    fn growth(mut self, ctx: &Context) -> Result<f64, VerifyError> {
+    /// Rate at which a small `bow` grows under drag as the wind's own steps have it, 1/s; negative if it goes back.
+    fn growth(mut self, ctx: &Context, bow: &DVector<f64>) -> Result<f64, VerifyError> {
         let section = &self.sys.model.section;
         let unit =
             self.length * self.length * (section.mass_per_length() / section.ei).sqrt() / CLAMPED;
-        let bow = BOW * section.diameter;
+        let speed = BOW * section.diameter / unit;
         self.sys.model.twist = Twist::QuasiStatic;
         self.sys.model.loads.drag = 1.0 / unit;
-        let last = self.sys.state.rod.nodes() - 1;
-        for i in 1..last {
-            let share = libm::sin(PI * i as f64 / last as f64);
-            self.sys.state.rod.v[i].x = bow / unit * share * share;
+        for ((i, a), share) in self.unknowns().zip(bow) {
+            self.sys.state.rod.v[i][a] = speed * share;
         }
         self.sys.state.past.forget();
         self.sys.refresh();
@@ -135,16 +162,27 @@ impl Straight {
             let parts = sys.state.rod.x.iter();
             parts.map(|x| x.x * x.x + x.y * x.y).sum::<f64>().sqrt()
         };
-        let mut at = [0.0; 2];
-        for size in &mut at {
-            step.through(&mut self.sys, WATCH * unit, LOOK * unit)?;
-            *size = seen(&self.sys);
+        step.through(&mut self.sys, START * unit, LOOK * unit)?;
+        let start = seen(&self.sys);
+        let (mut size, mut time) = (start, 0.0);
+        while time < WATCH * unit && size < ENOUGH * start && size > start / ENOUGH {
+            step.through(&mut self.sys, LOOK * unit, LOOK * unit)?;
+            time += LOOK * unit;
+            size = seen(&self.sys);
         }
-        Ok(libm::log(at[1] / at[0]) / (WATCH * unit))
+        Ok(libm::log(size / start) / time)
     }
 
-    /// Whether small displacements are driven back.
-    fn stable(mut self, ctx: &Context) -> bool {
+    /// All coordinates of the inner nodes, and the sliding of the end: node and axis.
+    fn unknowns(&self) -> impl Iterator<Item = (usize, usize)> + use<> {
+        let last = self.sys.state.rod.nodes() - 1;
+        (1..last)
+            .flat_map(|i| (0..3).map(move |a| (i, a)))
+            .chain([(last, 2)])
+    }
+
+    /// What drives small displacements back, by central differences and made symmetric, N/m.
+    fn stiffness(mut self, ctx: &Context) -> DMatrix<f64> {
         let mut method = method(&self.sys);
         let mut forces = |sys: &mut System| {
             if ctx.integrator == Integrator::Implicit {
@@ -153,12 +191,7 @@ impl Straight {
             sys.evaluate(None);
             sys.state.load.force.clone()
         };
-        let nodes = self.sys.state.rod.nodes();
-        // all coordinates of the inner nodes, and the sliding of the end
-        let place: Vec<(usize, usize)> = (1..nodes - 1)
-            .flat_map(|i| (0..3).map(move |a| (i, a)))
-            .chain([(nodes - 1, 2)])
-            .collect();
+        let place: Vec<(usize, usize)> = self.unknowns().collect();
         let n = place.len();
         let step = 1e-6 * self.length;
         let mut stiffness = DMatrix::<f64>::zeros(n, n);
@@ -176,7 +209,6 @@ impl Straight {
                 }
             }
         }
-        let symmetric = (&stiffness + stiffness.transpose()) * 0.5;
-        symmetric.cholesky().is_some()
+        (&stiffness + stiffness.transpose()) * 0.5
     }
 }
