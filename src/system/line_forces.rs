@@ -83,7 +83,7 @@ impl System {
         for (j, rest_of) in rest.iter().enumerate() {
             for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {
                 if point != ContactPoint::Node(0) {
-                    let own = own_wire(point.arc(arc, rest), diameter);
+                    let own = || own_wire(point.arc(arc, rest), diameter);
                     let to = point.place(guess);
                     share = share.min(line.share_to_turn(point.number(), to, own, [most, unseen]));
                 }
@@ -171,8 +171,9 @@ impl System {
                     if point == ContactPoint::Node(0) {
                         continue;
                     }
-                    let (k, length) = (point.number(), point.length(rod));
-                    let own = own_wire(point.arc(arc, &rod.rest), diameter);
+                    let k = point.number();
+                    let length = || point.length(rod);
+                    let own = || own_wire(point.arc(arc, &rod.rest), diameter);
                     let p = point.place(&rod.x);
                     let q = spin.to_core(p);
                     let f = if commit {

@@ -325,8 +325,8 @@ impl Model<'_> {
     ) {
         let rest = &self.rod.rest;
         let p = point.place(&work.q);
-        let own = own_wire(point.arc(arc, rest), self.diameter);
-        let length = point.length_with(rest, |i| voronoi(self.rod, self.grown, i));
+        let own = || own_wire(point.arc(arc, rest), self.diameter);
+        let length = || point.length_with(rest, |i| voronoi(self.rod, self.grown, i));
         if let Some(response) = line.push(point.number(), p, length, own, self.elapsed) {
             value.merit += response.energy_lagged;
             value.now += response.energy;
