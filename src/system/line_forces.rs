@@ -130,7 +130,8 @@ impl System {
     /// Moment of momentum of the same nodes about the core's axis, N m s.
     pub(crate) fn momentum_about_core(&self) -> f64 {
         let rod = &self.state.rod;
-        self.moment_of(|i| rod.v[i] * rod.mass(&self.model.section, i))
+        let density = self.model.section.mass_per_length();
+        self.moment_of(|i| rod.v[i] * (density * rod.voronoi(i)))
     }
 
     /// Lets the core hold what Newton's method left of the forces: it is nothing that moves wire in the core's frame.

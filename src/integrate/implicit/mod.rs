@@ -5,6 +5,7 @@
 //! scratch arrays, so a rejected step leaves no trace.
 
 mod assembly;
+mod carried;
 mod commit;
 mod conjugate;
 mod dispatch;
