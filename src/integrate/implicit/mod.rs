@@ -13,6 +13,7 @@ mod error;
 mod impact;
 mod impulse;
 mod landings;
+mod largest;
 mod lengths;
 mod model;
 mod newton;

@@ -220,7 +220,8 @@ impl Model<'_> {
         (along, length, inverse): (V3, f64, f64),
         sum: &mut Value,
     ) -> f64 {
-        let at_nozzle = self.nozzle.filter(|_| j + 1 == self.rod.edges());
+        let nozzle = self.nozzle.as_ref();
+        let at_nozzle = nozzle.filter(|_| j + 1 == self.rod.edges());
         let s = match at_nozzle {
             Some(nozzle) => nozzle.stretched(length),
             None => stretched(
