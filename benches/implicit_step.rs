@@ -148,7 +148,7 @@ fn search(c: &mut Criterion) {
                 let mut sum = V3::zeros();
                 for (j, e) in x.windows(2).enumerate() {
                     for (point, p) in [(2 * j, e[0]), (2 * j + 1, (e[0] + e[1]) * 0.5)] {
-                        if let Some(push) = line.push(point, p, 0.25e-3, 1e3, STEP) {
+                        if let Some(push) = line.push(point, p, || 0.25e-3, || 1e3, STEP) {
                             sum += push.gradient;
                         }
                     }

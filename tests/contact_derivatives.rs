@@ -110,7 +110,7 @@ fn on() -> impl Strategy<Value = On> {
 
 fn at(line: &mut Parts, p: V3) -> ContactResponse {
     line.contact()
-        .push(0, p, LENGTH, f64::INFINITY, STEP)
+        .push(0, p, || LENGTH, || f64::INFINITY, STEP)
         .unwrap_or_default()
 }
 
@@ -120,7 +120,8 @@ fn held(mu: f64, [q, out, _]: [V3; 3], before: f64, p: V3) -> Parts {
     let start = q - out * before + out * if before > 0.0 { 0.0 } else { 1e-6 };
     line.state.place(0, start);
     if before > 0.0 {
-        line.contact().commit(0, start, LENGTH, f64::INFINITY, STEP);
+        line.contact()
+            .commit(0, start, || LENGTH, || f64::INFINITY, STEP);
     }
     // an iterate that is accepted leaves its limit behind
     at(&mut line, p);
@@ -259,7 +260,7 @@ fn a_look_ahead_comes_back() {
         let p = place - out * 60e-6;
         line.contact().begin();
         line.state.hold_limits = true;
-        let push = line.contact().push(1, p, LENGTH, f64::INFINITY, STEP);
+        let push = line.contact().push(1, p, || LENGTH, || f64::INFINITY, STEP);
         let push = push.expect("it touches");
         line.state.hold_limits = false;
         let (mut gradient, mut hessian) = (push.gradient, push.hessian);

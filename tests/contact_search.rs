@@ -188,7 +188,7 @@ proptest! {
         let own = own.map_or(f64::INFINITY, |s| s * line.scratch.tube.arc()[line.scratch.tube.len() - 1]);
         for p in walk(&line, &start, &steps) {
             let near = surroundings(&line, p, own);
-            let push = line.contact().push(0, p, LENGTH, own, STEP);
+            let push = line.contact().push(0, p, || LENGTH, || own, STEP);
             if near.crowded(coil.diameter) {
                 return Ok(());
             }
@@ -242,7 +242,7 @@ proptest! {
         let own = f64::INFINITY;
         for p in way {
             cold.state.forget_surroundings();
-            let forces = [&mut warm, &mut cold].map(|line| line.contact().commit(0, p, LENGTH, own, STEP));
+            let forces = [&mut warm, &mut cold].map(|line| line.contact().commit(0, p, || LENGTH, || own, STEP));
             if surroundings(&warm, p, own).crowded(coil.diameter) {
                 return Ok(());
             }
@@ -287,7 +287,7 @@ fn merged_feet_push_once() {
         let p = V3::new(40.0, y, 0.0) * 1e-3;
         let push = line
             .contact()
-            .push(0, p, LENGTH, f64::INFINITY, STEP)
+            .push(0, p, || LENGTH, || f64::INFINITY, STEP)
             .unwrap_or_default();
         let (mut energy, mut count) = (0.0, 0);
         for m in brute::minima(line.scratch.tube.points(), p, 0.7e-3) {

@@ -174,6 +174,32 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
+    /// 1 in those lanes that are above `limit`, 0 elsewhere.
+    #[inline(always)]
+    pub fn above(self, limit: Self) -> Self {
+        let above = self.simd.less_than_f64s(limit.v, self.v);
+        let [zero, one] = [0.0, 1.0].map(|x| self.simd.splat_f64s(x));
+        Self {
+            simd: self.simd,
+            v: self.simd.select_f64s(above, one, zero),
+        }
+    }
+
+    /// Size of each lane.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        Self {
+            simd: self.simd,
+            v: self.simd.abs_f64s(self.v),
+        }
+    }
+
+    /// The largest lane of numbers that are all finite.
+    #[inline(always)]
+    pub fn most(self) -> f64 {
+        self.simd.reduce_max_f64s(self.v)
+    }
+
     /// The same number in every lane.
     #[inline(always)]
     pub fn all(self, x: f64) -> Self {

@@ -90,7 +90,12 @@ impl Rod {
 
     /// Voronoi length of joint `i`, m: half of each neighbouring edge (at an end of the one edge),
     /// with [`Rod::lead`] moved from the first joint to the second.
+    #[inline]
     pub fn voronoi(&self, i: usize) -> f64 {
+        // (nearly all are inner ones)
+        if i > 1 && i < self.rest.len() {
+            return 0.5 * (self.rest[i - 1] + self.rest[i]);
+        }
         let before = if i > 0 { self.rest[i - 1] } else { 0.0 };
         let after = if i < self.edges() { self.rest[i] } else { 0.0 };
         let lead = match i {
@@ -123,6 +128,7 @@ impl Rod {
     }
 
     /// Lumped mass of node `i`, kg.
+    #[inline]
     pub fn mass(&self, section: &Section, i: usize) -> f64 {
         section.mass_per_length() * self.voronoi(i)
     }

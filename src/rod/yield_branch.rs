@@ -13,7 +13,7 @@ use super::plasticity::{Law, Scalar, respond_scalar};
 use crate::math::V3;
 
 /// Joints below this share of their yield moment are taken as elastic.
-const FAR: f64 = 0.25;
+pub(super) const FAR: f64 = 0.25;
 /// Error of the linear prediction of a moment that is accepted, over the yield moment.
 const PREDICTION_ERROR: f64 = 0.01;
 

@@ -393,25 +393,19 @@ impl Winding {
 
     /// Values must be finite, the wire below its strength and where it was sent.
     fn check_health(&mut self) -> Result<(), SimError> {
-        for (i, (x, v)) in self
-            .sys
-            .state
-            .rod
-            .x
-            .iter()
-            .zip(&self.sys.state.rod.v)
-            .enumerate()
-        {
-            if !(x.sum() + v.sum()).is_finite() {
-                return Err(SimError {
-                    time: self.sys.state.time,
-                    node: Some(i),
-                    reason: format!(
-                        "position or velocity is not finite after {} steps, the last of {:.3e} s; lower solver.step_share, or take solver.integrator = implicit if it is not in use",
-                        self.run.steps, self.run.last_step
-                    ),
-                });
-            }
+        let rod = &self.sys.state.rod;
+        let sums = rod.x.iter().zip(&rod.v).map(|(x, v)| x.sum() + v.sum());
+        // (which node it is, is asked only where there is one)
+        let sound = (sums.clone()).fold(true, |sound, sum| sound & sum.is_finite());
+        if !sound && let Some(i) = sums.clone().position(|sum| !sum.is_finite()) {
+            return Err(SimError {
+                time: self.sys.state.time,
+                node: Some(i),
+                reason: format!(
+                    "position or velocity is not finite after {} steps, the last of {:.3e} s; lower solver.step_share, or take solver.integrator = implicit if it is not in use",
+                    self.run.steps, self.run.last_step
+                ),
+            });
         }
         self.check_feed();
         self.check_clearance();

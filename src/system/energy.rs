@@ -58,20 +58,15 @@ impl System {
 
     /// Motion energy of the free nodes and spinning edges, J.
     pub fn kinetic(&self) -> f64 {
-        let free = self.free_nodes();
-        let spin: f64 = (0..self.state.rod.edges())
-            .map(|j| {
-                0.5 * self.model.section.spin_inertia_per_length()
-                    * self.state.rod.rest[j]
-                    * self.state.rod.spin[j].powi(2)
-            })
+        let (rod, section) = (&self.state.rod, &self.model.section);
+        let inertia = 0.5 * section.spin_inertia_per_length();
+        let edges = rod.rest.iter().zip(&rod.spin);
+        let spin: f64 = edges
+            .map(|(rest, spin)| inertia * rest * spin.powi(2))
             .sum();
-        free.map(|i| {
-            0.5 * self.state.rod.mass(&self.model.section, i) * self.state.rod.v[i].norm_squared()
-        })
-        .sum::<f64>()
-            + spin
-            - self.kinetic_between()
+        let density = section.mass_per_length();
+        let of_node = |i: usize| 0.5 * (density * rod.voronoi(i)) * rod.v[i].norm_squared();
+        self.free_nodes().map(of_node).sum::<f64>() + spin - self.kinetic_between()
     }
 
     /// What lumped mass has too much of motion energy where it is not lumped, J.

@@ -83,7 +83,7 @@ impl System {
         for (j, rest_of) in rest.iter().enumerate() {
             for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {
                 if point != ContactPoint::Node(0) {
-                    let own = own_wire(point.arc(arc, rest), diameter);
+                    let own = || own_wire(point.arc(arc, rest), diameter);
                     let to = point.place(guess);
                     share = share.min(line.share_to_turn(point.number(), to, own, [most, unseen]));
                 }
@@ -130,7 +130,8 @@ impl System {
     /// Moment of momentum of the same nodes about the core's axis, N m s.
     pub(crate) fn momentum_about_core(&self) -> f64 {
         let rod = &self.state.rod;
-        self.moment_of(|i| rod.v[i] * rod.mass(&self.model.section, i))
+        let density = self.model.section.mass_per_length();
+        self.moment_of(|i| rod.v[i] * (density * rod.voronoi(i)))
     }
 
     /// Lets the core hold what Newton's method left of the forces: it is nothing that moves wire in the core's frame.
@@ -171,8 +172,9 @@ impl System {
                     if point == ContactPoint::Node(0) {
                         continue;
                     }
-                    let (k, length) = (point.number(), point.length(rod));
-                    let own = own_wire(point.arc(arc, &rod.rest), diameter);
+                    let k = point.number();
+                    let length = || point.length(rod);
+                    let own = || own_wire(point.arc(arc, &rod.rest), diameter);
                     let p = point.place(&rod.x);
                     let q = spin.to_core(p);
                     let f = if commit {

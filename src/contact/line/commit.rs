@@ -2,8 +2,9 @@
 
 use super::line_contact::LineContact;
 use super::model::LineModel;
-use super::point::PointState;
+use super::point::{PointState, SLOTS};
 use super::state::LineState;
+use super::touch::TouchState;
 use crate::contact::accepted_touch::{AcceptedTouch, OUTSIDE, TouchOwner, friction_of};
 use crate::contact::friction::across;
 use crate::contact::law::{NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
@@ -64,10 +65,33 @@ impl LineContact<'_> {
     /// that begins within the step acted on the last of the way only, and stores what its law says. The
     /// rest of the work that the balance ascribes to it is lost: the landing, and half of its slip. A touch that ends
     /// within the step acted at its beginning only.
-    pub fn commit(&mut self, k: usize, p: V3, length: f64, own: f64, step: f64) -> V3 {
-        let used = self.state.points[k].touch.map(|t| t.limit.current);
+    #[inline(always)]
+    pub fn commit(
+        &mut self,
+        k: usize,
+        p: V3,
+        length: impl FnOnce() -> f64,
+        own: impl FnOnce() -> f64,
+        step: f64,
+    ) -> V3 {
+        let point = &self.state.points[k];
+        let limits = point.has_surroundings().then(|| point.limits());
+        if self.has_near(k, p, own) {
+            self.commit_near(k, p, length(), step, limits.unwrap_or_default())
+        } else {
+            // no touch is in use, so none has anything to move on
+            let point = &mut self.state.points[k];
+            debug_assert!(point.touch.iter().all(TouchState::is_unused));
+            point.last = p;
+            V3::zeros()
+        }
+    }
+
+    /// [`Self::commit`] for a point with surfaces near it, whose touches had these friction `limits` (N) before.
+    #[inline(never)]
+    fn commit_near(&mut self, k: usize, p: V3, length: f64, step: f64, used: [f64; SLOTS]) -> V3 {
         let force = self
-            .push(k, p, length, own, step)
+            .push_near(k, p, length, step)
             .map_or(V3::zeros(), |s| -s.gradient);
         let stiffness = self.model.law.stiffness * length;
         let k_t = stiffness * TANGENTIAL_SHARE;

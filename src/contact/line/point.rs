@@ -65,6 +65,12 @@ impl PointState {
         self.core_near || self.flange_near || self.passages > 0
     }
 
+    /// The friction limits of its touches at the last evaluation, N.
+    #[inline]
+    pub(super) fn limits(&self) -> [f64; SLOTS] {
+        self.touch.each_ref().map(|t| t.limit.current)
+    }
+
     /// The slots of what is near the point.
     #[inline]
     pub(super) fn slots(&self) -> impl Iterator<Item = usize> + use<> {

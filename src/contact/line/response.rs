@@ -17,21 +17,34 @@ impl LineContact<'_> {
     /// it touches nothing.
     ///
     /// `own` is the unstretched length from the clamp (m) beyond which frozen wire belongs to the point's own
-    /// neighbourhood, `step` the time since the last accepted instant (s).
-    #[inline]
+    /// neighbourhood, `step` the time since the last accepted instant (s). Most points have nothing near them, and are done
+    /// with here; of these neither length is asked for.
+    #[inline(always)]
     pub fn push(
         &mut self,
         k: usize,
         p: V3,
-        length: f64,
-        own: f64,
+        length: impl FnOnce() -> f64,
+        own: impl FnOnce() -> f64,
         step: f64,
     ) -> Option<ContactResponse> {
-        self.look_up_if_moved(k, p, own);
-        let point = &self.state.points[k];
-        if !point.has_surroundings() {
-            return None;
+        if self.has_near(k, p, own) {
+            self.push_near(k, p, length(), step)
+        } else {
+            None
         }
+    }
+
+    /// [`Self::push`] for a point with surfaces near it.
+    #[inline(never)]
+    pub(super) fn push_near(
+        &mut self,
+        k: usize,
+        p: V3,
+        length: f64,
+        step: f64,
+    ) -> Option<ContactResponse> {
+        let point = &self.state.points[k];
         if point.clear_within > 0.0 {
             let way = (p - point.clear_at).norm();
             if way < point.clear_within {

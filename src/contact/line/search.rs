@@ -71,26 +71,46 @@ impl LineContact<'_> {
         }
     }
 
-    /// Looks up the surroundings of point `k` at `p` if they may have changed since they were.
+    /// Whether core or frozen wire is near point `k` at `p`; looks its surroundings up if they may have changed since they were.
     #[inline(always)]
-    pub(super) fn look_up_if_moved(&mut self, k: usize, p: V3, own: f64) {
+    pub(super) fn has_near(&mut self, k: usize, p: V3, own: impl FnOnce() -> f64) -> bool {
         let point = &self.state.points[k];
         if point.reach < 0.0 || (p - point.centre).norm_squared() >= point.reach * point.reach {
-            self.look_up(k, p, own);
+            self.look_up(k, p, own());
+            return self.state.points[k].has_surroundings();
         }
+        point.has_surroundings()
     }
 
     /// Share of the way of point `k` to `to`, m, on which none of its touches turns its normal by more than `most` (rad) after it
     /// began; 1: all of it. Ways below `unseen`, m, are no matter. `own` as in [`Self::push`].
-    pub fn share_to_turn(&mut self, k: usize, to: V3, own: f64, [most, unseen]: [f64; 2]) -> f64 {
-        let from = self.state.points[k].last;
-        let way = to - from;
+    #[inline(always)]
+    pub fn share_to_turn(
+        &mut self,
+        k: usize,
+        to: V3,
+        own: impl FnOnce() -> f64,
+        [most, unseen]: [f64; 2],
+    ) -> f64 {
+        let point = &self.state.points[k];
+        let way = to - point.last;
         // no surface that the centreline lies on is bent more sharply than the wire
-        if !self.state.points[k].placed || way.norm() < unseen.max(most * self.model.radius) {
+        if !point.placed || way.norm() < unseen.max(most * self.model.radius) {
             return 1.0;
         }
-        self.look_up_if_moved(k, to, own);
+        if self.has_near(k, to, own) {
+            self.share_to_turn_near(k, to, most)
+        } else {
+            1.0
+        }
+    }
+
+    /// [`Self::share_to_turn`] for a point with surfaces near it.
+    #[inline(never)]
+    fn share_to_turn_near(&self, k: usize, to: V3, most: f64) -> f64 {
         let point = &self.state.points[k];
+        let from = point.last;
+        let way = to - from;
         if (to - point.clear_at).norm() < point.clear_within {
             return 1.0;
         }

@@ -1,6 +1,7 @@
 //! Taking a converged step over as the new state, with its energy balance.
 
 use super::Implicit;
+use super::carried::Carried;
 use super::landings::Solved;
 use super::nozzle_edge::NozzleEdge;
 use super::scheme::{Scheme, StepFormula};
@@ -100,9 +101,10 @@ impl Implicit {
             let force = (sys.state.load.force[n] + w.force[n]) * 0.5;
             sys.state.balance.nozzle -= force.dot(&sys.state.support[1].velocity) * h;
         }
+        let carried = Carried::of(sys);
         if let Some(now) = sys.state.turning {
             // what has turned the wire's mass is known better by its motion at both ends than by the mean of the moments there
-            let given = (sys.momentum_about_core() - momentum) * turned / h;
+            let given = (carried.momentum - momentum) * turned / h;
             let over = 0.5 * (turning.unwrap_or(0.0) + now) * turned - given;
             sys.state.balance.spindle -= over;
             sys.state.balance.numerical -= over;
@@ -122,7 +124,7 @@ impl Implicit {
         let held = 0.5 * (sys.state.unbalanced + before.2) * turned;
         // (what yields within the step is known better than by the forces at its ends)
         work -= sys.state.load.beyond;
-        sys.state.balance.numerical += work - held - (sys.kinetic() - kinetic - gained);
+        sys.state.balance.numerical += work - held - (carried.kinetic - kinetic - gained);
         let past = &mut sys.state.past;
         std::mem::swap(&mut past.x, &mut w.start);
         std::mem::swap(&mut past.v, &mut w.guess);
@@ -137,6 +139,7 @@ impl Implicit {
                 mass: &w.mass,
                 star: &w.star[1],
                 force: &w.force,
+                carried,
                 numerical,
             };
             w.impacts.stop(sys, step, solved, before.0, self.tolerance);

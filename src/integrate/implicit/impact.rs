@@ -8,6 +8,7 @@
 //! A touch that began within the step also rewrites the history of its nodes. After it, the formula of time has to see a wire
 //! that moved all the time as it does now, or it would take the fall for part of the motion.
 
+use super::carried::Carried;
 use super::impulse::{Impulse, PARTS};
 use super::landings::{Came, Solved};
 use super::scheme::StepFormula;
@@ -68,30 +69,6 @@ pub(super) struct Impacts {
     impulses: Vec<Impulse>,
 }
 
-/// Motion energy, J, and moment of momentum about the core's axis, N m s, before impulses of the core.
-struct Carried {
-    kinetic: f64,
-    momentum: f64,
-}
-
-impl Carried {
-    fn of(sys: &System) -> Self {
-        Self {
-            kinetic: sys.kinetic(),
-            momentum: sys.momentum_about_core(),
-        }
-    }
-
-    /// Motion energy that impulses have brought since then, J, as the turning core sees it; what the core gave with
-    /// them becomes work of the spindle.
-    fn gained(&self, sys: &mut System) -> f64 {
-        let now = Self::of(sys);
-        let work = sys.state.spindle.speed * (now.momentum - self.momentum);
-        sys.state.balance.spindle += work;
-        now.kinetic - self.kinetic - work
-    }
-}
-
 impl Impacts {
     /// Takes the speed out of what touches, after a step from the motion `old` of the spindle with the `solved` nodes.
     pub(super) fn stop(
@@ -102,6 +79,7 @@ impl Impacts {
         old: Spindle,
         tolerance: f64,
     ) {
+        let mut carried = solved.carried;
         let Some(line) = sys.line_contact() else {
             return;
         };
@@ -126,13 +104,13 @@ impl Impacts {
                 .in_landings(sys, step, (solved, old), (&self.impulses, &self.start[0]));
         sys.state.balance.numerical -= blow + rubbed;
         let landed = [blow, rubbed];
-        self.give_back_friction(sys, step, parts);
-        let before = Carried::of(sys);
+        self.give_back_friction(sys, step, parts, &mut carried);
         let bound = UNSEEN * tolerance;
         self.settle(step.h, bound, parts, restitution);
         self.take_over(sys, step, old, parts);
         let rubbed = self.rubbed();
-        let stopped = -before.gained(sys) - rubbed;
+        let now = Carried::of(sys);
+        let stopped = -carried.gained(sys, now) - rubbed;
         let given = solved.numerical - sys.state.balance.numerical;
         let taken = apart([landed[0] + stopped, landed[1] + rubbed]);
         let [stopped, rubbed] = taken_back(sys, given, taken);
@@ -246,8 +224,13 @@ impl Impacts {
     }
 
     /// Gives back what the solve took too much of friction, or takes what it left, by no more than the wire slides.
-    fn give_back_friction(&mut self, sys: &mut System, step: &StepFormula, parts: usize) {
-        let before = Carried::of(sys);
+    fn give_back_friction(
+        &mut self,
+        sys: &mut System,
+        step: &StepFormula,
+        parts: usize,
+        carried: &mut Carried,
+    ) {
         let spin = Spin::new(sys.state.spindle.angle);
         for impulse in &mut self.impulses {
             let of_nodes = impulse.nodes();
@@ -267,7 +250,8 @@ impl Impacts {
                 }
             }
         }
-        sys.state.balance.numerical -= before.gained(sys);
+        let now = Carried::of(sys);
+        sys.state.balance.numerical -= carried.gained(sys, now);
     }
 
     /// Mends the speed, or place, of each touch in turn; returns the largest change.

@@ -17,6 +17,8 @@ pub(super) struct Impulse {
     shares: [f64; 6],
     /// how many they are
     pub(super) count: usize,
+    /// whether each node follows the one before it, as those of one place do
+    in_a_row: bool,
     /// direction of the touch's friction across the wire, or 0
     pub(super) rubs: V3,
     /// friction over normal force
@@ -78,6 +80,7 @@ impl Impulse {
             weights,
             shares,
             count,
+            in_a_row: nodes[..count].windows(2).all(|two| two[1] == two[0] + 1),
             rubs: if size > 0.0 {
                 friction / size
             } else {
@@ -120,7 +123,13 @@ impl Impulse {
         self.part_of(motion, &self.rubs)
     }
 
+    #[inline]
     fn part_of(&self, motion: &[V3], along: &V3) -> f64 {
+        let (first, count) = (self.nodes[0], self.count);
+        if self.in_a_row {
+            let near = motion[first..first + count].iter().zip(&self.weights);
+            return near.map(|(m, w)| w * m.dot(along)).sum();
+        }
         let part = |(i, w): (usize, f64)| w * motion[i].dot(along);
         self.nodes().map(part).sum()
     }
@@ -130,11 +139,22 @@ impl Impulse {
         self.touch.normal * self.added[part] + self.rubs * self.rubbed[part]
     }
 
-    /// Adds impulses along the normal and of friction to a part of the motion.
-    fn add(&mut self, part: usize, along: f64, across: f64, motion: &mut [V3]) {
-        self.added[part] += along;
+    /// Adds an impulse of friction to a part of the motion.
+    fn add_friction(&mut self, part: usize, across: f64, motion: &mut [V3]) {
         self.rubbed[part] += across;
-        let change = self.touch.normal * along + self.rubs * across;
+        self.spread(&(self.rubs * across), motion);
+    }
+
+    /// Adds the impulse `change` to the motion of its nodes.
+    #[inline]
+    fn spread(&self, change: &V3, motion: &mut [V3]) {
+        let (first, count) = (self.nodes[0], self.count);
+        if self.in_a_row {
+            let near = motion[first..first + count].iter_mut();
+            near.zip(&self.shares)
+                .for_each(|(m, share)| *m += change * *share);
+            return;
+        }
         for (i, share) in self.shares() {
             motion[i] += change * share;
         }
@@ -156,7 +176,11 @@ impl Impulse {
             _ => wanted.min(0.0),
         };
         let change = allowed - self.added[part];
-        self.add(part, change, 0.0, motion);
+        if change == 0.0 {
+            return 0.0;
+        }
+        self.added[part] += change;
+        self.spread(&(self.touch.normal * change), motion);
         (change * self.inverse).abs()
     }
 
@@ -182,7 +206,7 @@ impl Impulse {
     pub(super) fn shift(&mut self, motion: &mut [V3]) {
         if self.added[1] > 0.0 {
             let shift = self.added[2] * self.rubbed[1] / self.added[1];
-            self.add(2, 0.0, shift, motion);
+            self.add_friction(2, shift, motion);
         }
     }
 
@@ -200,7 +224,10 @@ impl Impulse {
             _ => until(0.0).clamp(-most, most),
         };
         let change = allowed - self.rubbed[part];
-        self.add(part, 0.0, change, motion);
+        if change == 0.0 {
+            return 0.0;
+        }
+        self.add_friction(part, change, motion);
         (change * self.inverse).abs()
     }
 }

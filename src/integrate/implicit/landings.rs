@@ -8,6 +8,7 @@
 //! the inertia of the wire holds, as far as bending carries a blow within the step, and only where the wire came in
 //! faster than its way in the step says.
 
+use super::carried::Carried;
 use super::impulse::Impulse;
 use super::scheme::StepFormula;
 use crate::math::{Spin, V3, spin_velocity};
@@ -25,6 +26,8 @@ pub(super) struct Solved<'a> {
     pub(super) star: &'a [V3],
     /// forces at the step's start, N
     pub(super) force: &'a [V3],
+    /// motion energy and moment of momentum that it left
+    pub(super) carried: Carried,
     /// numerical losses up to the step's start, J
     pub(super) numerical: f64,
 }

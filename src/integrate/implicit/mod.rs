@@ -5,6 +5,7 @@
 //! scratch arrays, so a rejected step leaves no trace.
 
 mod assembly;
+mod carried;
 mod commit;
 mod conjugate;
 mod dispatch;
@@ -12,6 +13,7 @@ mod error;
 mod impact;
 mod impulse;
 mod landings;
+mod largest;
 mod lengths;
 mod model;
 mod newton;

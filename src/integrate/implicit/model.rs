@@ -220,7 +220,8 @@ impl Model<'_> {
         (along, length, inverse): (V3, f64, f64),
         sum: &mut Value,
     ) -> f64 {
-        let at_nozzle = self.nozzle.filter(|_| j + 1 == self.rod.edges());
+        let nozzle = self.nozzle.as_ref();
+        let at_nozzle = nozzle.filter(|_| j + 1 == self.rod.edges());
         let s = match at_nozzle {
             Some(nozzle) => nozzle.stretched(length),
             None => stretched(
@@ -325,8 +326,8 @@ impl Model<'_> {
     ) {
         let rest = &self.rod.rest;
         let p = point.place(&work.q);
-        let own = own_wire(point.arc(arc, rest), self.diameter);
-        let length = point.length_with(rest, |i| voronoi(self.rod, self.grown, i));
+        let own = || own_wire(point.arc(arc, rest), self.diameter);
+        let length = || point.length_with(rest, |i| voronoi(self.rod, self.grown, i));
         if let Some(response) = line.push(point.number(), p, length, own, self.elapsed) {
             value.merit += response.energy_lagged;
             value.now += response.energy;

@@ -1,6 +1,7 @@
 //! Newton's method on the incremental potential, with line search.
 
 use super::conjugate;
+use super::largest::largest;
 use super::model::Model;
 use super::unknowns::{Unknowns, add_at};
 use super::work::{Axial, Work};
@@ -25,6 +26,10 @@ const SHRINKS: f64 = 0.2;
 const CHORD_LEFT: f64 = 0.03;
 /// The same for the midpoint rule, which keeps what is wrong with a step for ever.
 const CHORD_KEPT: f64 = 1e-3;
+/// What an update may be expected to leave if it is the last, as a share of what is close: the one that would follow it.
+const LEFT: f64 = 1.0;
+/// The same for the midpoint rule and for equilibria.
+const LEFT_EXACTLY: f64 = 0.5;
 /// Rounding noise of the potential as a share of its size.
 const NOISE: f64 = 1e-13;
 
@@ -43,6 +48,8 @@ pub(super) struct NewtonLimits {
     pub(super) line_search_halvings: usize,
     /// a guess stands unsolved if inertia alone bounds the update by so much, m
     pub(super) guess: f64,
+    /// what a last update may be expected to leave, as a share of what is close
+    pub(super) left: f64,
     /// what a last update with the factors of the one before may leave, as a share of what is close; 0: there is none
     pub(super) chord: f64,
 }
@@ -56,6 +63,7 @@ impl NewtonLimits {
         far: f64::INFINITY,
         line_search_halvings: 12,
         guess: 0.0,
+        left: LEFT_EXACTLY,
         chord: CHORD_KEPT,
     };
 
@@ -74,6 +82,7 @@ impl NewtonLimits {
                 2
             },
             guess,
+            left: if damped { LEFT } else { LEFT_EXACTLY },
             chord: if damped { CHORD_LEFT } else { CHORD_KEPT },
             ..Self::STEP
         }
@@ -167,14 +176,15 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         }
         let mut share = limits.share(work, update, model.diameter);
         work.keep_start();
-        work.base.clone_from(&work.axial);
+        // (the next evaluation fills in all of the stretch)
+        std::mem::swap(&mut work.base, &mut work.axial);
         // near the end each step shrinks the update by the same factor or better
         let next = if last_update.is_finite() {
             update * (update / last_update).min(1.0)
         } else {
             update
         };
-        if share == 1.0 && fits && (update < close || next < 0.5 * close) {
+        if share == 1.0 && fits && (update < close || next < limits.left * close) {
             work.take(1.0);
             return Ok(step);
         }
@@ -296,10 +306,10 @@ fn end_by_chords<const D: usize, U: Unknowns<D>>(
 }
 
 fn load_gradient<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U>) {
-    work.load.clear();
-    for (i, places) in work.gradient.iter().enumerate() {
-        let gradient = work.unknowns.gradient(i, places);
-        work.load.extend_from_slice(&gradient.map(|g| -g));
+    work.load.resize(D * work.gradient.len(), 0.0);
+    let nodes = work.load.as_chunks_mut::<D>().0.iter_mut();
+    for (i, (load, places)) in nodes.zip(&work.gradient).enumerate() {
+        *load = work.unknowns.gradient(i, places).map(|g| -g);
     }
 }
 
@@ -308,15 +318,7 @@ fn largest_update<const D: usize, U: Unknowns<D>>(
     model: &Model,
     work: &Work<D, U>,
 ) -> (f64, usize, bool) {
-    let radius = 0.5 * model.diameter;
-    let (mut update, mut at) = (0.0, 0);
-    for (k, u) in work.update.iter().enumerate() {
-        let size = if k % D < 3 { u.abs() } else { u.abs() * radius };
-        let size = if size.is_nan() { f64::INFINITY } else { size };
-        if size > update {
-            (update, at) = (size, k);
-        }
-    }
+    let (update, at) = largest::<D>(&work.update, 0.5 * model.diameter);
     (update, at / D, at % D == 3)
 }
 
@@ -507,15 +509,17 @@ pub(super) fn expect_nothing<const D: usize, U: Unknowns<D>>(model: &Model, work
             ..Default::default()
         });
     }
-    work.axial.clone_from(&work.expected);
+    for stretch in [&mut work.axial, &mut work.base] {
+        stretch.resize(work.expected.len(), Axial::default());
+    }
 }
 
 /// What the update promises for the stretch of each edge.
 #[inline(never)]
 fn expect_tension<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U>, share: f64) {
-    let update = &work.update;
-    for (j, (e, a)) in work.expected.iter_mut().zip(&work.base).enumerate() {
-        let (u, v) = (&update[D * j..], &update[D * (j + 1)..]);
+    let nodes = work.update.as_chunks::<D>().0;
+    let edges = work.expected.iter_mut().zip(&work.base);
+    for ((e, a), (u, v)) in edges.zip(nodes.iter().zip(&nodes[1..])) {
         let change = V3::new(v[0] - u[0], v[1] - u[1], v[2] - u[2]) * share;
         let longer = a.along.dot(&change);
         e.length = a.length + longer;

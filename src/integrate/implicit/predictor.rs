@@ -37,23 +37,36 @@ impl<const D: usize, U: Unknowns<D>> Work<D, U> {
         for s in &mut w.star {
             s.clear();
         }
-        for i in 0..nodes {
-            let (x, v) = (rod.x[i], rod.v[i]);
-            let (xs, vs) = if step.weight[1] == 0.0 {
-                (x, v)
+        // (array by array: an array whose length is known is filled with nothing to check)
+        let [xs, vs] = &mut w.star;
+        for (star, (now, before)) in [(&mut *xs, (&rod.x, &past.x)), (vs, (&rod.v, &past.v))] {
+            if step.weight[1] == 0.0 {
+                star.extend_from_slice(now);
             } else {
-                (step.blend(x, past.x[i]), step.blend(v, past.v[i]))
-            };
-            w.star[0].push(xs);
-            w.star[1].push(vs);
-            w.target.push(spin.to_core(xs + vs * step.gamma));
-            w.guess.push(match past.known {
-                0 => spin.to_core(x + v * (step.share * step.h)),
-                1 => past.q[0][i] * e[0] + past.q[1][i] * e[1],
-                _ => past.q[0][i] * e[0] + past.q[1][i] * e[1] + past.q[2][i] * e[2],
-            });
-            w.mass.push(density * voronoi(rod, step.grown, i));
+                let both = now.iter().zip(&before[..nodes]);
+                star.extend(both.map(|(now, before)| step.blend(*now, *before)));
+            }
         }
+        let star = w.star[0].iter().zip(&w.star[1]);
+        (w.target).extend(star.map(|(xs, vs)| spin.to_core(xs + vs * step.gamma)));
+        let [one, two, three] = &past.q;
+        match past.known {
+            0 => {
+                let moved = rod.x.iter().zip(&rod.v);
+                (w.guess).extend(moved.map(|(x, v)| spin.to_core(x + v * (step.share * step.h))));
+            }
+            1 => {
+                let places = one[..nodes].iter().zip(&two[..nodes]);
+                (w.guess).extend(places.map(|(one, two)| one * e[0] + two * e[1]));
+            }
+            _ => {
+                let places = one[..nodes].iter().zip(&two[..nodes]).zip(&three[..nodes]);
+                let guess =
+                    places.map(|((one, two), three)| one * e[0] + two * e[1] + three * e[2]);
+                w.guess.extend(guess);
+            }
+        }
+        (w.mass).extend((0..nodes).map(|i| density * voronoi(rod, step.grown, i)));
         for (end, i) in [(0, 0), (1, nodes - 1)] {
             let s = &support[end];
             if s.turning && s.holds_all() {

@@ -75,26 +75,31 @@ impl Rolls {
             s.frame.map(|f| if s.turning { f } else { back * f })
         });
         let density = sys.model.section.spin_inertia_per_length();
-        for j in 0..rod.edges() {
-            let (roll, spin) = if step.weight[1] == 0.0 {
-                (0.0, rod.spin[j])
-            } else {
-                let before = -past.roll[0][j];
-                (
-                    step.blend(0.0, before),
-                    step.blend(rod.spin[j], past.spin[j]),
-                )
-            };
-            star.push(roll);
-            rate.push(spin);
-            self.target.push(roll + spin * step.gamma);
-            self.guess.push(match past.known {
-                0 => rod.spin[j] * step.share * step.h,
-                1 => -past.roll[0][j] * e[1],
-                _ => -past.roll[0][j] * e[1] - (past.roll[0][j] + past.roll[1][j]) * e[2],
-            });
-            self.inertia
-                .push(if dynamic { density * rod.rest[j] } else { 0.0 });
+        // (array by array: an array whose length is known is filled with nothing to check)
+        let edges = rod.edges();
+        let [one, two] = &past.roll;
+        if step.weight[1] == 0.0 {
+            star.resize(edges, 0.0);
+            rate.extend_from_slice(&rod.spin);
+        } else {
+            star.extend(one[..edges].iter().map(|roll| step.blend(0.0, -roll)));
+            let spins = rod.spin.iter().zip(&past.spin[..edges]);
+            rate.extend(spins.map(|(now, before)| step.blend(*now, *before)));
+        }
+        let history = star.iter().zip(rate.iter());
+        (self.target).extend(history.map(|(roll, spin)| roll + spin * step.gamma));
+        match past.known {
+            0 => (self.guess).extend(rod.spin.iter().map(|spin| spin * step.share * step.h)),
+            1 => (self.guess).extend(one[..edges].iter().map(|roll| -roll * e[1])),
+            _ => {
+                let rolls = one[..edges].iter().zip(&two[..edges]);
+                (self.guess).extend(rolls.map(|(one, two)| -one * e[1] - (one + two) * e[2]));
+            }
+        }
+        if dynamic {
+            (self.inertia).extend(rod.rest.iter().map(|rest| density * rest));
+        } else {
+            self.inertia.resize(edges, 0.0);
         }
         self.loose = !dynamic && self.clamp == [None; 2];
         self.angle.clone_from(&self.guess);
@@ -122,6 +127,9 @@ impl Rolls {
         mut matrix: Option<&mut Banded<4>>,
     ) -> f64 {
         let mut energy = 0.0;
+        if self.inertia.iter().all(|inertia| *inertia == 0.0) {
+            return energy;
+        }
         for j in 0..self.angle.len() {
             let (d, way) = (
                 self.angle[j] - self.target[j],

@@ -64,6 +64,10 @@ pub struct TwistingJoints {
     pub(super) angle: Columns<10>,
     pub(super) state: Columns<STATE>,
     pub(super) answer: Columns<ANSWER>,
+    /// whether a block has an angle too large for the series
+    pub(super) large: Vec<bool>,
+    /// whether a block has a joint that yields, or may change its branch: in bending, in twist
+    pub(super) near: Vec<[bool; 2]>,
 }
 
 impl TwistingJoints {

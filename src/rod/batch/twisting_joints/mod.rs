@@ -47,17 +47,27 @@ impl TwistingJoints {
         }
         self.edge.join();
         run(Angles(self));
-        for j in 0..=self.edges {
-            let (angle, row) = (&self.angle.blocks()[j / ROWS], j % ROWS);
-            let (x, y, z) = (
-                angle.get(V, row),
-                angle.get(V + 1, row),
-                angle.get(V + 2, row),
-            );
-            let small =
-                x * x + y * y < Joint::SERIES && z.abs() < Joint::TWIST_SERIES * angle.get(W, row);
-            if !small {
-                self.put_large_angles(j);
+        self.put_all_large_angles();
+    }
+
+    /// Puts right the angles that are too large for their series, in those blocks that have any.
+    fn put_all_large_angles(&mut self) {
+        for block in 0..self.large.len() {
+            if !self.large[block] {
+                continue;
+            }
+            for row in 0..ROWS.min(self.edges + 1 - block * ROWS) {
+                let angle = &self.angle.blocks()[block];
+                let (x, y, z) = (
+                    angle.get(V, row),
+                    angle.get(V + 1, row),
+                    angle.get(V + 2, row),
+                );
+                let small = x * x + y * y < Joint::SERIES
+                    && z.abs() < Joint::TWIST_SERIES * angle.get(W, row);
+                if !small {
+                    self.put_large_angles(block * ROWS + row);
+                }
             }
         }
     }
@@ -82,8 +92,18 @@ impl TwistingJoints {
     ///
     /// Joints that may change their branch are appended to `yield_branches`, if given;
     /// [`Joints::joints`] completes those of bending.
-    pub fn respond(&mut self, laws: &Laws, mut yield_branches: Option<&mut YieldBranches>) -> f64 {
+    pub fn respond(&mut self, laws: &Laws, yield_branches: Option<&mut YieldBranches>) -> f64 {
         run(Elastic(self, laws));
+        self.answer_near_yielding(laws, yield_branches)
+    }
+
+    /// Mends the elastic answers of joints that yield and finds those that may, in those blocks that have any; returns the energy
+    /// of all, J.
+    fn answer_near_yielding(
+        &mut self,
+        laws: &Laws,
+        mut yield_branches: Option<&mut YieldBranches>,
+    ) -> f64 {
         if let Some(yield_branches) = &mut yield_branches {
             self.find_twist_branches(laws, &mut yield_branches.twist);
         }
@@ -92,7 +112,15 @@ impl TwistingJoints {
             let state = &self.state.blocks()[block];
             let angles = &self.angle.blocks()[block];
             let answers = &mut self.answer.blocks_mut()[block];
-            for row in 0..ROWS.min(self.edges + 1 - block * ROWS) {
+            let rows = ROWS.min(self.edges + 1 - block * ROWS);
+            if self.near[block] == [false; 2] {
+                // all far from yielding, as in the free span
+                for row in 0..rows {
+                    energy += answers.get(ENERGY, row);
+                }
+                continue;
+            }
+            for row in 0..rows {
                 let j = block * ROWS + row;
                 let (trial, limit) = (answers.get(PUSH, row), state.get(LIMIT, row));
                 let yields =
@@ -147,6 +175,10 @@ impl TwistingJoints {
         for (block, (answers, state)) in
             (self.answer.blocks().iter().zip(self.state.blocks())).enumerate()
         {
+            let [_, near] = self.near[block];
+            if !near {
+                continue;
+            }
             for row in 0..ROWS.min(self.edges + 1 - block * ROWS) {
                 let (couple, rise) = (answers.get(COUPLE, row), state.get(TWIST_RISE, row));
                 if !YieldBranch::matters(law, couple.abs(), rise) {

@@ -5,6 +5,7 @@ use crate::math::simd::{Lanes, Lanes3, ROWS, WithSimd};
 use crate::rod::batch::series;
 use crate::rod::forces::Laws;
 use crate::rod::joint::Joint;
+use crate::rod::yield_branch::FAR;
 use pulp::Simd;
 
 /// First pass: directions, lengths and frames of the edges.
@@ -82,7 +83,10 @@ impl WithSimd for Angles<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let b = self.0;
-        for (edge, angle) in b.edge.blocks().iter().zip(b.angle.blocks_mut()) {
+        let blocks = b.edge.blocks().iter().zip(b.angle.blocks_mut());
+        b.large.clear();
+        for (edge, angle) in blocks {
+            let mut large = Lanes::splat(simd, 0.0);
             for j in (0..ROWS).step_by(Lanes::<S>::COUNT) {
                 let p: [_; 4] = edge.load_all(simd, FRAME, j, 0);
                 let n = edge.load_all(simd, FRAME, j, 1);
@@ -103,7 +107,11 @@ impl WithSimd for Angles<'_> {
                 angle.store(COSINE, j, c);
                 angle.store(G, j, g);
                 angle.store(G1, j, g1);
+                let small = s2.all(Joint::SERIES).above(s2);
+                let small = small * (w * Joint::TWIST_SERIES).above(z.abs());
+                large += w.all(1.0) - small;
             }
+            b.large.push(large.most() > 0.0);
         }
     }
 }
@@ -120,7 +128,9 @@ impl WithSimd for Elastic<'_> {
         let (bending, twisting) = (laws.bend.modulus, laws.twist.modulus);
         let (per_bending, per_twisting) = (1.0 / bending, 1.0 / twisting);
         let joints = all.angle.blocks().iter().zip(all.state.blocks());
+        all.near.clear();
         for ((angle, state), out) in joints.zip(all.answer.blocks_mut()) {
+            let (mut bent, mut twisted) = (Lanes::splat(simd, 0.0), Lanes::splat(simd, 0.0));
             for j in (0..ROWS).step_by(Lanes::<S>::COUNT) {
                 let lv = state.load(simd, LV, j, 1);
                 let inv = state.load(simd, PER_LV, j, 1);
@@ -151,7 +161,12 @@ impl WithSimd for Elastic<'_> {
                 out.store(STIFF + 2, j, inv * twisting);
                 out.store(FREE, j, free);
                 out.store(ENERGY, j, energy);
+                bent += n.above(state.load(simd, LIMIT, j, 1) * FAR);
+                twisted += couple
+                    .abs()
+                    .above(state.load(simd, TWIST_LIMIT, j, 1) * FAR);
             }
+            all.near.push([bent.most() > 0.0, twisted.most() > 0.0]);
         }
     }
 }

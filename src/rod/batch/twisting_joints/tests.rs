@@ -1,6 +1,7 @@
 //! All joints at once against one joint at a time.
 
 use super::TwistingJoints;
+use super::passes::Elastic;
 use crate::math::simd::{ROWS, RowBlock, WithSimd, run};
 use crate::math::simd::{Width, at_most, width};
 use crate::math::{Quat, V3, rotate};
@@ -233,6 +234,49 @@ fn branches_of_twist_are_those_of_the_law() {
         }
     }
     assert!(seen[0] > 2 && seen[1] > 2, "{seen:?}");
+}
+
+/// Blocks that are passed over give, to the bit, what looking at each of their joints gives.
+#[test]
+fn quiet_blocks_are_passed_over() {
+    let mut w = wire(8, 60, 5e-5);
+    for j in 24..60 {
+        (w.bend[j], w.twist[j], w.roll[j]) = (Bend::default(), Scalar::default(), 0.0);
+    }
+    let laws = laws();
+    let mut batch = TwistingJoints::default();
+    batch.begin(&w.frames, &w.along, w.clamps);
+    batch.place(&w.q, &w.roll);
+    batch.lay(&laws, (&w.bend, &w.twist), [0, 59], |_| (LV, 1.0));
+    let angles = |batch: &TwistingJoints| -> Vec<u64> {
+        let bits = |j: usize| (0..10).map(move |k| batch.angle.get(k, j).to_bits());
+        (0..=60).flat_map(bits).collect()
+    };
+    let answers = |batch: &TwistingJoints| -> Vec<u64> {
+        let bits = |j: usize| (0..9).map(move |k| batch.answer.get(k, j).to_bits());
+        (0..=60).flat_map(bits).collect()
+    };
+    let mut slow = batch.clone();
+    assert!(slow.large.contains(&true) && slow.large.contains(&false));
+    slow.large.fill(true);
+    slow.put_all_large_angles();
+    assert_eq!(angles(&batch), angles(&slow));
+    let (mut few, mut all) = (YieldBranches::default(), YieldBranches::default());
+    let energy = batch.respond(&laws, Some(&mut few));
+    run(Elastic(&mut slow, &laws));
+    assert!(slow.near.contains(&[true; 2]) && slow.near.contains(&[false; 2]));
+    slow.near.fill([true; 2]);
+    let slowly = slow.answer_near_yielding(&laws, Some(&mut all));
+    assert_eq!(energy.to_bits(), slowly.to_bits());
+    assert_eq!(answers(&batch), answers(&slow));
+    let joints = |found: &[(u32, YieldBranch)]| -> Vec<(u32, u64)> {
+        found
+            .iter()
+            .map(|(j, b)| (*j, b.moment.to_bits()))
+            .collect()
+    };
+    assert_eq!(joints(&few.bending), joints(&all.bending));
+    assert_eq!(joints(&few.twist), joints(&all.twist));
 }
 
 /// As many at once as there may be: the same to the bit.
