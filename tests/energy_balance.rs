@@ -83,8 +83,8 @@ fn coarse_wire_is_halved_where_it_bends() {
         sim.system().state.rod.nodes() - before
     };
     assert_eq!(wound_with(0.02), 0, "straight enough");
-    // the wire turns by 0.15 rad at the neighbours, and by 0.3 rad at the node: the edges on either side of it
-    assert_eq!(wound_with(0.15), 2);
+    // the wire turns by 0.04 rad at the neighbours, and by 0.08 rad at the node: the edges on either side of it
+    assert_eq!(wound_with(0.04), 2);
 }
 
 /// The points on either side of a split moved along the wire, and their anchors stayed: wire on the core slid by a sixteenth of
