@@ -17,8 +17,8 @@ const FEWEST_NODES: usize = 4;
 const STRAIGHT: f64 = 0.99995;
 
 /// Angle between edges from which on the longer one is halved, rad. Chosen: from 0.3 rad on, a split made as much energy as
-/// slack wire has.
-const BENT: f64 = 0.2;
+/// slack wire has. A look comes after the step in which an edge bends beyond it, so halved edges bend by more.
+const BENT: f64 = 0.05;
 
 /// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
 /// turn back.

@@ -1,7 +1,6 @@
 //! Joining two edges.
 
 use super::super::System;
-use crate::contact::ContactPoint;
 use crate::math::{Quat, align};
 use crate::rod::Joint;
 
@@ -42,7 +41,7 @@ impl System {
         for part in self.parts() {
             part.merge(&merge);
         }
-        self.move_points(i);
+        self.carry_points(i - 1, i);
         if at_nozzle {
             self.state.balance.inflow += self.kinetic() - kinetic;
         }
@@ -70,25 +69,5 @@ impl System {
         };
         merge.frame = align(&rod.frame[i - 1], &chord.normalize(), roll);
         merge
-    }
-
-    /// The wire's spline runs elsewhere round a node taken out at `i`: its contact points move along with
-    /// their anchors.
-    fn move_points(&mut self, i: usize) {
-        let Some(line) = self.state.contact.as_line_mut() else {
-            return;
-        };
-        let q = &self.state.past.q[0];
-        if q.len() != self.state.rod.nodes() {
-            return;
-        }
-        let mut carry = |point: ContactPoint| line.carry(point.number(), point.place(q));
-        if i > 1 {
-            carry(ContactPoint::Node(i - 1));
-        }
-        carry(ContactPoint::Edge(i - 1));
-        if i + 1 < q.len() {
-            carry(ContactPoint::Node(i));
-        }
     }
 }

@@ -15,6 +15,7 @@ pub(super) use split::Split;
 pub(super) use thaw::Thaw;
 
 use super::System;
+use crate::contact::ContactPoint;
 
 /// A part of the system with entries a node or an edge.
 pub(super) trait Remesh {
@@ -53,6 +54,23 @@ impl System {
         }
         self.state.past.shift_feed(wire);
         self.state.joined_away -= wire;
+    }
+
+    /// The wire's spline runs elsewhere round a node that came or went: the points of the nodes `first` to `last` and of the edges
+    /// between them move along with their anchors.
+    fn carry_points(&mut self, first: usize, last: usize) {
+        let Some(line) = self.state.contact.as_line_mut() else {
+            return;
+        };
+        let q = &self.state.past.q[0];
+        if q.len() != self.state.rod.nodes() {
+            return;
+        }
+        let numbers = ContactPoint::Node(first).number()..=ContactPoint::Node(last).number();
+        let of_points = 1..2 * (q.len() - 1);
+        for number in numbers.filter(|number| of_points.contains(number)) {
+            line.carry(number, ContactPoint::of_number(number).place(q));
+        }
     }
 
     /// The parts that follow a change of the wire.

@@ -50,6 +50,7 @@ impl System {
         for part in self.parts() {
             part.split(&split);
         }
+        self.carry_points(j, j + 2);
         if at_nozzle {
             // the half edge at the nozzle was not in the energy balance before
             self.state.balance.inflow += self.kinetic() - kinetic;

@@ -9,8 +9,7 @@ const ROUNDING: f64 = 1e-9;
 /// ... and so much of it may have gone where arcs became chords, node by node; ...
 const JOINED: f64 = 2e-4;
 /// ... or have come where chords became arcs: wire that bends by an angle from edge to edge, rad, is longer than its chords by a 32nd of
-/// the square of that angle. All of the wire may bend by 0.2 rad, from which on
-/// coarse edges are halved.
+/// the square of that angle. All of the wire may bend by 0.2 rad, four times the angle from which on coarse edges are halved.
 const ARCS: f64 = 0.2 * 0.2 / 32.0;
 
 /// Remembers how much wire there was.
