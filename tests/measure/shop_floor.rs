@@ -270,3 +270,24 @@ fn wire_drawn_out_is_overstretched_where_it_is() {
     );
     assert!(!within.flags().overstretch);
 }
+
+/// Verdicts of the complete turns from the second on.
+fn verdicts(coil: &Coil) -> Vec<Verdict> {
+    let turns = coil.turns();
+    turns[1..5].iter().map(|turn| turn.verdict).collect()
+}
+
+/// One run over all of the wire was told in the turn where it is largest, and the turns beside it were aligned.
+#[test]
+fn every_turn_of_wire_that_is_drawn_out_is_overstretched() {
+    let stretched = altered(|turn| turn > 1.0, |node| node.plastic_strain = 0.3);
+    only(DefectKind::Overstretch, &stretched);
+    assert_eq!(verdicts(&stretched), [Verdict::Overstretch; 4]);
+}
+
+#[test]
+fn every_turn_that_lies_without_tension_is_loose() {
+    let slack = altered(|turn| turn > 2.0, |node| node.tension = 0.3 * PULL);
+    only(DefectKind::LooseTurn, &slack);
+    assert_eq!(verdicts(&slack)[1..], [Verdict::LooseTurn; 3]);
+}
