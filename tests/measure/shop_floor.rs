@@ -291,3 +291,29 @@ fn every_turn_that_lies_without_tension_is_loose() {
     only(DefectKind::LooseTurn, &slack);
     assert_eq!(verdicts(&slack)[1..], [Verdict::LooseTurn; 3]);
 }
+
+/// A nozzle that goes beyond each place and comes back to it seemed to hang back for ever: its coil had one pass, and all wire
+/// after the first jump was a bulge.
+#[test]
+fn a_nozzle_that_swings_past_each_place_turns_with_the_layer() {
+    let plain = two_layers(&[3.5, 2.5, 1.5, 0.5]);
+    assert_eq!(plain.flags(), DefectFlags::default());
+    let mut coil = plain.clone();
+    coil.take_back_pass();
+    let mut turn_at =
+        |turn: f64, sense: f64, place: f64| coil.begin_pass_at(turn * TAU, sense, place * D);
+    for place in 1..5 {
+        let place = f64::from(place);
+        turn_at(place - 0.05, -1.0, place + 1.5);
+        if place < 4.0 {
+            turn_at(place + 0.9, 1.0, place);
+        }
+    }
+    for place in 0..4 {
+        let place = f64::from(place);
+        turn_at(place + 4.95, 1.0, 2.0 - place);
+        turn_at(place + 5.9, -1.0, 3.5 - place);
+    }
+    assert_eq!(coil.stations().last().unwrap().pass, 2);
+    assert_eq!(coil.flags(), DefectFlags::default(), "{:?}", coil.defects());
+}
