@@ -8,6 +8,7 @@ use super::frames::Frames;
 use super::progress::Progress;
 use super::terminal::{print, stop_flag};
 use clap::Args;
+use clap::builder::NonEmptyStringValueParser;
 use coilwind::measure::{Defect, DefectKind, Verdict};
 use coilwind::output::{Ending, History, Mark, OutputError, Snapshot, write_report, write_results};
 use coilwind::scene::{Scene, assignment};
@@ -27,7 +28,7 @@ const CHECKPOINT_SHARE: u32 = 20;
 #[derive(Args, Clone, Debug)]
 pub(super) struct RunArgs {
     /// Scene file (TOML), or the name of a packed scene such as fig8
-    #[arg(required_unless_present = "resume")]
+    #[arg(required_unless_present = "resume", value_parser = NonEmptyStringValueParser::new())]
     pub(super) scene: Option<String>,
     /// Set a parameter, with or without its unit: wire.diameter=7e-4, wire.diameter_mm=0.7
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]

@@ -1,6 +1,7 @@
 //! The scene that a command takes.
 
 use clap::Args;
+use clap::builder::NonEmptyStringValueParser;
 use coilwind::scene::{Scene, SceneError, Warning, assignment};
 use coilwind::settings::SceneSettings;
 
@@ -8,6 +9,7 @@ use coilwind::settings::SceneSettings;
 #[derive(Args, Debug)]
 pub(super) struct SceneArgs {
     /// Scene file (TOML), or the name of a packed scene such as fig8
+    #[arg(value_parser = NonEmptyStringValueParser::new())]
     pub(super) scene: String,
     /// Set a parameter, with or without its unit: wire.diameter=7e-4, wire.diameter_mm=0.7
     #[arg(long, value_name = "NAME=VALUE", value_parser = assignment)]

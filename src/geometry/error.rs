@@ -1,5 +1,19 @@
 //! What can be wrong with a mesh, and where.
 
+use crate::math::V3;
+use std::fmt;
+
+/// A place on a mesh, m. It reads in millimetres, as programs that draw bodies show it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place(pub V3);
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [x, y, z] = [self.0.x, self.0.y, self.0.z].map(|m| 1e3 * m);
+        write!(f, "x = {x:.3}, y = {y:.3}, z = {z:.3} mm")
+    }
+}
+
 /// Why vertices and triangles make no surface to wind on.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -54,24 +68,20 @@ pub enum MeshError {
         longest: f64,
     },
     /// An edge has a triangle on one side only.
-    #[error("the mesh is open: edge {from}-{to} has only triangle {triangle}")]
+    #[error("the mesh is open: the edge at {at} has only triangle {triangle}")]
     Open {
-        /// vertex index
-        from: u32,
-        /// vertex index
-        to: u32,
+        /// middle of the edge
+        at: Place,
         /// the only triangle
         triangle: u32,
     },
     /// An edge has more than two triangles.
     #[error(
-        "the mesh is not a surface: edge {from}-{to} has {count} triangles, triangle {triangle} among them"
+        "the mesh is not a surface: the edge at {at} has {count} triangles, triangle {triangle} among them"
     )]
     NonManifold {
-        /// vertex index
-        from: u32,
-        /// vertex index
-        to: u32,
+        /// middle of the edge
+        at: Place,
         /// how many triangles
         count: usize,
         /// the first of them
@@ -79,25 +89,21 @@ pub enum MeshError {
     },
     /// Two neighbours disagree about which side is out.
     #[error(
-        "triangles {first} and {second} run along edge {from}-{to} in the same direction: one is turned over"
+        "triangles {first} and {second} run along the edge at {at} in the same direction: one is turned over"
     )]
     Twisted {
-        /// vertex index
-        from: u32,
-        /// vertex index
-        to: u32,
+        /// middle of the edge
+        at: Place,
         /// triangle index
         first: u32,
         /// triangle index
         second: u32,
     },
     /// Two neighbours lie back to back.
-    #[error("triangles {first} and {second} are folded flat onto each other at edge {from}-{to}")]
+    #[error("triangles {first} and {second} are folded flat onto each other at the edge at {at}")]
     Folded {
-        /// vertex index
-        from: u32,
-        /// vertex index
-        to: u32,
+        /// middle of the edge
+        at: Place,
         /// triangle index
         first: u32,
         /// triangle index

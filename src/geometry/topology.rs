@@ -1,7 +1,7 @@
 //! How the triangles of a mesh hang together: edges, vertices, pieces.
 
 use super::elements::{Corner, Edge, Facet};
-use super::error::MeshError;
+use super::error::{MeshError, Place};
 use crate::math::V3;
 
 /// Two neighbours whose unit normals sum to less than this lie back to back.
@@ -46,12 +46,13 @@ pub(super) fn edges(vertices: &[V3], facets: &mut [Facet]) -> Result<Vec<Edge>, 
     let mut edges = Vec::with_capacity(half_edges.len() / 2);
     for group in half_edges.chunk_by(|a, b| a.low == b.low && a.high == b.high) {
         let (from, to, triangle) = (group[0].low, group[0].high, group[0].triangle);
+        let (start, end) = (vertices[from as usize], vertices[to as usize]);
+        let at = Place(0.5 * (start + end));
         let &[first, second] = group else {
             return Err(match group.len() {
-                1 => MeshError::Open { from, to, triangle },
+                1 => MeshError::Open { at, triangle },
                 count => MeshError::NonManifold {
-                    from,
-                    to,
+                    at,
                     count,
                     triangle,
                 },
@@ -59,25 +60,14 @@ pub(super) fn edges(vertices: &[V3], facets: &mut [Facet]) -> Result<Vec<Edge>, 
         };
         if first.forward == second.forward {
             let (first, second) = (first.triangle, second.triangle);
-            return Err(MeshError::Twisted {
-                from,
-                to,
-                first,
-                second,
-            });
+            return Err(MeshError::Twisted { at, first, second });
         }
         let n = [first, second].map(|h| facets[h.triangle as usize].normal);
         let sum = n[0] + n[1];
         if sum.norm() < LEAST_FOLD {
             let (first, second) = (first.triangle, second.triangle);
-            return Err(MeshError::Folded {
-                from,
-                to,
-                first,
-                second,
-            });
+            return Err(MeshError::Folded { at, first, second });
         }
-        let (start, end) = (vertices[from as usize], vertices[to as usize]);
         let along = end - start;
         // Along the edge as the first triangle runs, a convex edge turns its normal forwards.
         let run = if first.forward { along } else { -along };

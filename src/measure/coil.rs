@@ -19,6 +19,9 @@ use std::sync::Arc;
 /// a quarter of a turn. Crossovers take a twelfth to a sixth of a turn, and wire lands face by face.
 pub(crate) const STEP_UP: f64 = 0.25 * TAU;
 
+/// How near a nozzle comes to a place to have come back to it, diameters: the way back from which on it has turned.
+const CAME_BACK: f64 = 0.5;
+
 /// A station is taken this far before its angle, rad: rounding may leave the clamp's own node a hair before its own angle.
 const HAIR: f64 = 1e-9;
 
@@ -136,7 +139,7 @@ pub(crate) struct SavedCoil {
 impl Coil {
     /// A coil without wire.
     pub fn new(spec: CoilSpec) -> Self {
-        let passes = Passes::new(spec.traverse);
+        let passes = Passes::new(spec.traverse, CAME_BACK * spec.diameter);
         Self {
             spec,
             nodes: PersistentVec::default(),
@@ -199,7 +202,7 @@ impl Coil {
     /// Replaces the direction of the first pass along y, +1 or -1, while there is no other pass.
     pub fn set_first_sense(&mut self, sense: f64) {
         if self.passes.count() == 1 && self.passes.last().sense != sense {
-            self.passes = Passes::new(sense);
+            self.passes = Passes::new(sense, self.passes.near);
             self.measure_again(0);
         }
     }
@@ -209,7 +212,19 @@ impl Coil {
     /// Such wire is meant to lie on that of the passes before, and its first turn has no neighbour. The last quarter of a
     /// turn before it may climb and is not judged. Settled wire from there on is measured again.
     pub fn begin_pass(&mut self, from: f64, sense: f64) {
-        self.passes.push(from, sense);
+        self.take_pass(from, sense, None);
+    }
+
+    /// The same where the nozzle turned at `place` along y, m.
+    ///
+    /// A nozzle that turns back for less than one and a quarter turns, on again, and not as far as `place` has turned there
+    /// for good, and swings on its way. Where the place is not known, it has hung back.
+    pub fn begin_pass_at(&mut self, from: f64, sense: f64, place: f64) {
+        self.take_pass(from, sense, Some(place));
+    }
+
+    fn take_pass(&mut self, from: f64, sense: f64, turned_at: Option<f64>) {
+        self.passes.push(from, sense, turned_at);
         self.measure_again(self.first_node_from(self.passes.open_from() - STEP_UP));
     }
 
@@ -330,7 +345,9 @@ impl Coil {
             return Err("wire was laid in no direction");
         }
         fresh.spec.direction = saved.direction;
+        let near = fresh.passes.near;
         fresh.passes = saved.passes;
+        fresh.passes.near = near;
         for node in saved.nodes {
             if !node.position.iter().all(|x| x.abs() < far) {
                 return Err("settled wire is nowhere near the core");

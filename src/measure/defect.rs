@@ -177,6 +177,11 @@ impl DefectKind {
         }
     }
 
+    /// Whether each station of its run has it. A jump is at one place, and a loose turn shows at the end of its turn.
+    pub(crate) fn lies_where_it_shows(self) -> bool {
+        !matches!(self, Self::EarlyJump | Self::LateJump | Self::LooseTurn)
+    }
+
     /// Whether no wire moves from then on.
     pub fn ends_winding(self) -> bool {
         matches!(self, Self::Break | Self::Collision | Self::Runaway)

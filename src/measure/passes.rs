@@ -14,25 +14,48 @@ pub(crate) struct Pass {
     pub(crate) from: f64,
     /// +1 where the nozzle went towards +y, else -1
     pub(crate) sense: f64,
+    /// place along y at which the nozzle turned, m; not known for the first pass
+    pub(crate) turned_at: Option<f64>,
+}
+
+impl Pass {
+    /// Whether a nozzle of this pass that turned back and on again came back to where it had turned, before it turned at
+    /// `next`. It went on then; otherwise it went the other way for good, and swung on the way.
+    fn goes_on(&self, back: &Pass, next: &Pass, near: f64) -> bool {
+        match (back.turned_at, next.turned_at) {
+            (Some(back), Some(next)) => self.sense * (next - back) >= -near,
+            _ => true,
+        }
+    }
 }
 
 /// All passes so far, in the order of their wire; there is always a first one.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Passes(Vec<Pass>);
+pub(crate) struct Passes {
+    passes: Vec<Pass>,
+    /// how near the nozzle has to come to a place to have come back to it, m
+    #[serde(skip)]
+    pub(crate) near: f64,
+}
 
 impl Passes {
     /// A first pass in this direction along y; 0 counts as +1.
-    pub(crate) fn new(sense: f64) -> Self {
-        Self(vec![Pass {
+    pub(crate) fn new(sense: f64, near: f64) -> Self {
+        let first = Pass {
             from: f64::NEG_INFINITY,
             sense: if sense < 0.0 { -1.0 } else { 1.0 },
-        }])
+            turned_at: None,
+        };
+        Self {
+            passes: vec![first],
+            near,
+        }
     }
 
     /// Number from 1 and pass of the wire at this winding angle, rad.
     pub(crate) fn at(&self, angle: f64) -> (u32, Pass) {
         let mut number = 0;
-        let mut found = self.0[0];
+        let mut found = self.passes[0];
         for pass in self.judged().take_while(|pass| pass.from <= angle) {
             number += 1;
             found = pass;
@@ -42,11 +65,14 @@ impl Passes {
 
     /// The passes without those in which the nozzle hung back.
     fn judged(&self) -> impl Iterator<Item = Pass> {
-        let mut rest = &self.0[..];
+        let mut rest = &self.passes[..];
         std::iter::from_fn(move || {
             let (first, mut after) = rest.split_first()?;
             while let [back, on, ..] = after
                 && on.from - back.from < HUNG_BACK
+                && after
+                    .get(2)
+                    .is_none_or(|next| first.goes_on(back, next, self.near))
             {
                 after = &after[2..];
             }
@@ -57,7 +83,9 @@ impl Passes {
 
     /// Where the wire begins that the last pass says something about, rad: with it the one before may turn out to be none.
     pub(crate) fn open_from(&self) -> f64 {
-        match self.0[..] {
+        match self.passes[..] {
+            // it says whether the nozzle went on from there
+            [.., _, back, on, _] if on.from - back.from < HUNG_BACK => back.from,
             [.., before, back, on] if on.from - back.from < HUNG_BACK => back.from.max(before.from),
             _ => self.last().from,
         }
@@ -71,29 +99,38 @@ impl Passes {
 
     /// The last pass.
     pub(crate) fn last(&self) -> Pass {
-        self.0[self.0.len() - 1]
+        self.passes[self.passes.len() - 1]
     }
 
     /// How many there are.
     pub(crate) fn count(&self) -> usize {
-        self.0.len()
+        self.passes.len()
     }
 
     /// Adds a pass, not before the one that is last so far.
-    pub(crate) fn push(&mut self, from: f64, sense: f64) {
+    pub(crate) fn push(&mut self, from: f64, sense: f64, turned_at: Option<f64>) {
         let from = from.max(self.last().from);
-        self.0.push(Pass { from, sense });
+        self.passes.push(Pass {
+            from,
+            sense,
+            turned_at,
+        });
     }
 
     /// Takes the last pass away, unless it is the first.
     pub(crate) fn pop(&mut self) -> Option<Pass> {
-        if self.0.len() > 1 { self.0.pop() } else { None }
+        if self.passes.len() > 1 {
+            self.passes.pop()
+        } else {
+            None
+        }
     }
 
     /// Whether these can be passes; bytes from elsewhere may say anything.
     pub(crate) fn is_sound(&self) -> bool {
-        let order = self.0.windows(2).all(|pair| pair[0].from <= pair[1].from);
-        let senses = self.0.iter().all(|pass| pass.sense.abs() == 1.0);
-        !self.0.is_empty() && order && senses
+        let passes = &self.passes;
+        let order = passes.windows(2).all(|pair| pair[0].from <= pair[1].from);
+        let senses = passes.iter().all(|pass| pass.sense.abs() == 1.0);
+        !passes.is_empty() && order && senses
     }
 }

@@ -167,6 +167,15 @@ impl Coil {
             *count += 1;
             turn.turn_in_layer = *count;
         }
+        // The station at the end of a turn says how loose it is.
+        let mut loose = vec![0; self.records.len()];
+        self.mark(DefectKind::LooseTurn, &mut loose);
+        let ends = loose.chunks(STATIONS_PER_TURN).skip(1);
+        for (turn, next) in turns.iter_mut().zip(ends) {
+            if next[0] != 0 {
+                turn.verdict = turn.verdict.max(Verdict::LooseTurn);
+            }
+        }
         // A run may be long enough in two turns together only.
         for defect in self.defects() {
             let turn = &mut turns[defect.turn as usize - 1];
@@ -284,14 +293,14 @@ impl GapSums {
     fn verdict(&self, turn: &TurnMeasures, has: [bool; MEASURED], d: f64) -> Verdict {
         let aligned = f64::from(self.within) >= ALIGNED_SHARE * f64::from(self.count)
             && turn.gap_rms.is_none_or(|rms| rms < ALIGNED_RMS * d);
-        if turn.stations == 0 {
+        let present = DefectKind::MEASURED
+            .into_iter()
+            .filter(|kind| has[*kind as usize] && kind.lies_where_it_shows());
+        let worst = present.map(Verdict::from).max();
+        if let Some(worst) = worst {
+            worst
+        } else if turn.stations == 0 {
             Verdict::Unsettled
-        } else if has[DefectKind::Overlap as usize] {
-            Verdict::Overlap
-        } else if has[DefectKind::Gap as usize] {
-            Verdict::Gap
-        } else if has[DefectKind::Bulge as usize] {
-            Verdict::Bulge
         } else if 2 * self.count < turn.stations {
             Verdict::Single
         } else if aligned {

@@ -95,6 +95,7 @@ fn without_defect(verdict: Verdict, turns: &[TurnMeasures], diameter: f64) -> St
         _ => {
             let loosest = turns
                 .iter()
+                .filter(|turn| turn.verdict == verdict)
                 .filter_map(|turn| Some((turn, turn.gap_rms?)))
                 .max_by(|a, b| a.1.total_cmp(&b.1));
             let Some((turn, rms)) = loosest else {
@@ -152,6 +153,7 @@ mod tests {
         let turn = TurnMeasures {
             turn: 2,
             gap_rms: Some(0.07e-3),
+            verdict: Verdict::Marginal,
             ..TurnMeasures::default()
         };
         let said = reasons(Verdict::Marginal, &[], &[turn], judged, 0.7e-3);
@@ -160,5 +162,23 @@ mod tests {
             "{said:?}"
         );
         assert!(said[1].contains("judged by 0.700 mm"), "{said:?}");
+    }
+
+    /// The turn with the widest gaps was named although too little of it had a neighbour, so that it was no reason.
+    #[test]
+    fn a_marginal_coil_is_marginal_for_a_turn_that_is() {
+        let judged = BulgeLimit::Absolute { limit_m: 1e-3 };
+        let turn = |turn, gap_rms, verdict| TurnMeasures {
+            turn,
+            gap_rms: Some(gap_rms),
+            verdict,
+            ..TurnMeasures::default()
+        };
+        let turns = [
+            turn(2, 0.05e-3, Verdict::Marginal),
+            turn(3, 0.09e-3, Verdict::Single),
+        ];
+        let said = reasons(Verdict::Marginal, &[], &turns, judged, 0.7e-3);
+        assert!(said[0].contains("turn 2 is 0.050 mm rms"), "{said:?}");
     }
 }

@@ -158,7 +158,7 @@ impl SceneSettings {
             let value = get(self);
             if !variable.admits(&value) {
                 problems.add(SceneError::OutOfRange {
-                    origin: self.origin(variable.name),
+                    origin: self.told_origin(variable.name),
                     key: variable.name.into(),
                     value: value.to_string().into(),
                     allowed: variable.allowed().into(),

@@ -9,6 +9,7 @@ use super::problems::Problems;
 use super::{
     Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver, Window,
 };
+use crate::geometry::stl::{self, StlError};
 use crate::rod::Twist;
 use crate::settings::{SceneSettings, SolverSettings, Spindle};
 use std::path::{Path, PathBuf};
@@ -277,22 +278,22 @@ impl SceneSettings {
         }
     }
 
-    /// Reads a mesh for its extent alone; its topology is checked where it is wound on.
+    /// Reads a mesh as the run will, and measures it.
     fn mesh_extent(&self, unit: f64) -> Result<Extent, SceneError> {
-        let problem = |reason: String| {
-            self.impossible(
-                "core.file",
-                reason,
-                "an STL file, relative to the scene file",
-            )
-        };
+        let problem = |reason: String, allowed: &str| self.impossible("core.file", reason, allowed);
+        let a_file = "an STL file, relative to the scene file";
         if self.core.file.is_empty() {
-            return Err(problem("core.shape = mesh needs a file".to_owned()));
+            return Err(problem("core.shape = mesh needs a file".to_owned(), a_file));
         }
         let mut file = std::fs::File::open(Path::new(&self.core.file))
-            .map_err(|e| problem(format!("the mesh cannot be opened ({e})")))?;
-        let mesh = stl_io::read_stl(&mut file)
-            .map_err(|e| problem(format!("the mesh cannot be read ({e})")))?;
+            .map_err(|e| problem(format!("the mesh cannot be opened ({e})"), a_file))?;
+        let mesh = stl::read(&mut file, unit).map_err(|error| match error {
+            StlError::Mesh(error) => problem(
+                error.to_string(),
+                "a closed surface whose triangles run counter-clockwise as seen from outside",
+            ),
+            error => problem(format!("the mesh cannot be read ({error})"), a_file),
+        })?;
         let mut extent = Extent {
             turning_radius: 0.0,
             winding_radius: 0.0,
@@ -301,18 +302,9 @@ impl SceneSettings {
             window: None,
         };
         for vertex in &mesh.vertices {
-            let [x, y, z] = vertex.0.map(|c| f64::from(c) * unit);
-            if !(x.is_finite() && y.is_finite() && z.is_finite()) {
-                return Err(problem(
-                    "the mesh has a vertex that is not finite".to_owned(),
-                ));
-            }
-            extent.turning_radius = extent.turning_radius.max(libm::hypot(x, z));
-            extent.y_min = extent.y_min.min(y);
-            extent.y_max = extent.y_max.max(y);
-        }
-        if mesh.faces.is_empty() || extent.turning_radius <= 0.0 || extent.y_min >= extent.y_max {
-            return Err(problem("the mesh encloses nothing".to_owned()));
+            extent.turning_radius = extent.turning_radius.max(libm::hypot(vertex.x, vertex.z));
+            extent.y_min = extent.y_min.min(vertex.y);
+            extent.y_max = extent.y_max.max(vertex.y);
         }
         extent.winding_radius = extent.turning_radius;
         Ok(extent)

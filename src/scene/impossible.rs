@@ -12,7 +12,7 @@ impl SceneSettings {
         allowed: impl Into<Box<str>>,
     ) -> SceneError {
         SceneError::Impossible {
-            origin: self.origin(key),
+            origin: self.told_origin(key),
             key: key.into(),
             value: self.shown(key).into(),
             reason: reason.into(),

@@ -73,7 +73,7 @@ impl SceneSettings {
             0.5 * wire.bare_diameter * law.limit / law.modulus,
         );
         (strain > yields).then(|| Warning {
-            origin: self.origin(key),
+            origin: self.told_origin(key),
             key,
             value: self.shown(key),
             message: format!(

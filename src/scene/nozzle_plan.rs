@@ -92,8 +92,9 @@ impl SceneSettings {
                 return Some(NozzleLaw::even(self.nozzle.y_start + t.lead, travel, turns));
             }
         };
-        let law = law.advanced(t.advance);
+        // The places of all turns, also those that a nozzle ahead of them leaves out.
         self.check_way(&law, diameter, extent, problems);
+        let law = law.advanced(t.advance);
         let turns = match self.spindle.turns {
             0.0 => law.turns(),
             turns => turns,
@@ -323,7 +324,10 @@ impl SceneSettings {
             told(largest)
         );
         let room = (ends[1] - ends[0]) - (largest - least);
-        let start = law.start();
+        let start = match self.traverse.mode.as_str() {
+            "table" => law.start(),
+            _ => self.nozzle.y_start,
+        };
         let allowed = match room >= 0.0 {
             true => format!(
                 "{} to {} m",

@@ -80,7 +80,7 @@ impl SceneSettings {
     ) -> Vec<Warning> {
         let mut warnings = self.keys_without_effect();
         let mut warn = |key: &'static str, message: String| {
-            let (origin, value) = (self.origin(key), self.shown(key));
+            let (origin, value) = (self.told_origin(key), self.shown(key));
             warnings.push(Warning {
                 origin,
                 key,
@@ -105,12 +105,23 @@ impl SceneSettings {
             let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
             warn("traverse.per_turn", message);
         }
-        if let (Some(_), true) = (extent.window, self.winds_layers()) {
+        if self.winds_layers() {
             // each layer but the first lies in the grooves of the one below
             let coil = wire.diameter * (1.0 + (self.winding.layers - 1.0) * 0.75_f64.sqrt());
             if core.flange().is_some_and(|flange| coil > flange.height) {
                 let message = format!("the coil stands {} m high, above the flanges", si(coil));
                 warn("core.flange.height", message);
+            }
+            let width = extent.window.unwrap_or_default();
+            let c = &self.core;
+            let lowest = c.window_height - 0.5 * width * libm::tan(c.window_taper).abs();
+            if c.window_height > 0.0 && coil > lowest {
+                let message = format!(
+                    "the coil stands {} m high, beyond the limit line, which is {} m high at its lowest",
+                    si(coil),
+                    si(lowest)
+                );
+                warn("core.window_height", message);
             }
         }
         let first = self.nozzle.y_start;
@@ -173,7 +184,7 @@ impl SceneSettings {
         let errors = [laws.stretch, laws.bend, laws.twist].map(|law| 100.0 * law.error);
         let worst = errors.iter().copied().fold(0.0, f64::max);
         (!self.wire.stress_strain.is_empty() && worst > ROUGH).then(|| Warning {
-            origin: self.origin(key),
+            origin: self.told_origin(key),
             key,
             value: self.shown(key),
             message: format!(
@@ -189,7 +200,7 @@ impl SceneSettings {
         let mut warnings: Vec<Warning> = Vec::new();
         let mut warn = |key: &'static str, message: String| {
             if self.origins.contains_key(key) && !warnings.iter().any(|w| w.key == key) {
-                let (origin, value) = (self.origin(key), self.shown(key));
+                let (origin, value) = (self.told_origin(key), self.shown(key));
                 warnings.push(Warning {
                     origin,
                     key,

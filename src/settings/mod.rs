@@ -233,6 +233,16 @@ impl SceneSettings {
     pub fn origin(&self, name: &str) -> Origin {
         self.origins.get(name).cloned().unwrap_or_default()
     }
+
+    /// The same for a message, which names the scene also where that leaves the leaf out.
+    pub(crate) fn told_origin(&self, name: &str) -> Origin {
+        match self.origin(name) {
+            Origin::Default if !self.file.is_empty() => Origin::LeftOut {
+                file: self.file.as_str().into(),
+            },
+            origin => origin,
+        }
+    }
 }
 
 /// The scene of Fig. 8 with a section-consistent copper wire, and the settings of this program

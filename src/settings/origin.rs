@@ -18,6 +18,11 @@ pub enum Origin {
     },
     /// set by name: `--set`, or a parameter of the FMU
     Set,
+    /// the default of the program, under a scene that leaves it out
+    LeftOut {
+        /// name of the scene as the user knows it
+        file: Box<str>,
+    },
 }
 
 impl fmt::Display for Origin {
@@ -30,6 +35,7 @@ impl fmt::Display for Origin {
             } => write!(f, "{file}:{line}"),
             Self::File { file, line: None } => f.write_str(file),
             Self::Set => f.write_str("set by name"),
+            Self::LeftOut { file } => write!(f, "{file}, by default"),
         }
     }
 }

@@ -29,6 +29,11 @@ impl Farthest {
         }
     }
 
+    /// Where that is along y, m.
+    pub(super) fn place(&self) -> f64 {
+        self.y
+    }
+
     /// Winding angle of the wire that was laid as the nozzle turned here, rad.
     ///
     /// A nozzle may stand at the end of its way. In the first turn of that it completes its pass; wire laid there

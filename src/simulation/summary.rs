@@ -136,13 +136,22 @@ impl Winding {
     pub fn reasons(&self) -> Vec<String> {
         let (defects, turns) = (self.defects(), self.turns());
         let diameter = self.scene.wire.diameter;
-        reasons(
+        let mut reasons = reasons(
             self.verdict(),
             &defects,
             &turns,
             self.bulge_limit(),
             diameter,
-        )
+        );
+        let limit = self.scene.window;
+        let clearance = limit.and_then(|w| self.coil.clearance(w.height, w.taper));
+        if let Some(beyond) = clearance.map(|clear| -clear).filter(|&beyond| beyond > 0.0) {
+            reasons.push(format!(
+                "No part of the verdict: the coil reaches {:.3} mm beyond its limit line",
+                1e3 * beyond
+            ));
+        }
+        reasons
     }
 
     /// The run in numbers.

@@ -38,7 +38,10 @@ impl Winding {
             match found {
                 Found::Nothing => {}
                 Found::First(sense) => self.coil.set_first_sense(sense),
-                Found::Turned(turn, sense) => self.coil.begin_pass(turn.laid(ahead), sense),
+                Found::Turned(turn, sense) => {
+                    self.coil
+                        .begin_pass_at(turn.laid(ahead), sense, turn.place());
+                }
                 Found::TakenBack => self.coil.take_back_pass(),
             }
         }

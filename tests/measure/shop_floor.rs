@@ -270,3 +270,50 @@ fn wire_drawn_out_is_overstretched_where_it_is() {
     );
     assert!(!within.flags().overstretch);
 }
+
+/// Verdicts of the complete turns from the second on.
+fn verdicts(coil: &Coil) -> Vec<Verdict> {
+    let turns = coil.turns();
+    turns[1..5].iter().map(|turn| turn.verdict).collect()
+}
+
+/// One run over all of the wire was told in the turn where it is largest, and the turns beside it were aligned.
+#[test]
+fn every_turn_of_wire_that_is_drawn_out_is_overstretched() {
+    let stretched = altered(|turn| turn > 1.0, |node| node.plastic_strain = 0.3);
+    only(DefectKind::Overstretch, &stretched);
+    assert_eq!(verdicts(&stretched), [Verdict::Overstretch; 4]);
+}
+
+#[test]
+fn every_turn_that_lies_without_tension_is_loose() {
+    let slack = altered(|turn| turn > 2.0, |node| node.tension = 0.3 * PULL);
+    only(DefectKind::LooseTurn, &slack);
+    assert_eq!(verdicts(&slack)[1..], [Verdict::LooseTurn; 3]);
+}
+
+/// A nozzle that goes beyond each place and comes back to it seemed to hang back for ever: its coil had one pass, and all wire
+/// after the first jump was a bulge.
+#[test]
+fn a_nozzle_that_swings_past_each_place_turns_with_the_layer() {
+    let plain = two_layers(&[3.5, 2.5, 1.5, 0.5]);
+    assert_eq!(plain.flags(), DefectFlags::default());
+    let mut coil = plain.clone();
+    coil.take_back_pass();
+    let mut turn_at =
+        |turn: f64, sense: f64, place: f64| coil.begin_pass_at(turn * TAU, sense, place * D);
+    for place in 1..5 {
+        let place = f64::from(place);
+        turn_at(place - 0.05, -1.0, place + 1.5);
+        if place < 4.0 {
+            turn_at(place + 0.9, 1.0, place);
+        }
+    }
+    for place in 0..4 {
+        let place = f64::from(place);
+        turn_at(place + 4.95, 1.0, 2.0 - place);
+        turn_at(place + 5.9, -1.0, 3.5 - place);
+    }
+    assert_eq!(coil.stations().last().unwrap().pass, 2);
+    assert_eq!(coil.flags(), DefectFlags::default(), "{:?}", coil.defects());
+}

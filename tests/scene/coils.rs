@@ -246,6 +246,22 @@ fn what_cannot_be_wound_is_refused_with_the_key_to_change() {
     assert_says(&refused(open), &["winding.turns_per_layer", "no flanges"]);
 }
 
+/// The range was that of the nozzle's first place, which is ahead of where the first turn lies: the value that was refused lay in it.
+#[test]
+fn a_start_past_a_flange_is_not_within_what_is_allowed() {
+    let text = "[core]\nshape = 'cylinder'\n[core.flange]\ninner_distance_mm = 9\nheight_mm = 3\n\
+                [nozzle]\ny_start_mm = 4.1\n[start]\nclamp_y_mm = 4\n\
+                [traverse]\nmode = 'helical'\nadvance_deg = 90\n\
+                [winding]\nlayers = 2\ndirection = '-y'";
+    let message = refused(text);
+    assert_says(
+        &message,
+        &["nozzle.y_start = 0.0041 m", "0.00415 to 0.00415 m"],
+    );
+    let mended = text.replace("y_start_mm = 4.1", "y_start_mm = 4.15");
+    parse(&mended).unwrap().build().expect("within the range");
+}
+
 #[test]
 fn keys_of_another_way_are_told() {
     let text = "[traverse]\nmode = 'by-angle'\ncrossover_deg = 30\n[winding]\nlayers = 2\n";

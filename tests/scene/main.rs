@@ -3,6 +3,7 @@
 mod choices;
 mod coils;
 mod common;
+mod meshes;
 mod reading;
 mod refusals;
 mod several;

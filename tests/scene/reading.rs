@@ -206,7 +206,7 @@ fn a_written_scene_reads_back_the_same() {
 #[test]
 fn mesh_files_are_found_beside_the_scene() {
     let folder = tempfile::tempdir().unwrap();
-    // A square tube without ends, 10 mm wide and 20 mm long, in millimetres.
+    // A square bar, 10 mm wide and 20 mm long, in millimetres.
     let corner = |i: usize, y: f64| {
         let (x, z) = [(5.0, 5.0), (-5.0, 5.0), (-5.0, -5.0), (5.0, -5.0)][i % 4];
         format!("vertex {x} {y} {z}\n")
@@ -221,8 +221,13 @@ fn mesh_files_are_found_beside_the_scene() {
     for i in 0..4 {
         let (a, b) = (corner(i, -10.0), corner(i + 1, -10.0));
         let (c, d) = (corner(i + 1, 10.0), corner(i, 10.0));
-        stl += &facet([a.clone(), b, c.clone()]);
-        stl += &facet([a, c, d]);
+        stl += &facet([a.clone(), c.clone(), b]);
+        stl += &facet([a, d, c]);
+    }
+    for (y, order) in [(-10.0, [0, 3, 2, 1]), (10.0, [0, 1, 2, 3])] {
+        let [a, b, c, d] = order.map(|i| corner(i, y));
+        stl += &facet([a.clone(), c.clone(), b]);
+        stl += &facet([a, d, c]);
     }
     stl += "endsolid tube\n";
     std::fs::write(folder.path().join("tube.stl"), stl).unwrap();

@@ -214,7 +214,11 @@ fn impossible_scenes_say_what_would_do() {
         ),
         (
             "[core]\nshape = 'mesh'",
-            &["core.file = \"\" is impossible", "needs a file"],
+            // a file was not named where it leaves out the key
+            &[
+                "test.toml, by default: core.file = \"\" is impossible",
+                "needs a file",
+            ],
         ),
         (
             "[core]\nshape = 'mesh'\nfile = 'none.stl'",
@@ -255,6 +259,12 @@ fn odd_scenes_build_with_a_warning() {
             "coarser than the tightest bend",
         ),
         ("[contact]\nstiffness = 1e8", "1 % of its diameter"),
+        // nothing was said of a coil that reaches into the neighbouring one
+        (
+            "[core]\nwindow_height_mm = 1\n[traverse]\nmode = 'helical'\n\
+             [winding]\nturns_per_layer = 5\nlayers = 2",
+            "stands 0.00130622 m high, beyond the limit line",
+        ),
     ] {
         let found = warnings(text);
         assert_eq!(found.len(), 1, "{found:?}");

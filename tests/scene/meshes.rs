@@ -1,0 +1,89 @@
+//! Cores from STL files as other programs write them, and files that make no core.
+
+use crate::common::{assert_says, parse};
+use std::path::Path;
+
+/// Corners of the triangles of a box of 12 x 30 x 20 mm, mm.
+fn triangles() -> Vec<[[f32; 3]; 3]> {
+    let corner = |i: u32| {
+        let side = |bit: u32, half: f32| if i >> bit & 1 == 1 { half } else { -half };
+        [side(0, 6.0), side(1, 15.0), side(2, 10.0)]
+    };
+    let quads = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    quads
+        .into_iter()
+        .flat_map(halves)
+        .map(|t| t.map(corner))
+        .collect()
+}
+
+/// The text of a file whose solid has this name.
+fn text(name: &str, triangles: &[[[f32; 3]; 3]]) -> String {
+    let facet = |corners: &[[f32; 3]; 3]| {
+        let vertices = corners
+            .map(|[x, y, z]| format!("vertex {x} {y} {z}\n"))
+            .concat();
+        format!("facet normal 0 0 0\nouter loop\n{vertices}endloop\nendfacet\n")
+    };
+    let facets: String = triangles.iter().map(facet).collect();
+    format!("solid{name}\n{facets}endsolid\n")
+}
+
+/// What is said of a core in this file, or nothing where it is wound on.
+fn said_of(folder: &Path, name: &str, text: &str) -> Option<String> {
+    std::fs::write(folder.join(name), text).unwrap();
+    let scene = format!("[core]\nshape = 'mesh'\nfile = {:?}", folder.join(name));
+    let error = parse(&scene).expect("parses").build().err()?;
+    Some(error.to_string())
+}
+
+/// The file was read twice, first by a reader that knew one way of writing only: such files could not be wound on.
+#[test]
+fn stl_files_are_read_however_their_text_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = text(" part", &triangles());
+    for (name, text) in [
+        ("plain.stl", plain.clone()),
+        ("unnamed.stl", text("", &triangles())),
+        ("capitals.stl", plain.to_uppercase()),
+        ("windows.stl", plain.replace('\n', "\r\n")),
+        ("marked.stl", format!("\u{feff}{plain}")),
+        ("empty_line.stl", format!("\n{plain}")),
+    ] {
+        assert_eq!(said_of(folder.path(), name, &text), None, "{name}");
+    }
+}
+
+/// Such a mesh was told at the start of the run, alone, without its key, and its hole by numbers that no STL file has.
+#[test]
+fn a_mesh_that_makes_no_core_is_told_with_its_key_and_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let all = triangles();
+    let turned: Vec<_> = all.iter().map(|&[a, b, c]| [a, c, b]).collect();
+    for (name, text, parts) in [
+        (
+            "open.stl",
+            text(" part", &all[1..]),
+            &["the mesh is open", "x = -6.000, y = "][..],
+        ),
+        ("turned.stl", text(" part", &turned), &["inside out"]),
+        ("none.stl", text(" part", &[]), &["no triangles"]),
+        (
+            "several.stl",
+            text(" part", &all).repeat(2),
+            &["2 solids, expected one"],
+        ),
+    ] {
+        let said = said_of(folder.path(), name, &text).expect("must be refused");
+        assert_says(&said, &["test.toml:3: core.file = ", name, "allowed: "]);
+        assert_says(&said, parts);
+    }
+}
