@@ -204,7 +204,8 @@ macro_rules! smooth {
 smooth! {
     wire_tension, wire_tension_min, wire_tension_max, turns_wound, spindle_angle, spindle_torque,
     feed_speed, fed_length, free_length, layon_position, layon_angle, tensioner_position,
-    tensioner_speed, nozzle_angle, nozzle_y, layon_x, layon_z, spindle_torque_total,
+    tensioner_speed, nozzle_angle, nozzle_y, layon_x, layon_z, spindle_torque_total, wire_length,
+    wire_resistance, flange_clearance, turn_in_layer,
 }
 
 /// What kind of thing happened.
