@@ -163,10 +163,14 @@ def main():
     parser.add_argument("--fmu", default=str(ROOT / "target/fmu/CoilWinding.fmu"))
     parser.add_argument("--out", type=Path, default=Path("control"))
     args = parser.parse_args()
+    mistake = None
     if unknown := set(args.studies) - set(STUDIES):
-        sys.exit(f"control.py: there is no study {', '.join(sorted(unknown))}; there are {', '.join(STUDIES)}")
-    if not Path(args.fmu).is_file():
-        sys.exit(f"control.py: {args.fmu} is missing; build it with scripts/build_fmu.sh")
+        mistake = f"there is no study {', '.join(sorted(unknown))}; there are {', '.join(STUDIES)}"
+    elif not Path(args.fmu).is_file():
+        mistake = f"{args.fmu} is missing; build it with scripts/build_fmu.sh"
+    if mistake:
+        print(f"control.py: {mistake}", file=sys.stderr)
+        sys.exit(2)
     args.out.mkdir(parents=True, exist_ok=True)
     found = {}
     for name in args.studies or STUDIES:

@@ -122,7 +122,7 @@ def verdict(args):
 
 def default_spacing(tolerance):
     """What the scene takes near the core where no spacing is given, mm."""
-    return 0.4 * max(1.0, (tolerance / 2e-6) ** (1 / 3))
+    return 0.3 * max(1.0, (tolerance / 2e-6) ** (1 / 3))
 
 
 def ensemble(omega, tolerance, spacing):

@@ -329,7 +329,8 @@ def main():
     try:
         run(args)
     except Mistake as mistake:
-        sys.exit(f"calibrate.py: {mistake}")
+        print(f"calibrate.py: {mistake}", file=sys.stderr)
+        sys.exit(2)
 
 
 def starts_of(model, wanted):

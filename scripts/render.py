@@ -52,7 +52,8 @@ def main():
     try:
         print(f"wrote {film(args) if args.film else picture(args)}")
     except Mistake as mistake:
-        sys.exit(f"render.py: {mistake}")
+        print(f"render.py: {mistake}", file=sys.stderr)
+        sys.exit(2)
 
 
 def size_of(text):

@@ -302,7 +302,8 @@ def main():
     try:
         run(args)
     except Mistake as mistake:
-        sys.exit(f"sweep_dask.py: {mistake}")
+        print(f"sweep_dask.py: {mistake}", file=sys.stderr)
+        sys.exit(2)
 
 
 def run(args):

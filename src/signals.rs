@@ -70,7 +70,7 @@ pub struct Outputs {
     pub defect_slack: bool,
     /// bit mask of [`DefectKind::code`](crate::measure::DefectKind::code)
     pub defect_code: i32,
-    /// defects found so far
+    /// defects of coil and wire, of every kind
     pub defect_count: i32,
     /// turn of the last defect
     pub defect_turn: f64,
@@ -110,11 +110,11 @@ pub struct Outputs {
     pub fill_factor: f64,
     /// largest plastic stretch of the last settled turn
     pub wire_strain: f64,
-    /// bulges found so far
+    /// bulges of the settled wire
     pub defect_count_bulge: i32,
-    /// gaps found so far
+    /// gaps of the settled wire
     pub defect_count_gap: i32,
-    /// overlaps found so far
+    /// overlaps of the settled wire
     pub defect_count_overlap: i32,
     /// breaks so far
     pub defect_count_break: i32,
@@ -141,7 +141,7 @@ pub struct Outputs {
     pub layon_x: f64,
     /// where the wire's centreline meets the coil, along z of the frame at rest, m
     pub layon_z: f64,
-    /// turns laid in the layer that is being wound
+    /// turns laid since the nozzle turned
     pub turn_in_layer: f64,
     /// from the surface of the wire where it meets the coil to the nearer flange or end of the core, along y, m
     pub flange_clearance: f64,
@@ -153,21 +153,21 @@ pub struct Outputs {
     pub spindle_torque_total: f64,
     /// unstretched wire from the clamp to where it broke, m; 0 for whole wire
     pub break_position: f64,
-    /// double turns found so far
+    /// double turns of the settled wire
     pub defect_count_double_turn: i32,
-    /// skipped grooves found so far
+    /// skipped grooves of the settled wire
     pub defect_count_skipped_groove: i32,
-    /// early layer jumps found so far
+    /// early layer jumps of the settled wire
     pub defect_count_early_jump: i32,
-    /// late layer jumps found so far
+    /// late layer jumps of the settled wire
     pub defect_count_late_jump: i32,
-    /// loose turns found so far
+    /// loose turns of the settled wire
     pub defect_count_loose_turn: i32,
-    /// overstretched turns found so far
+    /// overstretched turns of the settled wire
     pub defect_count_overstretch: i32,
-    /// collisions of coil and nozzle found so far
+    /// collisions of coil and nozzle so far
     pub defect_count_collision: i32,
-    /// times that wire shot out of the nozzle found so far
+    /// how often wire shot out of the nozzle so far
     pub defect_count_runaway: i32,
     /// time steps taken
     pub solver_steps: f64,
@@ -204,7 +204,8 @@ macro_rules! smooth {
 smooth! {
     wire_tension, wire_tension_min, wire_tension_max, turns_wound, spindle_angle, spindle_torque,
     feed_speed, fed_length, free_length, layon_position, layon_angle, tensioner_position,
-    tensioner_speed, nozzle_angle, nozzle_y, layon_x, layon_z, spindle_torque_total,
+    tensioner_speed, nozzle_angle, nozzle_y, layon_x, layon_z, spindle_torque_total, wire_length,
+    wire_resistance, flange_clearance, turn_in_layer,
 }
 
 /// What kind of thing happened.

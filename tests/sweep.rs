@@ -111,7 +111,12 @@ fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
         4,
         "a cell a point: {map}"
     );
-    for part in ["spindle.speed", "tensioner.tension", "\n120\n", "\n15\n"] {
+    for part in [
+        "spindle.speed [rad/s]",
+        "tensioner.tension [N]",
+        "\n120\n",
+        "\n15\n",
+    ] {
         assert!(map.contains(part), "{part}: {map}");
     }
     let page = std::fs::read_to_string(one.join("map.html")).unwrap();

@@ -1,7 +1,7 @@
 //! What happens within a communication step is seen at its end, and what does not move stays.
 
 use coilwind::settings::SceneSettings;
-use coilwind::signals::Outputs;
+use coilwind::signals::{EventKind, Outputs};
 use coilwind::simulation::Simulation;
 use std::f64::consts::TAU;
 
@@ -49,6 +49,78 @@ fn slack_that_passes_within_a_step_is_seen() {
         "{o:?}"
     );
     assert_eq!((o.defect_count, o.defect_kind), (1, 16));
+}
+
+/// A core that turned forth and back had a tension 0.03 N below its smallest: edges at the nozzle are joined after the last look.
+#[test]
+fn a_tension_that_a_change_of_the_mesh_left_is_one_of_its_extremes() {
+    let mut sim = fig8();
+    let mut inputs = sim.inputs();
+    for k in 0..500 {
+        inputs.spindle_speed = 60.0 * (0.03 * (f64::from(k) + 0.5)).sin();
+        inputs.nozzle_position += 0.7e-3 * inputs.spindle_speed * 1e-3 / TAU;
+        sim.advance(inputs, 1e-3).unwrap();
+        let o = sim.outputs();
+        let extremes = o.wire_tension_min..=o.wire_tension_max;
+        assert!(
+            extremes.contains(&o.wire_tension),
+            "{k}: {} is not in {extremes:?}",
+            o.wire_tension
+        );
+    }
+}
+
+/// A core that turned back past its start had -0.003 turns in the layer, and no turn wound.
+#[test]
+fn no_layer_has_less_than_no_turn() {
+    let mut sim = wound(100.0, 0.7e-3, 30);
+    let mut inputs = sim.inputs();
+    for k in 0..120 {
+        inputs.spindle_speed = (100.0 - 4.0 * f64::from(k)).max(-100.0);
+        inputs.nozzle_position += 0.7e-3 * inputs.spindle_speed * 1e-3 / TAU;
+        sim.advance(inputs, 1e-3).unwrap();
+        let o = sim.outputs();
+        assert!(o.turn_in_layer >= 0.0, "{k}: {}", o.turn_in_layer);
+    }
+    assert!(sim.outputs().spindle_angle < -1.0);
+}
+
+/// A gap was told as "bulge, overlap, double turn, gap" where the coil had those three already.
+#[test]
+fn an_event_names_the_defect_that_came_and_no_other() {
+    let mut sim = fig8();
+    let mut inputs = sim.inputs();
+    let mut told = Vec::new();
+    for k in 0..350 {
+        // First turn on turn, then apart.
+        inputs.spindle_speed = (15.0 * f64::from(k)).min(100.0);
+        let pitch = if k < 180 { 0.0 } else { 2e-3 };
+        inputs.nozzle_position += pitch * inputs.spindle_speed * 1e-3 / TAU;
+        sim.advance(inputs, 1e-3).unwrap();
+        let events = sim.drain_events().into_iter();
+        told.extend(events.filter(|e| e.kind == EventKind::Defect));
+    }
+    let gaps = told.iter().filter(|e| e.text.contains("gap"));
+    let gaps: Vec<_> = gaps.map(|e| e.text.as_str()).collect();
+    assert!(!gaps.is_empty() && told.len() > gaps.len(), "{told:?}");
+    assert!(gaps.iter().all(|text| text.ends_with("(gap)")), "{gaps:?}");
+}
+
+/// Between the ends of a step of the solver the turns went on, and those of the layer stood still.
+#[test]
+fn turns_of_the_layer_go_on_with_the_turns() {
+    let mut sim = wound(100.0, 0.7e-3, 20);
+    let mut inputs = sim.inputs();
+    inputs.spindle_speed = 100.0;
+    sim.step_beyond(true);
+    for k in 0..2_000 {
+        inputs.nozzle_position += 0.7e-3 * 100.0 * 5e-6 / TAU;
+        sim.advance(inputs, 5e-6).unwrap();
+        let o = sim.outputs();
+        let off = (o.turn_in_layer - o.turns_wound).abs();
+        assert!(off < 1e-12, "{k}: {} of {}", o.turn_in_layer, o.turns_wound);
+    }
+    assert!(sim.outputs().turns_wound < 1.2);
 }
 
 #[test]

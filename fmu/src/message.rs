@@ -18,12 +18,12 @@ impl Message {
     pub(crate) fn of_event(event: &Event, start: f64) -> Self {
         let (status, category) = match event.kind {
             EventKind::Turn | EventKind::Defect | EventKind::Note => (Status::Ok, Category::Events),
+            EventKind::Solver => (Status::Ok, Category::Solver),
             // The wire is still computed, but a machine would have stopped.
             EventKind::Slack
             | EventKind::Break
             | EventKind::Collision
             | EventKind::Runaway
-            | EventKind::Solver
             | EventKind::Judgement => (Status::Warning, Category::Warning),
         };
         Self {

@@ -7,7 +7,9 @@ pub enum Category {
     Events,
     /// The slopes of a directional derivative over small and smaller changes disagree.
     Derivatives,
-    /// A call was served, and something about scene, wire, solver or files needs a look.
+    /// How the solver went on where it had to shorten a step. There is nothing to do about it.
+    Solver,
+    /// A call was served, and something about scene, wire or files needs a look.
     Warning,
     /// A step failed, or a status that was asked for is not available.
     Discard,
@@ -19,8 +21,8 @@ pub enum Category {
     All,
 }
 
-/// Every category with its name and description. All names but one are those of the standard (FMI 2.0.5, table in section 2.2.4).
-pub(crate) const CATEGORIES: [(Category, &str, &str); 7] = [
+/// Every category with its name and description. All names but two are those of the standard (FMI 2.0.5, table in section 2.2.4).
+pub(crate) const CATEGORIES: [(Category, &str, &str); 8] = [
     (
         Category::Events,
         "logEvents",
@@ -32,9 +34,14 @@ pub(crate) const CATEGORIES: [(Category, &str, &str); 7] = [
         "Directional derivatives that hold for one size of the change only",
     ),
     (
+        Category::Solver,
+        "logSolver",
+        "Steps that the solver had to shorten; there is nothing to do about them",
+    ),
+    (
         Category::Warning,
         "logStatusWarning",
-        "Warnings about the scene, the wire or the solver",
+        "Warnings about the scene, the wire or files",
     ),
     (
         Category::Discard,

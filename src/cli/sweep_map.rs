@@ -76,8 +76,8 @@ fn draw(grid: &Grid, rows: &Rows) -> Result<String, String> {
         chart
             .configure_mesh()
             .disable_mesh()
-            .x_desc(&x.name)
-            .y_desc(&y.name)
+            .x_desc(x.title())
+            .y_desc(y.title())
             .x_labels(x.count as usize + 1)
             .y_labels(y.count as usize + 1)
             .x_label_formatter(&|at| label(x, *at))

@@ -30,7 +30,7 @@ fn data(grid: &Grid, rows: &Rows) -> Value {
     let (x, y) = (&grid.ranges[0], &grid.ranges[1]);
     let axis = |range: &super::sweep_range::Range| {
         let values: Vec<f64> = (0..range.count).map(|k| range.value(k)).collect();
-        json!({ "name": range.name, "values": values })
+        json!({ "name": range.name, "title": range.title(), "values": values })
     };
     let height = y.count as usize;
     let cells = (0..grid.points()).filter_map(|point| {

@@ -1,6 +1,7 @@
 //! What `--over NAME=A:B:N` says: N values of a variable, evenly from A to B.
 
 use super::members::rounded;
+use coilwind::variables::by_name;
 use std::fmt;
 
 /// Most values of a range: more is a slip of the keyboard.
@@ -67,6 +68,15 @@ impl Range {
         })
     }
 
+    /// What its axis is called: the name, with the unit where the name does not carry it.
+    pub(super) fn title(&self) -> String {
+        let unit = by_name(&self.name).map_or("1", |variable| variable.unit);
+        match unit {
+            "" | "1" => self.name.clone(),
+            unit => format!("{} [{unit}]", self.name),
+        }
+    }
+
     /// The same range in steps of `step` or a little less.
     pub(super) fn in_steps_of(&self, step: f64) -> Self {
         // A range of whole steps keeps their number in spite of rounding.
@@ -106,6 +116,18 @@ mod tests {
         let values: Vec<f64> = (0..7).map(|k| range.value(k)).collect();
         assert_eq!(values, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]);
         assert_eq!(range.to_string(), "x=0.1:0.7:7");
+    }
+
+    #[test]
+    fn an_axis_says_in_what_unit_its_values_are() {
+        for (range, title) in [
+            ("spindle.speed=1:2:2", "spindle.speed [rad/s]"),
+            ("spindle.speed_rpm=1:2:2", "spindle.speed_rpm"),
+            ("friction.static=0.1:0.2:2", "friction.static"),
+            ("winding.layers=1:2:2", "winding.layers"),
+        ] {
+            assert_eq!(Range::parse(range).unwrap().title(), title);
+        }
     }
 
     #[test]

@@ -43,8 +43,8 @@ pub enum TouchOwner {
     Pair(usize),
 }
 
-/// The bristle of a touch that was solved with the friction limit `used`, N, and holds `limit`: the force of the bristle of
-/// stretch `b` (m) and stiffness `k` (N/m) on the point, and the surplus of the solve.
+/// Force on the point of the bristle of a touch, N, and the surplus of the solve. The touch was solved with the friction limit
+/// `used`, N, and holds `limit`. The bristle has the stretch `b` (m) and the stiffness `k` (N/m).
 pub(super) fn friction_of(b: &V3, k: f64, limit: f64, used: f64) -> (V3, V3) {
     let pull = k * b.norm();
     if pull <= limit.min(used) {

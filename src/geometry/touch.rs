@@ -20,8 +20,8 @@
 //! into none. In none: each triangle finds the edge closest, and the edge rule serves. In both,
 //! and over concave edges that bend less than 15 degrees (tessellated fillets, noise of
 //! files), only the nearer face touches, ties going to the lower index. At a vertex inside a flat
-//! face the same can happen to triangles that share no edge: touches at one point are merged,
-//! and if every triangle passed the touch on to another, the nearest feature is taken.
+//! face the same can happen to triangles that share no edge. Touches at one point are merged.
+//! If every triangle passed the touch on to another, the nearest feature is taken.
 
 use super::elements::Facet;
 use super::feature::{Closest, Region};

@@ -8,8 +8,8 @@ const RELEASE: f64 = 0.8;
 
 /// Fraction of a turn that a bulge or an overlap must cover before its flag rises: 8 degrees.
 ///
-/// Chosen: a noisy node 0.4 mm from its neighbours, 6 mm from the axis, reaches over 7.6 degrees; a
-/// 2 mm corner of the 12 x 30 mm core, the shortest place for a wire to ride up, over 11.
+/// Chosen: a noisy node 0.4 mm from its neighbours, 6 mm from the axis, reaches over 7.6 degrees.
+/// The shortest place for a wire to ride up, a 2 mm corner of the 12 x 30 mm core, reaches over 11.
 pub(crate) const SHORT_RUN: f64 = 8.0 / STATIONS_PER_TURN as f64;
 
 /// A run of neighbouring stations above a limit, as it stands after the last station.

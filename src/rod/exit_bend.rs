@@ -1,7 +1,7 @@
 //! Wire that is drawn over an edge: how far it bends there, what set stays, and what that costs.
 //!
 //! Wire moves steadily from one straight span over the edge into another. Bending it to the edge's curvature and straightening
-//! it again takes work, which the pull behind the edge has to do: the tension rises by the work per length (Swift, Plastic
+//! it again takes work. The pull behind the edge has to do it, so the tension rises by the work per length (H. W. Swift, Plastic
 //! bending under tension, Engineering 166, 1948). Of ideally plastic wire with the moment M that is 2 M over the radius where the
 //! radius is small.
 //!

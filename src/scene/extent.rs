@@ -18,7 +18,7 @@ pub(super) struct Extent {
 impl Extent {
     /// That of a core with this turning radius and half length, m; between flanges it ends at their outer faces.
     pub(super) fn of(turning_radius: f64, half: f64, flange: Option<Flange>) -> Self {
-        let half = flange.map_or(half, |f| 0.5 * f.inner_distance + f.thickness);
+        let half = flange.map_or(half, outer_face);
         Self {
             turning_radius: turning_radius + flange.map_or(0.0, |f| f.height),
             winding_radius: turning_radius,
@@ -33,7 +33,7 @@ impl Extent {
         let Some(f) = flange else {
             return self;
         };
-        let outer = 0.5 * f.inner_distance + f.thickness;
+        let outer = outer_face(f);
         Self {
             turning_radius: self.turning_radius + f.height,
             y_min: self.y_min.min(-outer),
@@ -42,4 +42,9 @@ impl Extent {
             ..self
         }
     }
+}
+
+/// Distance of a flange's outer face from the middle between the two, m.
+fn outer_face(flange: Flange) -> f64 {
+    0.5 * flange.inner_distance + flange.thickness
 }

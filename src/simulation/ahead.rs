@@ -79,10 +79,11 @@ impl Winding {
 pub(super) fn between(start: &Outputs, end: &Outputs, share: f64) -> Outputs {
     let even = |a: f64, b: f64| a + share * (b - a);
     let (a, b) = (start.smooth(), end.smooth());
+    let between = start.with_smooth(std::array::from_fn(|k| even(a[k], b[k])));
+    // The next layer begins where the step ends.
+    let since = between.turns_wound - start.turns_wound;
     Outputs {
-        wire_length: even(start.wire_length, end.wire_length),
-        wire_resistance: even(start.wire_resistance, end.wire_resistance),
-        flange_clearance: even(start.flange_clearance, end.flange_clearance),
-        ..start.with_smooth(std::array::from_fn(|k| even(a[k], b[k])))
+        turn_in_layer: (start.turn_in_layer + since).max(0.0),
+        ..between
     }
 }

@@ -18,8 +18,8 @@ use super::{SimError, Simulation, Winding};
 use crate::signals::{Inputs, Outputs};
 use std::sync::Arc;
 
-/// Share of the tolerance by which the wire may come out otherwise for inputs that count as gone on: what rounding does to
-/// the inputs of a master is far less, and what a person changes far more.
+/// Share of the tolerance by which the wire may come out otherwise for inputs that count as gone on. Rounding does far less to
+/// the inputs of a master, and a person changes them by far more.
 const ALIKE: f64 = 1e-6;
 /// The same for the place of the nozzle. Its way in a ramp is told in straight pieces, which part from the curve by less, and a
 /// thousandth of an error moves no wire.
@@ -227,8 +227,8 @@ impl Simulation {
 
     /// Begins another course: what has passed since the winding's time is gone through along the one before.
     ///
-    /// The first step along a course that follows another ends at its communication point: inputs that have just changed often
-    /// change again, and what a master learns from small changes of a step is not blurred by the line between two ends.
+    /// The first step of a course that follows another ends at its communication point, for two reasons. Inputs that have just changed
+    /// often change again. And what a master learns from small changes of a step is not blurred by the line between two ends.
     fn turn_to(&mut self, course: Course) -> Result<(), SimError> {
         if self.ahead.is_some() {
             self.talk.waited = (2 * self.talk.waited).clamp(1, LONGEST_WAIT);

@@ -174,8 +174,12 @@ impl Winding {
     pub(super) fn tell_of_trouble(&mut self, before: SolverStatistics) {
         let newton_failures = self.statistics().newton_failures - before.newton_failures;
         if newton_failures > 0 {
+            let times = match newton_failures {
+                1 => "once".to_owned(),
+                n => format!("{n} times"),
+            };
             let text = format!(
-                "the solver shortened its step {newton_failures} times, the last one to {:.2e} s; each step taken still meets solver.tolerance, so nothing needs to be done",
+                "the solver shortened its step {times}, the last one to {:.2e} s; each step taken still meets solver.tolerance, so nothing needs to be done",
                 self.run.last_step
             );
             self.report(EventKind::Solver, text);

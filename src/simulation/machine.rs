@@ -33,7 +33,7 @@ impl Winding {
         let y = layon.point.y;
         Machine {
             layon: [layon.point.x, layon.point.z],
-            turn_in_layer: (layon.angle - self.coil.pass_begins(layon.angle)) / TAU,
+            turn_in_layer: (layon.angle - self.coil.pass_begins(layon.angle)).max(0.0) / TAU,
             clearance: (y - low).min(high - y) - self.scene.wire.radius(),
             resistance: self.resistance_of(layon.arc),
             inertia: self.coil_inertia(),

@@ -155,6 +155,9 @@ impl Winding {
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
         o.wire_tension = tension;
+        // A change of the mesh may have moved it since the last look.
+        o.wire_tension_min = o.wire_tension_min.min(tension);
+        o.wire_tension_max = o.wire_tension_max.max(tension);
         o.defect_break = faults[0] > 0;
         o.defect_count = count as i32;
         let raised = |kind: DefectKind| raised[kind as usize] as i32;

@@ -44,8 +44,8 @@ const STIFFER: f64 = 2.0;
 const TOLERANCE: f64 = 1e-7;
 const TENSION: f64 = 1e-2;
 
-/// Height over the core by winding angle of wire at rest under `tension`, N; none without tension, for a mesh that is not the
-/// same on both sides of x and z, and where no loop is found.
+/// Height over the core by winding angle of wire at rest under `tension`, N. There is none without tension, for a mesh that is
+/// not the same on both sides of x and z, and where no loop is found.
 ///
 /// On a cylinder wire has no faces to stand off from: its helix lies on the core.
 pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Profile> {

@@ -233,7 +233,7 @@ impl Winding {
                 self.run.rest_depth = self.run.rest_depth.max(self.sys.depth(i));
             }
             self.sys.lay_frozen(node);
-            let (turns, defects) = (self.coil.turns_settled(), self.coil.defect_count());
+            let (turns, defects) = (self.coil.turns_settled(), self.coil.raised());
             self.coil.settle(settled);
             self.tell(turns, defects);
             arc += self.sys.state.rod.rest[i];
@@ -355,7 +355,8 @@ impl Winding {
         self.watch_live_wire();
     }
 
-    fn tell(&mut self, turns: f64, defects: u32) {
+    /// Tells of turns and defects that came to those there were, by kind in the order of [`DefectKind::MEASURED`].
+    fn tell(&mut self, turns: f64, defects: [u32; DefectKind::MEASURED.len()]) {
         let now = self.coil.turns_settled();
         if now.floor() > turns.floor() {
             self.report(
@@ -363,11 +364,13 @@ impl Winding {
                 format!("turn {} has come to rest", now.floor()),
             );
         }
-        if self.coil.defect_count() > defects
+        let raised = self.coil.raised();
+        let new = |kind: &DefectKind| raised[*kind as usize] > defects[*kind as usize];
+        let kinds = DefectKind::MEASURED.into_iter().filter(new);
+        let names: Vec<&str> = kinds.map(DefectKind::words).collect();
+        if !names.is_empty()
             && let Some(d) = self.coil.last_defect()
         {
-            let flags = self.coil.flags();
-            let names: Vec<&str> = flags.kinds().map(DefectKind::words).collect();
             self.report(
                 EventKind::Defect,
                 format!(

@@ -268,7 +268,7 @@ table! {
     flag(106, defect_break, "tension above the strength of the wire");
     flag(107, defect_slack, "tension fell to zero");
     count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16, double turn 32, skipped groove 64, early layer jump 128, late layer jump 256, loose turn 512, overstretch 1024, collision 2048, runaway 4096");
-    count(Output, 109, defect_count, "defects found so far, of every kind");
+    count(Output, 109, defect_count, "defects of coil and wire, of every kind");
     output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect");
     output(111, defect_angle, "rad", "deg", -1e7, 1e7, 1.0, "polar angle of the last defect within its turn");
     output(112, bulge_height, "m", "mm", -10.0, 10.0, 1e-3, "largest height over the core or the layer below, last settled turn");
@@ -289,9 +289,9 @@ table! {
     output(127, fill_factor, "1", "", 0.0, 10.0, 1.0, "wire section over the winding section it takes up, settled wire");
     output(128, wire_strain, "1", "", -10.0, 10.0, 1e-2, "largest plastic stretch of the last settled turn");
 
-    count(Output, 129, defect_count_bulge, "bulges found so far");
-    count(Output, 130, defect_count_gap, "gaps found so far");
-    count(Output, 131, defect_count_overlap, "overlaps found so far");
+    count(Output, 129, defect_count_bulge, "bulges of the settled wire");
+    count(Output, 130, defect_count_gap, "gaps of the settled wire");
+    count(Output, 131, defect_count_overlap, "overlaps of the settled wire");
     count(Output, 132, defect_count_break, "breaks so far");
     count(Output, 133, defect_count_slack, "how often the wire went slack so far");
     count(Output, 134, defect_kind, "kind of the last defect, as in defect_code; 0: none so far");
@@ -305,21 +305,21 @@ table! {
     output(141, nozzle_y, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis: that of nozzle_position, or of the law of traverse.mode");
     output(142, layon_x, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along x; the frame does not turn, the nozzle is on +x");
     output(143, layon_z, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along z of the same frame; layon_position is along y");
-    output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns laid in the layer that is being wound");
+    output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns laid since the nozzle turned: those of the layer that is being wound, where it turns at the ends of layers");
     output(145, flange_clearance, "m", "mm", -10.0, 10.0, 1e-3, "from the surface of the wire where it meets the coil to the nearer flange, along y; without flanges to the nearer end of the core");
     output(146, wire_resistance, "Ohm", "mOhm", 0.0, 1e9, 0.1, "resistance of wire_length at 20 degC, of its unstretched section");
     output(147, coil_inertia, "kg.m2", "g.mm2", 0.0, 1e3, 1e-6, "moment of inertia of the settled wire about the core axis, without the core's");
     output(148, spindle_torque_total, "N.m", "N.mm", -1e6, 1e6, 0.1, "spindle_torque less coil_inertia times the mean acceleration of the last step; the core's own inertia is the drive's");
     output(149, break_position, "m", "", 0.0, 1e6, 1.0, "unstretched wire from the clamp to where it broke; 0: it is whole");
 
-    count(Output, 150, defect_count_double_turn, "double turns found so far");
-    count(Output, 151, defect_count_skipped_groove, "skipped grooves found so far");
-    count(Output, 152, defect_count_early_jump, "early layer jumps found so far");
-    count(Output, 153, defect_count_late_jump, "late layer jumps found so far");
-    count(Output, 154, defect_count_loose_turn, "loose turns found so far");
-    count(Output, 155, defect_count_overstretch, "overstretched turns found so far");
-    count(Output, 156, defect_count_collision, "collisions of coil and nozzle found so far");
-    count(Output, 157, defect_count_runaway, "times that wire shot out of the nozzle found so far");
+    count(Output, 150, defect_count_double_turn, "double turns of the settled wire");
+    count(Output, 151, defect_count_skipped_groove, "skipped grooves of the settled wire");
+    count(Output, 152, defect_count_early_jump, "early layer jumps of the settled wire");
+    count(Output, 153, defect_count_late_jump, "late layer jumps of the settled wire");
+    count(Output, 154, defect_count_loose_turn, "loose turns of the settled wire");
+    count(Output, 155, defect_count_overstretch, "overstretched turns of the settled wire");
+    count(Output, 156, defect_count_collision, "collisions of coil and nozzle so far");
+    count(Output, 157, defect_count_runaway, "how often wire shot out of the nozzle so far");
 
     local(200, solver_steps, "1", "", 0.0, 1e18, 1e5, "time steps taken");
     local(201, solver_rejects, "1", "", 0.0, 1e18, 1.0, "time steps rejected");
@@ -415,7 +415,7 @@ table! {
     fixed(1802, "friction.slip_speed", friction.slip_speed, "m/s", "mm/s", 1e-5, 100.0, 1e-2, "slip speed over which static turns into kinetic");
 
     text(1900, "solver.integrator", (solver.integrator), ["auto", "implicit", "rk4", "verlet"], "time integrator; auto: rk4 for preset paper, else implicit");
-    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit, implicit as the wire's diameter, 0.3 mm for 0.7 mm, and finer at tight corners, coarser as the cube root of a tolerance above its own");
+    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit; implicit as the wire's diameter, 0.3 mm for 0.7 mm, coarser as the cube root of a tolerance above its own, halved until below 0.45 of the radius that corners bend the wire to");
     fixed(1902, "solver.spacing_free", solver.spacing_free, "m", "mm", 0.0, 0.1, 1e-3, "node spacing in the free span; 0: 1 mm explicit, eight times that near the core implicit");
     fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core or the layer below at which free-span edges are split; 0: 3 mm implicit, 6 mm explicit");
     fixed(1904, "solver.step_share", solver.step_share, "1", "", 1e-3, 1.0, 1.0, "time step as a share of the stability limit");

@@ -151,6 +151,26 @@ def test_directional_derivatives_over_a_millisecond(make_slave):
     assert len(missed) <= 0.25 * count, missed
 
 
+def test_what_declares_no_dependency_does_not_move_with_the_inputs(slave):
+    """turn_in_layer, flange_clearance, wire_length and wire_resistance declared none, and moved as turns_wound does."""
+    declared = {unknown.variable.name: unknown.dependencies for unknown in slave.description.outputs}
+    free = [name for name, on in declared.items() if not on and slave.variables[name].type == "Real"]
+    assert "gap_width" in free and "turns_wound" not in free
+    slave.start(scene__file="fig8")
+    wind(slave, 100, 1e-4)
+    nozzle = slave.get("nozzle_position")
+    before = slave.fmu.getFMUstate()
+    moved = {}
+    for changes in ({}, {"spindle_speed": 1e-3}, {"nozzle_position": 1e-7}, {"tension_setpoint": 1e-3}):
+        slave.fmu.setFMUstate(before)
+        base = {"spindle_speed": RATE * 1e-2, "nozzle_position": nozzle, "tension_setpoint": 15.0}
+        slave.set(**{name: value + changes.get(name, 0.0) for name, value in base.items()})
+        slave.fmu.doStep(1e-2, 1e-4)
+        for name in free:
+            moved.setdefault(name, set()).add(slave.get(name))
+    assert [name for name, values in moved.items() if len(values) > 1] == []
+
+
 def test_directional_derivatives_of_the_start(slave):
     slave.fmu.setupExperiment()
     slave.set(scene__file="fig8")

@@ -1,5 +1,6 @@
 """What reaches the importer's logger, and how."""
 
+import math
 import re
 
 from conftest import WARNING
@@ -28,6 +29,20 @@ def test_categories_are_the_declared_ones(slave, description):
     broken = [text for _, status, _, text in slave.log if status == WARNING and "broke" in text]
     assert len(broken) == 1
     assert re.match(r"t = 0\.\d+ s, turn \d+\.\d+, core at -?\d+\.\d deg: ", broken[0])
+
+
+def test_a_wind_that_goes_well_warns_of_nothing(slave):
+    """Each step that the solver shortened was a warning with the words that nothing needs to be done."""
+    slave.start(inputs={"spindle_speed": 1.0})
+    for k in range(160):
+        speed = 100.0 * min((k + 0.5) / 30, 1.0)
+        travel = 0.7e-3 / (2 * math.pi) * speed * 1e-3
+        slave.set(spindle_speed=speed, nozzle_position=slave.get("nozzle_position") + travel)
+        slave.fmu.doStep(k * 1e-3, 1e-3)
+    assert slave.get("turns_wound") > 2.0
+    shortened = [entry for entry in slave.log if "shortened its step" in entry[3]]
+    assert shortened and all(entry[1:3] == (0, "logSolver") for entry in shortened)
+    assert not [entry for entry in slave.log if entry[1] == WARNING]
 
 
 def test_defects_come_with_time_turn_and_angle(slave):

@@ -113,7 +113,7 @@ def test_a_wrong_measurement_is_told_in_a_line(text, words, complaint, calibrate
     path = tmp_path / "measured.csv"
     path.write_text(text, encoding="utf-8")
     code, said = calibrate(path, "--fit", "tensioner.mass", *words, "--out", tmp_path / "out")
-    assert code == 1
+    assert code == 2
     assert complaint in said, said
     assert len(said.splitlines()) == 1, said
     assert not (tmp_path / "out").exists()

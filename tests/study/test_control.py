@@ -21,4 +21,4 @@ def test_what_is_missing_is_told_in_a_line(script, tmp_path):
         (["--fmu", tmp_path / "none.fmu"], "none.fmu is missing; build it with scripts/build_fmu.sh"),
     ]:
         code, said = script("examples/control.py", *words)
-        assert code == 1 and complaint in said and len(said.splitlines()) == 1, said
+        assert code == 2 and complaint in said and len(said.splitlines()) == 1, said

@@ -77,5 +77,5 @@ def test_a_film_has_the_frames(run, script, tmp_path):
 )
 def test_what_cannot_be_drawn_is_told_in_a_line(words, complaint, script, tmp_path):
     code, said = script("scripts/render.py", *(word.format(folder=tmp_path) for word in words), python=RENDER)
-    assert code == 1
+    assert code == 2
     assert complaint in said and "Traceback" not in said

@@ -121,6 +121,6 @@ def test_a_run_has_the_numbers_of_the_command(alone, scene, command, tmp_path):
 def test_what_cannot_be_swept_is_told_in_a_line(words, complaint, scene, fmu, command, script, tmp_path):
     fixed = ["--command", command, "--out", tmp_path / "out"] + ([] if "--fmu" in words else ["--fmu", fmu])
     code, said = script("scripts/sweep_dask.py", scene, *words, *fixed)
-    assert code == 1
+    assert code == 2
     assert complaint in said and len(said.splitlines()) == 1, said
     assert not (tmp_path / "out").exists()

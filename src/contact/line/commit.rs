@@ -31,8 +31,8 @@ impl LineContact<'_> {
         }
     }
 
-    /// Accounts for touches that ended because their point went far from what it touched within the step; call before
-    /// [`Self::commit`] does it for the others. `place` (m) and `length` (m) are those of a point at the step's end.
+    /// Accounts for touches that ended because their point went far from what it touched within the step. To be called before
+    /// [`Self::commit`], which does it for the others. `place` (m) and `length` (m) are those of a point at the step's end.
     pub fn commit_left(&mut self, place: impl Fn(usize) -> V3, length: impl Fn(usize) -> f64) {
         let undo = &self.scratch.undo;
         for (entry, (k, old)) in undo.iter().enumerate() {

@@ -15,8 +15,8 @@ const SKIN: f64 = 0.15;
 /// Passages whose segments are nearer along the wire than this are one passage at successive searches.
 const SAME_PASSAGE: u32 = 6;
 
-/// Depth (m) of the wire at `p` (m) in what a slot is with, unit normal towards `p`, and where that was found: the segment of
-/// frozen wire or the triangle of a mesh, which is looked for from `start` on.
+/// Depth (m) of the wire at `p` (m) in what a slot is with, unit normal towards `p`, and where that was found. That is the
+/// segment of frozen wire or the triangle of a mesh, which is looked for from `start` on.
 #[inline(always)]
 pub(super) fn depth_at(
     model: &LineModel,

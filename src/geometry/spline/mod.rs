@@ -15,7 +15,7 @@
 //!
 //! It cuts corners: at node k it passes `(P[k-1] - 2 P[k] + P[k+1])/8` inside. Both ends have a
 //! neighbour mirrored in them, `2 P[0] - P[1]`. Their segments are straight and have half of
-//! the range of s: the wire starts at node 0 with s = 1/2 in segment 0 and ends at node n-1 with
+//! the range of s. The wire starts at node 0 with s = 1/2 in segment 0 and ends at node n-1 with
 //! s = 1/2 in segment n-1. There are as many segments as nodes, and C' is continuous throughout.
 //!
 //! # Seams

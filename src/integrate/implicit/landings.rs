@@ -4,9 +4,9 @@
 //! the way of the step, which the balance takes for any other force, is right for what grows evenly from the step's start on.
 //!
 //! Not every landing is a blow. Where wire is laid on a core under tension, what it is pulled by comes with the touch and balances it:
-//! no motion is stopped, and speeds of a long step say nothing. So what goes by impulses is the share of the force that
-//! the inertia of the wire holds, as far as bending carries a blow within the step, and only where the wire came in
-//! faster than its way in the step says.
+//! no motion is stopped, and speeds of a long step say nothing. So impulses carry the share of the force that the inertia of
+//! the wire holds, as far as bending carries a blow within the step. They do so only where the wire came in faster than its
+//! way in the step says.
 
 use super::carried::Carried;
 use super::impulse::Impulse;

@@ -36,8 +36,8 @@ impl System {
     /// Brings the forces in line with a changed mesh; what the change itself cost is a line of its own in the energy
     /// balance. The residual was `unexplained` (J) before.
     ///
-    /// The moment on the core stays what it was: a change of the mesh is no motion, and the forces of the new nodes, which
-    /// nothing has balanced yet, would go with the core's way over the next step.
+    /// The moment on the core stays what it was, since a change of the mesh is no motion. Nothing has balanced the forces of the
+    /// new nodes yet; they would go with the core's way over the next step.
     pub fn follow_mesh(&mut self, unexplained: f64) {
         let moment = (self.state.torque_on_core, self.state.unbalanced);
         self.refresh();
