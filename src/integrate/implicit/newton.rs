@@ -26,10 +26,6 @@ const SHRINKS: f64 = 0.2;
 const CHORD_LEFT: f64 = 0.03;
 /// The same for the midpoint rule, which keeps what is wrong with a step for ever.
 const CHORD_KEPT: f64 = 1e-3;
-/// What an update may be expected to leave if it is the last, as a share of what is close: the one that would follow it.
-const LEFT: f64 = 1.0;
-/// The same for the midpoint rule and for equilibria.
-const LEFT_EXACTLY: f64 = 0.5;
 /// Rounding noise of the potential as a share of its size.
 const NOISE: f64 = 1e-13;
 
@@ -48,8 +44,6 @@ pub(super) struct NewtonLimits {
     pub(super) line_search_halvings: usize,
     /// a guess stands unsolved if inertia alone bounds the update by so much, m
     pub(super) guess: f64,
-    /// what a last update may be expected to leave, as a share of what is close
-    pub(super) left: f64,
     /// what a last update with the factors of the one before may leave, as a share of what is close; 0: there is none
     pub(super) chord: f64,
 }
@@ -63,7 +57,6 @@ impl NewtonLimits {
         far: f64::INFINITY,
         line_search_halvings: 12,
         guess: 0.0,
-        left: LEFT_EXACTLY,
         chord: CHORD_KEPT,
     };
 
@@ -82,7 +75,6 @@ impl NewtonLimits {
                 2
             },
             guess,
-            left: if damped { LEFT } else { LEFT_EXACTLY },
             chord: if damped { CHORD_LEFT } else { CHORD_KEPT },
             ..Self::STEP
         }
@@ -184,7 +176,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         } else {
             update
         };
-        if share == 1.0 && fits && (update < close || next < limits.left * close) {
+        if share == 1.0 && fits && (update < close || next < 0.5 * close) {
             work.take(1.0);
             return Ok(step);
         }

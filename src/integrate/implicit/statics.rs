@@ -66,7 +66,6 @@ impl Implicit {
             far: f64::INFINITY,
             line_search_halvings: 12,
             guess: CLOSE * self.tolerance,
-            left: newton::NewtonLimits::STEP.left,
             chord: 0.0,
         };
         let mut taken = 0;
