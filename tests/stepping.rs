@@ -83,8 +83,9 @@ fn a_short_step_is_one_solve_from_a_good_guess() {
     let e = sim.statistics();
     let count = (END / 5e-6).round();
     assert!((e.steps as f64) < 1.02 * count, "{e:?}");
-    // and an update with old factors in most of them
-    assert!((e.evaluations as f64) < 1.8 * count, "{e:?}");
+    // and one or two updates with old factors in most of them: what is close goes with the length of the step, so that wire
+    // that friction holds does not creep
+    assert!((e.evaluations as f64) < 2.6 * count, "{e:?}");
     assert!(
         (e.rejects + e.newton_failures) as f64 <= 0.01 * count,
         "{e:?}"

@@ -20,10 +20,12 @@ const CHORD: f64 = 100.0;
 const CHORDS: usize = 3;
 /// Share of the update before below which another is tried.
 const SHRINKS: f64 = 0.2;
-/// What a last update with old factors may leave, as a share of what is close. Lightly pressed wire is a tenth of a
-/// micrometre deep, and friction follows the depth: with ten times as much, gaps of `shoulder_drop` come out up to 11 %
-/// too small at the default tolerance, with this 6 %. It costs one solve in a hundred to one in fifteen.
+/// What a last update with old factors may leave, as a share of what is close in a step of the length that the error asks
+/// for. Lightly pressed wire is a tenth of a micrometre deep, and friction follows the depth: with ten times as much,
+/// gaps of `shoulder_drop` come out up to 11 % too small at the default tolerance, with this 6 %.
 const CHORD_LEFT: f64 = 0.03;
+/// The largest share of what is close in a shorter step: that is less already.
+const CHORD_LEFT_SHORT: f64 = 0.3;
 /// The same for the midpoint rule, which keeps what is wrong with a step for ever.
 const CHORD_KEPT: f64 = 1e-3;
 /// Rounding noise of the potential as a share of its size.
@@ -66,7 +68,8 @@ impl NewtonLimits {
     ///
     /// The first update tells how far the guess is off, within a few per cent where the solve comes to an end. One
     /// beyond `far` saves the rest of a solve that the error would throw away.
-    pub(super) fn of_step(short: bool, far: f64, guess: f64, damped: bool) -> Self {
+    /// `share` is the length of the step over that which the error asks for, at most 1.
+    pub(super) fn of_step(short: bool, far: f64, guess: f64, share: f64, damped: bool) -> Self {
         Self {
             far,
             line_search_halvings: if short {
@@ -75,7 +78,11 @@ impl NewtonLimits {
                 2
             },
             guess,
-            chord: if damped { CHORD_LEFT } else { CHORD_KEPT },
+            chord: if damped {
+                (CHORD_LEFT / share).min(CHORD_LEFT_SHORT)
+            } else {
+                CHORD_KEPT
+            },
             ..Self::STEP
         }
     }

@@ -5,7 +5,7 @@ use super::predictor::{moved, step_of};
 use super::step_control::{MOST_TURN, SHORT};
 use super::unknowns::Unknowns;
 use super::work::Work;
-use super::{Implicit, Scheme, StepError, newton};
+use super::{CLOSE, Implicit, Scheme, StepError, newton};
 use crate::system::System;
 
 impl Implicit {
@@ -47,7 +47,7 @@ impl Implicit {
             let solved = newton::solve(
                 &mut model,
                 work,
-                self.close(h),
+                CLOSE * self.tolerance * self.share_of_wanted(h),
                 newton::NewtonLimits::of_step(
                     failures > 2 || h < SHORT * self.shortest || self.fixed.is_some(),
                     if h > self.shortest && self.fixed.is_none() {
@@ -56,6 +56,7 @@ impl Implicit {
                         f64::INFINITY
                     },
                     self.largest_guess(h),
+                    self.share_of_wanted(h),
                     self.scheme == Scheme::Bdf2 && self.fixed.is_none(),
                 ),
             );

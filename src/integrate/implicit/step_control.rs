@@ -13,7 +13,7 @@ const AIM: f64 = 0.4;
 /// Steps below this multiple of the shortest are taken in trouble only.
 pub(super) const SHORT: f64 = 1e3;
 /// Least share of what is close that a short step asks for: 2 pm for wire of 0.7 mm, a thousand times the rounding of places.
-const LEAST_CLOSE: f64 = 1e-4;
+const LEAST_SHARE: f64 = 1e-4;
 /// Angle by which the nozzle's own motion may turn the edge there in a step, rad. The nozzle's work is booked by the
 /// forces at both ends of the step. If the edge swings further, these two forces have little to do with each other.
 const NOZZLE_TURN: f64 = 0.2;
@@ -37,16 +37,15 @@ impl Implicit {
         CLOSE * self.tolerance * share * share
     }
 
-    /// Newton's update at which the solve of a step of `h`, s, is done, m.
+    /// Length of a step of `h`, s, over that which the error asks for, at most 1, and at least [`LEAST_SHARE`].
     ///
-    /// What a solve leaves moves wire that is held by friction, step after step and the same way. So it goes with the
-    /// length of the step: in steps cut short by communication points wire creeps no faster than in steps that the error asks for.
-    pub(super) fn close(&self, h: f64) -> f64 {
-        let share = match self.fixed {
+    /// What a solve leaves moves wire that is held by friction, step after step and the same way. So what is close goes with
+    /// this share: in steps cut short by communication points wire creeps no faster than in steps that the error asks for.
+    pub(super) fn share_of_wanted(&self, h: f64) -> f64 {
+        match self.fixed {
             Some(_) => 1.0,
-            None => (h / self.wanted).clamp(LEAST_CLOSE, 1.0),
-        };
-        CLOSE * self.tolerance * share
+            None => (h / self.wanted).clamp(LEAST_SHARE, 1.0),
+        }
     }
 
     /// Length that the next step is tried with, s, in an interval of which `most`, s, is left.

@@ -7,7 +7,7 @@ use super::bench::{Bench, law};
 use super::{Answer, Answers, Context, VerifyError};
 
 /// Bisections of the range of offsets, 3.8 r.
-const HALVINGS: usize = 13;
+const HALVINGS: usize = 17;
 
 /// A piece that has come this far, in wire radii, slides; a bristle yields by 1e-5.
 const SLIDES: f64 = 1e-2;
