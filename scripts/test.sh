@@ -100,6 +100,8 @@ lab() {
     step exact answers
     "$command" verify
     "$command" verify --preset paper
+    local file
+    for file in tests/reference/once_wrong/*.json; do "$command" verify --file "$file"; done
 
     step random scenes
     # 127: wire that yields with twist off is driven by its time steps
