@@ -25,7 +25,7 @@ pub use batch::{BendingJoints, Forces, TwistingJoints};
 pub use bending::bent;
 #[cfg(feature = "lab")]
 pub use bending::{Bent, Symmetric, add_square};
-pub use bending::{Stretched, stretched, turning};
+pub use bending::{SetCurvature, Stretched, stretched, turning};
 pub use exit_bend::ExitBend;
 pub use flow_curve::{Bilinear, FlowCurve, FlowCurveError, InPieces, MOST_STRAIN, RoundLaws};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};

@@ -104,7 +104,7 @@ impl Impacts {
                 .in_landings(sys, step, (solved, old), (&self.impulses, &self.start[0]));
         sys.state.balance.numerical -= blow + rubbed;
         let landed = [blow, rubbed];
-        self.give_back_friction(sys, step, parts, &mut carried);
+        self.give_back_friction(sys, (step, old), parts, &mut carried);
         let bound = UNSEEN * tolerance;
         self.settle(step.h, bound, parts, restitution);
         self.take_over(sys, step, old, parts);
@@ -223,22 +223,36 @@ impl Impacts {
         }
     }
 
-    /// Gives back what the solve took too much of friction, or takes what it left, by no more than the wire slides.
+    /// Gives back what the solve took too much of friction, or takes what it left.
+    ///
+    /// What brakes a slide no more than stops it, and what drives it brings it to no more than the speed at the step's start.
     fn give_back_friction(
         &mut self,
         sys: &mut System,
-        step: &StepFormula,
+        (step, old): (&StepFormula, Spindle),
         parts: usize,
         carried: &mut Carried,
     ) {
         let spin = Spin::new(sys.state.spindle.angle);
+        let before = Spin::new(old.angle);
         for impulse in &mut self.impulses {
-            let of_nodes = impulse.nodes();
-            let speed: V3 = of_nodes.map(|(i, w)| self.motion[0][i] * w).sum();
-            let slide = speed - impulse.touch.normal * speed.dot(&impulse.touch.normal);
             let change = impulse.touch.surplus.norm() * impulse.inverse * step.gamma;
-            if change > slide.norm() {
-                impulse.touch.surplus *= slide.norm() / change;
+            if change == 0.0 {
+                continue;
+            }
+            let along = impulse.touch.surplus.normalize();
+            let past = &sys.state.past;
+            let at_start = |i: usize| {
+                before.to_core(past.v[i] - spin_velocity(old.speed, past.x[i]))
+            };
+            let (mut now, mut then) = (0.0, 0.0);
+            for (i, w) in impulse.nodes() {
+                now += w * self.motion[0][i].dot(&along);
+                then += w * at_start(i).dot(&along);
+            }
+            let most = if now < 0.0 { -now } else { (then - now).max(0.0) };
+            if change > most {
+                impulse.touch.surplus *= most / change;
             }
             for (i, share) in impulse.shares() {
                 let speed = impulse.touch.surplus * (share * step.gamma);

@@ -4,14 +4,19 @@ use super::lengths::{set_share, voronoi};
 use super::scheme::StepFormula;
 use super::unknowns::Unknowns;
 use crate::math::{Quat, Spin, V3, align, rotate, turn_about_y};
-use crate::rod::{BendingJoints, Joint, Laws, Rod, YieldBranches};
+use crate::rod::batch::Joints;
+use crate::rod::{BendingJoints, Joint, Laws, Rod, SetCurvature, YieldBranches};
 use crate::system::{Spindle, Support, System};
 
 /// Joints that bend.
 #[derive(Debug, Default)]
 pub(super) struct Places {
     joints: BendingJoints,
-    /// plastic curvature per joint as a vector, 1/m
+    /// directions of the clamped ends in the core frame
+    clamps: [Option<V3>; 2],
+    /// joints with a plastic curvature, and how it goes along with the wire
+    bent: Vec<(usize, SetCurvature)>,
+    /// plastic curvature per joint as a vector at the last evaluation, 1/m
     set: Vec<V3>,
 }
 
@@ -33,14 +38,14 @@ impl Unknowns<3> for Places {
         guess: &[V3],
         _inert: bool,
     ) {
-        self.turn_plastic_curvature(sys, ends, guess, step.grown);
         let (spindle, support) = ends;
-        let clamps = clamp_directions(support, spindle);
-        self.joints.begin(sys.state.rod.edges(), clamps);
+        self.clamps = clamp_directions(support, spindle);
+        self.joints.begin(sys.state.rod.edges(), self.clamps);
+        self.carry_plastic_curvature(sys, ends, guess, step.grown);
     }
 
     fn follow(&mut self, sys: &System, ends: (&Spindle, &[Support; 2]), guess: &[V3]) {
-        self.turn_plastic_curvature(sys, ends, guess, 0.0);
+        self.carry_plastic_curvature(sys, ends, guess, 0.0);
     }
 
     #[inline(always)]
@@ -51,6 +56,7 @@ impl Unknowns<3> for Places {
         yield_branches: &mut YieldBranches,
     ) -> f64 {
         self.joints.place(q);
+        self.turn_plastic_curvature();
         let state = (&self.set[..], &rod.bend[..]);
         let own = |j| voronoi(rod, grown, j);
         let near = &mut yield_branches.bending;
@@ -68,8 +74,8 @@ impl Unknowns<3> for Places {
 }
 
 impl Places {
-    /// Plastic curvature of each joint as a vector in the core frame, turned along with the guess.
-    fn turn_plastic_curvature(
+    /// Carries the plastic curvature of each joint along to `guess`, as a vector in the core frame.
+    fn carry_plastic_curvature(
         &mut self,
         sys: &System,
         (spindle, support): (&Spindle, &[Support; 2]),
@@ -78,6 +84,7 @@ impl Places {
     ) {
         let rod = &sys.state.rod;
         let back = turn_about_y(-spindle.angle);
+        self.bent.clear();
         self.set.clear();
         self.set.resize(rod.nodes(), V3::zeros());
         for i in 0..rod.nodes() {
@@ -103,9 +110,30 @@ impl Places {
             let (Some(p), Some(n)) = (before, after) else {
                 continue;
             };
-            self.set[i] = mid_frame_vector(&p, &n, k) * set_share(rod, grown, i);
+            let vector = mid_frame_vector(&p, &n, k) * set_share(rod, grown, i);
+            let along = [p, n].map(|f| rotate(&f, &V3::z()));
+            let carried = SetCurvature::new(vector, [&along[0], &along[1]]);
+            self.bent.push((i, carried));
         }
     }
+
+    /// Turns plastic curvature along to where the joints are placed.
+    fn turn_plastic_curvature(&mut self) {
+        for (i, carried) in &self.bent {
+            // (a clamp's direction stands behind that of the last edge)
+            let after = self.joints.along(*i);
+            self.set[*i] = carried.at([&self.along_before(*i), &after]);
+        }
+    }
+
+    /// Direction of the wire before joint `i`.
+    fn along_before(&self, i: usize) -> V3 {
+        match i {
+            0 => self.clamps[0].unwrap_or(V3::z()),
+            _ => self.joints.along(i - 1),
+        }
+    }
+
 }
 
 /// A vector with components `k` in the frame half-way between the frames of two edges.

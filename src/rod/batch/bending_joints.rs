@@ -229,8 +229,13 @@ impl Joints for BendingJoints {
         let g = moment * ratio + kb * (twice * kb.dot(moment));
         let mean = (t[0] + t[1]) * (f * 0.5);
         let along = mean * kb.dot(g);
-        out.store3(GRADIENT[0], j, (t[1].cross(g) * f - along) * il[0]);
-        out.store3(GRADIENT[1], j, -((t[0].cross(g) * f + along) * il[1]));
+        // what the turn of the plastic curvature adds, see `SetCurvature`
+        let root = f.sqrt();
+        let share = (root * (root + 1.0)).recip() * ratio * 0.25;
+        let turned = |v: Lanes3<S>| kb * (mean.dot(kb.cross(v)) * share);
+        let more = turned(moment);
+        out.store3(GRADIENT[0], j, (t[1].cross(g) * f - along + more) * il[0]);
+        out.store3(GRADIENT[1], j, -((t[0].cross(g) * f + along + more) * il[1]));
         if !HESSIAN {
             return;
         }
@@ -247,15 +252,20 @@ impl Joints for BendingJoints {
         let ck = c1 * kb2;
         let scale = [il[0] * il[0], il[0] * il[1], il[1] * il[1]];
         let (m, uc) = (mean.components(), [u[0] * c2, u[1] * c2]);
+        let (binormal, less) = (kb.components(), kb * (c1 * 0.25));
+        let own_less = (less * (f + 1.0)).components();
+        let cross_less = (less * (f + -1.0)).components();
         let mut dir = [u[0]; 2];
         let mut strong = dir;
         if near {
             // (elsewhere the direction of the moment does not matter: it is 0)
             let more = law.load(simd, MORE, j, 1);
             let d = law.load3(simd, DIRECTION, j, 1);
+            let turned = turned(d);
             let d = d * ratio + kb * (twice * kb.dot(d));
             let side = [d.cross(t[1]), d.cross(t[0])];
             dir = on((mean, f, il), kb.dot(d), side);
+            dir = [dir[0] + turned * il[0], dir[1] - turned * il[1]];
             strong = [dir[0] * more, dir[1] * more];
             out.store3(LEAD[0], j, dir[0]);
             out.store3(LEAD[1], j, dir[1]);
@@ -273,6 +283,7 @@ impl Joints for BendingJoints {
             for a in 0..3 {
                 for b in 0..a + 1 {
                     let mut sum = w[a] * m[b] + m[a] * w[b] + c[a] * v[b] - os[a] * o[b];
+                    sum = sum - own_less[a] * binormal[b] * s;
                     if a == b {
                         sum += stiff;
                     }
@@ -296,6 +307,7 @@ impl Joints for BendingJoints {
         for a in 0..3 {
             for b in 0..3 {
                 let mut sum = p[a] * q[b] + w[a] * m[b] + c[a] * v[b] - back[a] * other[b];
+                sum = sum - cross_less[a] * binormal[b] * s;
                 if a == b {
                     sum = sum - diagonal;
                 }

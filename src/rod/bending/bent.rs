@@ -1,5 +1,6 @@
 //! One joint that bends: the slow twin of [`BendingJoints`](crate::rod::BendingJoints), for tests.
 
+use super::set_curvature::{half_way, spin_per_way};
 use super::{FOLD, angle_over_tangent, respond};
 use crate::math::{Block, V3, add_outer};
 use crate::rod::plasticity::Law;
@@ -28,7 +29,8 @@ pub struct Bent {
 /// Bending of a joint between two edges without twist.
 ///
 /// `t` are the unit directions of the edges and `il` their inverse lengths, 1/m. `set` is the
-/// plastic curvature as a vector, 1/m, in the frame of `t`. `rise` is the rise of the yield moment,
+/// plastic curvature as a vector, 1/m, in the frame of `t`; it turns
+/// [along with the wire](super::SetCurvature). `rise` is the rise of the yield moment,
 /// N m, `lv` the Voronoi length, m.
 #[inline]
 pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) -> Bent {
@@ -49,8 +51,11 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
     let g = turn(&moment);
     let t_sum = (t[0] + t[1]) * (0.5 * f);
     let kg = t_sum * kb.dot(&g);
-    let before = (t[1].cross(&g) * f - kg) * il[0];
-    let after = (t[0].cross(&g) * -f - kg) * il[1];
+    // the plastic curvature turns too
+    let (per_way, middle) = (spin_per_way(t), half_way(t));
+    let spin = |v: &V3| per_way * (middle.dot(&kb.cross(v)) * s);
+    let before = (t[1].cross(&g) * f - kg - spin(&moment)) * il[0];
+    let after = (t[0].cross(&g) * -f - kg + spin(&moment)) * il[1];
     // S (c I + (c' - c) d d^T) S with S = s I + 2 s' kb kb^T is c1 I + c2 kb kb^T + c3 (S d)(S d)^T
     let c1 = s * s * c_across;
     let c2 = 4.0 * s1 * (s + s1 * kb2) * c_across;
@@ -67,6 +72,8 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
     let cf = c1 * f;
     let cf2 = cf * f;
     let ck = c1 * kb2;
+    // across the plane of the edges the plastic curvature keeps up with the angle but for s, where the angle turns by s f
+    let less = -0.25 * c1;
     let scale = [il[0] * il[0], il[0] * il[1], il[1] * il[1]];
     let mut own = [[0.0; 6]; 2];
     for (k, (other, sign)) in [(t[1], cf), (t[0], -cf)].into_iter().enumerate() {
@@ -79,6 +86,7 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
         let w = (a[k] * sign + t_sum * (0.5 * ck)) * s;
         add_pair(h, &w, &t_sum);
         add_square(h, &u[k], c2);
+        add_square(h, &kb, less * (f + 1.0) * s);
     }
     let s = scale[1];
     let mut cross = scaled_identity(-cf2 * t[0].dot(t[1]) * s);
@@ -86,10 +94,13 @@ pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) 
     add_outer(&mut cross, &((a[0] * cf + t_sum * ck) * s), &t_sum);
     add_outer(&mut cross, &(t_sum * (-cf * s)), &a[1]);
     add_outer(&mut cross, &(u[0] * c2), &u[1]);
+    add_outer(&mut cross, &(kb * (less * (f - 1.0) * s)), &kb);
     let mut yield_branch = None;
     if near {
         let d = turn(&dir);
-        let w = on(&d, [d.cross(t[1]), d.cross(t[0])]);
+        let mut w = on(&d, [d.cross(t[1]), d.cross(t[0])]);
+        w[0] -= spin(&dir) * il[0];
+        w[1] += spin(&dir) * il[1];
         yield_branch = Some(YieldBranch {
             rows: w,
             rolls: [0.0; 2],
@@ -148,7 +159,7 @@ fn add_pair(m: &mut Symmetric, a: &V3, b: &V3) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rod::bending::{stretched, turning};
+    use crate::rod::bending::{SetCurvature, stretched, turning};
     use crate::rod::plasticity::Scalar;
     use proptest::prelude::*;
 
@@ -170,6 +181,10 @@ mod tests {
 
     fn check(l: &Law, set: V3, rise: f64, e: [V3; 2]) {
         let lv = 0.5e-3;
+        let t = e.map(|e| e.normalize());
+        let mid = (t[0] + t[1]).try_normalize(1e-3).unwrap_or(V3::z());
+        let set = set - mid * set.dot(&mid);
+        let carried = SetCurvature::new(set, [&t[0], &t[1]]);
         let b = at(l, &set, rise, lv, e);
         let h = 1e-9;
         for which in 0..2 {
@@ -177,7 +192,8 @@ mod tests {
                 let energy = |s: f64| {
                     let mut m = e;
                     m[which] += axis * (s * h);
-                    at(l, &set, rise, lv, m).energy
+                    let t = m.map(|e| e.normalize());
+                    at(l, &carried.at([&t[0], &t[1]]), rise, lv, m).energy
                 };
                 let got = (energy(1.0) - energy(-1.0)) / (2.0 * h);
                 let want = [b.before, b.after][which].dot(&axis);
@@ -193,6 +209,7 @@ mod tests {
         let lv = 0.5e-3;
         let t = [e[0].normalize(), e[1].normalize()];
         let set = turning([&t[0], &t[1]]) / lv;
+        let carried = SetCurvature::new(set, [&t[0], &t[1]]);
         let b = at(&l, &set, 0.0, lv, e);
         let h = 1e-9;
         let whole = |m: &Symmetric| {
@@ -208,7 +225,8 @@ mod tests {
             let gradient = |s: f64| {
                 let mut m = e;
                 m[which][axis] += s * h;
-                let b = at(&l, &set, 0.0, lv, m);
+                let t = m.map(|e| e.normalize());
+                let b = at(&l, &carried.at([&t[0], &t[1]]), 0.0, lv, m);
                 [b.before, b.after]
             };
             let (p, n) = (gradient(1.0), gradient(-1.0));

@@ -2,7 +2,7 @@
 //!
 //! The same energy as [`super::forces`] without twist, written in edge vectors instead of frames.
 //! The curvature of a joint is the turning angle between its edges about their common normal, over
-//! the Voronoi length. Plastic curvature enters as a vector; the caller turns it along with the
+//! the Voronoi length. Plastic curvature enters as a [vector](SetCurvature) that turns along with the
 //! wire. The Hessian leaves out the second derivative of the angle (Gauss-Newton): what is left is
 //! positive semidefinite whatever the moment. Curvature binormal and its derivative after Bergou
 //! et al., *Discrete Elastic Rods*, 2008; the angle itself in place of twice its tangent.
@@ -13,9 +13,11 @@ use crate::math::V3;
 
 #[cfg(any(test, feature = "lab"))]
 mod bent;
+mod set_curvature;
 
 #[cfg(any(test, feature = "lab"))]
 pub use bent::{Bent, Symmetric, add_square, bent};
+pub use set_curvature::SetCurvature;
 
 /// Smallest `1 + cos` of a turning angle: just short of a complete fold.
 pub(super) const FOLD: f64 = 1e-6;
