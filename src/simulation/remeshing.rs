@@ -119,7 +119,9 @@ impl Winding {
             .filter(|&j| {
                 rod.rest[j] > 1.5 * solver.spacing_near
                     && (self.is_bent(j)
-                        || self.sys.distance_to_core(spin.to_core(rod.x[j])) < reach)
+                        || [rod.x[j], self.sys.centre(j), rod.x[j + 1]]
+                            .iter()
+                            .any(|x| self.sys.distance_to_core(spin.to_core(*x)) < reach))
             })
             .collect()
     }

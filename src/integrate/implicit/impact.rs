@@ -224,8 +224,6 @@ impl Impacts {
     }
 
     /// Gives back what the solve took too much of friction, or takes what it left.
-    ///
-    /// What brakes a slide no more than stops it, and what drives it brings it to no more than the speed at the step's start.
     fn give_back_friction(
         &mut self,
         sys: &mut System,
@@ -236,24 +234,10 @@ impl Impacts {
         let spin = Spin::new(sys.state.spindle.angle);
         let before = Spin::new(old.angle);
         for impulse in &mut self.impulses {
-            let change = impulse.touch.surplus.norm() * impulse.inverse * step.gamma;
-            if change == 0.0 {
-                continue;
-            }
-            let along = impulse.touch.surplus.normalize();
             let past = &sys.state.past;
-            let at_start = |i: usize| {
-                before.to_core(past.v[i] - spin_velocity(old.speed, past.x[i]))
-            };
-            let (mut now, mut then) = (0.0, 0.0);
-            for (i, w) in impulse.nodes() {
-                now += w * self.motion[0][i].dot(&along);
-                then += w * at_start(i).dot(&along);
-            }
-            let most = if now < 0.0 { -now } else { (then - now).max(0.0) };
-            if change > most {
-                impulse.touch.surplus *= most / change;
-            }
+            let at_start =
+                |i: usize| before.to_core(past.v[i] - spin_velocity(old.speed, past.x[i]));
+            impulse.bound_surplus(step.gamma, &self.motion[0], at_start);
             for (i, share) in impulse.shares() {
                 let speed = impulse.touch.surplus * (share * step.gamma);
                 sys.state.rod.v[i] += spin.to_lab(speed);
@@ -351,6 +335,36 @@ mod tests {
             lands: false,
             rebound: 0.0,
             owner: TouchOwner::Point { point: 4, slot: 0 },
+        }
+    }
+
+    /// Friction was given back touch by touch, up to the speed of the wire in any direction. In a wedge this doubled with each touch: wire of
+    /// 0.05 mm came to 1800 m/s.
+    #[test]
+    fn friction_given_back_in_a_wedge_gives_no_motion() {
+        let (below, above) = (V3::y(), V3::new(0.0, -0.8, -0.6));
+        let surplus = [V3::z(), V3::new(0.0, 0.6, -0.8)];
+        for speed in [V3::z(), -V3::z(), V3::y(), V3::new(0.3, -0.8, -0.5)] {
+            let touches =
+                [(below, surplus[0]), (above, surplus[1])].map(|(normal, surplus)| AcceptedTouch {
+                    surplus: surplus * 1e7,
+                    ..touch(normal, surplus * 0.1)
+                });
+            let mut impacts = wedged(speed, &touches);
+            let start = impacts.start[0].clone();
+            for _ in 0..10 {
+                for (impulse, surplus) in impacts.impulses.iter_mut().zip(surplus) {
+                    impulse.touch.surplus = surplus * 1e7;
+                    impulse.bound_surplus(1e-12, &impacts.motion[0], |i| start[i]);
+                    let surplus = impulse.touch.surplus;
+                    for (i, share) in impulse.shares() {
+                        impacts.motion[0][i] += surplus * (share * 1e-12);
+                    }
+                }
+            }
+            let [before, after] = [&impacts.start[0], &impacts.motion[0]].map(|v| energy(v));
+            // (along either direction the wire may become as fast as at the start)
+            assert!(after <= 2.0 * before, "{speed}: {before} J, {after} J");
         }
     }
 

@@ -134,6 +134,33 @@ impl Impulse {
         self.nodes().map(part).sum()
     }
 
+    /// Bounds what the solve took too much of friction, or left: as an impulse over `gamma` (s) it no more than stops a slide of the present
+    /// `motion`, and drives one to no more than its speed at the step's start.
+    pub(super) fn bound_surplus(
+        &mut self,
+        gamma: f64,
+        motion: &[V3],
+        at_start: impl Fn(usize) -> V3,
+    ) {
+        let change = self.touch.surplus.norm() * self.inverse * gamma;
+        if change == 0.0 {
+            return;
+        }
+        let along = self.touch.surplus.normalize();
+        let now = self.part_of(motion, &along);
+        let then: f64 = (self.nodes())
+            .map(|(i, w)| w * at_start(i).dot(&along))
+            .sum();
+        let most = if now < 0.0 {
+            -now
+        } else {
+            (then - now).max(0.0)
+        };
+        if change > most {
+            self.touch.surplus *= most / change;
+        }
+    }
+
     /// All that was added to a part of the motion, N s or N s^2.
     pub(super) fn sum(&self, part: usize) -> V3 {
         self.touch.normal * self.added[part] + self.rubs * self.rubbed[part]

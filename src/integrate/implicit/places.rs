@@ -133,7 +133,6 @@ impl Places {
             _ => self.joints.along(i - 1),
         }
     }
-
 }
 
 /// A vector with components `k` in the frame half-way between the frames of two edges.

@@ -235,7 +235,11 @@ impl Joints for BendingJoints {
         let turned = |v: Lanes3<S>| kb * (mean.dot(kb.cross(v)) * share);
         let more = turned(moment);
         out.store3(GRADIENT[0], j, (t[1].cross(g) * f - along + more) * il[0]);
-        out.store3(GRADIENT[1], j, -((t[0].cross(g) * f + along + more) * il[1]));
+        out.store3(
+            GRADIENT[1],
+            j,
+            -((t[0].cross(g) * f + along + more) * il[1]),
+        );
         if !HESSIAN {
             return;
         }

@@ -66,10 +66,7 @@ mod tests {
     fn vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
         let joint = Joint::between(p, n);
         let half = relative([0.5 * joint.bend[0], 0.5 * joint.bend[1]], 0.0);
-        let (s, c) = (
-            libm::sin(0.25 * joint.twist),
-            libm::cos(0.25 * joint.twist),
-        );
+        let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
         rotate(
             &(p * Quat::new(c, 0.0, 0.0, s) * half),
             &V3::new(k[0], k[1], 0.0),
