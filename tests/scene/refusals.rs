@@ -36,6 +36,24 @@ fn unknown_names_come_with_a_suggestion() {
     }
 }
 
+/// `core.diameter_mm` was answered with `wire.diameter`, which is of another section and without the unit.
+#[test]
+fn a_key_of_the_same_section_is_suggested_first() {
+    for (key, meant) in [
+        ("core.diameter_mm", "core.radius_mm, half the diameter?"),
+        ("core.diameter", "core.radius, half the diameter?"),
+        ("wire.radius_um", "wire.diameter_um, twice the radius?"),
+        ("nozzle.diameter_mm", "nozzle.outer_diameter_mm?"),
+        ("core.flange.distance_mm", "core.flange.inner_distance_mm?"),
+        // no key of the section has such a word
+        ("core.tension", "tensioner.tension?"),
+    ] {
+        let (section, leaf) = key.split_once('.').unwrap();
+        let said = unread(&format!("[{section}]\n{leaf} = 3"));
+        assert_says(&said, &[&format!("did you mean {meant}")]);
+    }
+}
+
 #[test]
 fn wrong_units_types_and_repeats_are_refused() {
     for (text, parts) in [
