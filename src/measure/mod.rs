@@ -27,7 +27,7 @@ mod turn;
 mod words;
 
 pub(crate) use coil::SavedCoil;
-pub use coil::{Coil, CoilSpec, SettledNode};
+pub use coil::{Coil, CoilSpec, SettledNode, added_by_stretch};
 pub use contour::LayerContour;
 pub use defect::{BulgeLimit, Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
 pub use profile::Profile;
