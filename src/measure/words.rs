@@ -69,7 +69,11 @@ pub fn reasons_unjudged(failure: &str, defects: &[Defect]) -> Vec<String> {
         "Not judged, because the run failed before its planned end: {failure}"
     )];
     let found = of_all_kinds(defects);
-    reasons.extend(found.iter().map(|words| format!("Found until then: {words}")));
+    reasons.extend(
+        found
+            .iter()
+            .map(|words| format!("Found until then: {words}")),
+    );
     reasons
 }
 
@@ -89,11 +93,17 @@ fn of_kind(kind: DefectKind, defects: &[Defect]) -> Option<String> {
     })?;
     let words = match of_kind().count() {
         1 => worst.in_words(),
-        count => format!(
-            "{count} times {}; the gravest: {}",
-            kind.words(),
-            worst.in_words()
-        ),
+        count => {
+            let which = match worst.size_m {
+                Some(_) => "the gravest",
+                None => "the first",
+            };
+            format!(
+                "{count} times {}; {which}: {}",
+                kind.words(),
+                worst.in_words()
+            )
+        }
     };
     let mut letters = words.chars();
     Some(letters.next()?.to_uppercase().chain(letters).collect())
@@ -170,13 +180,28 @@ mod tests {
         let said = reasons_unjudged("at t = 0.1 s: not finite", &[]);
         assert_eq!(
             said,
-            [
-                "Not judged, because the run failed before its planned end: at t = 0.1 s: not finite"
-            ]
+            ["Not judged, because the run failed before its planned end: at t = 0.1 s: not finite"]
         );
         let said = reasons_unjudged("", &[gap(2, 0.14e-3)]);
         assert!(
             said[1].starts_with("Found until then: Gap of 0.140 mm"),
+            "{said:?}"
+        );
+    }
+
+    /// Slack has no size, and the first was called the gravest.
+    #[test]
+    fn of_defects_without_a_size_the_first_is_named() {
+        let slack = |turn| Defect {
+            kind: DefectKind::Slack,
+            size_m: None,
+            size_d: None,
+            ..gap(turn, 0.0)
+        };
+        let judged = BulgeLimit::Absolute { limit_m: 1e-3 };
+        let said = reasons(Verdict::Slack, &[slack(2), slack(5)], &[], judged, 0.7e-3);
+        assert!(
+            said[0].starts_with("2 times slack; the first: the wire went slack in turn 2"),
             "{said:?}"
         );
     }
