@@ -139,12 +139,19 @@ impl<'a> Unknown<'a> {
             parameters().find(same_leaf).map(|v| v.name.to_owned())
         };
         let similar = || nearest(self.name, parameters().map(|v| v.name)).map(str::to_owned);
-        self.of_half_or_double()
+        self.section_itself()
+            .or_else(|| self.of_half_or_double())
             .or_else(in_section)
             .or_else(misspelt_unit)
             .or_else(of_word)
             .or_else(elsewhere)
             .or_else(similar)
+    }
+
+    /// A section that was given like a key.
+    fn section_itself(&self) -> Option<String> {
+        let section = sections().into_iter().find(|name| *name == self.name)?;
+        Some(format!("[{section}] with keys under it"))
     }
 
     /// The radius where a diameter was given, and the reverse.
@@ -165,8 +172,10 @@ impl<'a> Unknown<'a> {
     }
 }
 
+/// What a file can hold: `scene.file` names one.
 fn parameters() -> impl Iterator<Item = &'static Variable> {
-    table().iter().filter(|v| is_leaf(v))
+    let in_file = |v: &&Variable| is_leaf(v) && v.name != "scene.file";
+    table().iter().filter(in_file)
 }
 
 fn unknown(

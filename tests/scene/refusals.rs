@@ -54,6 +54,66 @@ fn a_key_of_the_same_section_is_suggested_first() {
     }
 }
 
+/// The range stood in SI only, beside a value in the unit of the key; metres for millimetres got no question back.
+#[test]
+fn a_range_is_told_in_the_unit_of_the_key() {
+    for (text, says) in [
+        (
+            "[core]\nradius_mm = -9",
+            "core.radius_mm = -9 is out of range; allowed: 5e-5 to 1 m, which is 0.05 to 1000 mm",
+        ),
+        (
+            "[spindle]\nspeed_rpm = -500",
+            "allowed: 0.1 to 2000 rad/s, which is 0.95493 to 19098.6 rpm",
+        ),
+        (
+            "[wire]\ndiameter = 0.7",
+            "allowed: 2e-5 to 0.005 m; did you mean wire.diameter_mm?",
+        ),
+        (
+            "[spindle]\nspeed = 3000",
+            "rad/s; did you mean spindle.speed_rpm?",
+        ),
+        (
+            "[wire]\ndiameter_mm = '0.7'",
+            "is a text; allowed is 2e-5 to 0.005 m, which is 0.02 to 5 mm",
+        ),
+        (
+            "wire = 3",
+            "unknown key wire (value 3); did you mean [wire] with keys under it?",
+        ),
+    ] {
+        assert_says(&unread(text), &[says]);
+    }
+    let said = unread("scene = 'fig8'");
+    assert!(!said.contains("did you mean scene.file"), "{said}");
+}
+
+/// Between flanges that leave the wire no room the place of the clamp was refused too, with a range that ran backwards.
+#[test]
+fn what_follows_from_flanges_too_close_is_not_told_again() {
+    let said = refused("[core.flange]\ninner_distance_mm = 0.5");
+    assert_says(&said, &["core.flange.inner_distance", "at least 0.0007 m"]);
+    assert!(!said.contains("start.clamp_y"), "{said}");
+}
+
+/// The file that a run leaves gives every key, and was warned of for keys that stand at their defaults.
+#[test]
+fn a_file_that_a_run_has_left_has_no_keys_without_effect() {
+    let written = parse("").unwrap().to_toml();
+    let (_, warnings) = parse(&written).unwrap().build_with_warnings().unwrap();
+    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
+    assert!(
+        !told.iter().any(|w| w.contains("has no effect")),
+        "{told:?}"
+    );
+    let (_, warnings) = parse("[nozzle]\nlength_mm = 3")
+        .unwrap()
+        .build_with_warnings()
+        .unwrap();
+    assert!(warnings.iter().any(|w| w.key == "nozzle.length"));
+}
+
 #[test]
 fn wrong_units_types_and_repeats_are_refused() {
     for (text, parts) in [
