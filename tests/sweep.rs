@@ -68,11 +68,25 @@ fn a_run_that_fails_has_no_verdict() {
     let out = folder.path().join("out");
     let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
     sweep.args(["sweep", "fig8", "--over", "solver.step=5e-4:5e-4:1"]);
-    sweep.args(["--set", "spindle.turns=1.2", "--out"]).arg(&out);
+    sweep
+        .args(["--set", "spindle.turns=1.2", "--out"])
+        .arg(&out);
     finished(sweep, 0);
     let rows = rows(&out.join("sweep.csv"));
     assert_eq!(rows[0]["outcome"], "failed");
     assert_eq!(rows[0]["verdict"], "unjudged");
+}
+
+/// Such a sweep told nothing: its runs were all the same.
+#[test]
+fn a_range_of_a_key_without_effect_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let over = ["--over", "winding.layers=1:2:2"];
+    let said = complaint(coilwind("sweep", folder.path(), &over), 0);
+    assert!(
+        said.contains("warning: set by name: winding.layers = 2: has no effect"),
+        "{said}"
+    );
 }
 
 #[test]
