@@ -33,13 +33,8 @@ impl Ending {
     /// A coil that the program could not wind to its planned end is not judged: what is missing may hold a defect.
     pub fn judgement(&self, simulation: &Simulation) -> (&'static str, Vec<String>) {
         match self {
-            Self::Failed { reason } => (
-                UNJUDGED,
-                reasons_unjudged(reason, &simulation.defects()),
-            ),
-            Self::Done | Self::Interrupted => {
-                (simulation.verdict().as_str(), simulation.reasons())
-            }
+            Self::Failed { reason } => (UNJUDGED, reasons_unjudged(reason, &simulation.defects())),
+            Self::Done | Self::Interrupted => (simulation.verdict().as_str(), simulation.reasons()),
         }
     }
 }
