@@ -198,12 +198,9 @@ impl SceneSettings {
     /// Keys that were given for another choice.
     fn keys_without_effect(&self) -> Vec<Warning> {
         let mut warnings: Vec<Warning> = Vec::new();
-        // A file that a run has left gives every key; the default of one without effect is no mistake.
-        let default = Self::default();
         let mut warn = |key: &'static str, message: String| {
-            let (origin, value) = (self.told_origin(key), self.shown(key));
-            let given = self.origins.contains_key(key) && value != default.shown(key);
-            if given && !warnings.iter().any(|w| w.key == key) {
+            if self.origins.contains_key(key) && !warnings.iter().any(|w| w.key == key) {
+                let (origin, value) = (self.told_origin(key), self.shown(key));
                 warnings.push(Warning {
                     origin,
                     key,
