@@ -156,7 +156,10 @@ fn the_page_knows_every_kind_of_defect() {
         .iter()
         .map(|defect| defect["kind"].as_str().unwrap())
         .collect();
-    assert_eq!(kinds, ["overstretch"]);
+    assert!(
+        !kinds.is_empty() && kinds.iter().all(|kind| *kind == "overstretch"),
+        "{kinds:?}"
+    );
     let text = page["runs"][0]["wire"]["defect"].as_str().unwrap();
     let bytes = STANDARD.decode(text.strip_prefix("u16:").unwrap()).unwrap();
     let codes: std::collections::BTreeSet<u16> = bytes

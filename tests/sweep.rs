@@ -81,8 +81,11 @@ fn a_run_that_fails_has_no_verdict() {
 #[test]
 fn a_range_of_a_key_without_effect_is_told() {
     let folder = tempfile::tempdir().unwrap();
-    let over = ["--over", "winding.layers=1:2:2"];
-    let said = complaint(coilwind("sweep", folder.path(), &over), 0);
+    let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    sweep.args(["sweep", "fig8", "--over", "winding.layers=1:2:2"]);
+    sweep.args(["--set", "spindle.turns=0.05", "--out"]);
+    sweep.arg(folder.path().join("out"));
+    let said = complaint(sweep, 0);
     assert!(
         said.contains("warning: set by name: winding.layers = 2: has no effect"),
         "{said}"

@@ -65,7 +65,7 @@ impl Grid {
         Ok(grid)
     }
 
-    /// What the scene of the last run warns of that the base does not. The first may have the default of a key without effect.
+    /// What the scene of the last run warns of that the base does not.
     pub(super) fn warnings(&self, known: &[Warning]) -> Result<Vec<Warning>, Failure> {
         let (_, mut warnings) = self.settings(self.runs() - 1)?.build_with_warnings()?;
         warnings.retain(|warning| !known.iter().any(|other| other.key == warning.key));

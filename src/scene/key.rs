@@ -141,9 +141,9 @@ impl<'a> Unknown<'a> {
         let similar = || nearest(self.name, parameters().map(|v| v.name)).map(str::to_owned);
         self.section_itself()
             .or_else(|| self.of_half_or_double())
+            .or_else(of_word)
             .or_else(in_section)
             .or_else(misspelt_unit)
-            .or_else(of_word)
             .or_else(elsewhere)
             .or_else(similar)
     }

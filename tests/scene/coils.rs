@@ -256,7 +256,7 @@ fn a_start_past_a_flange_is_not_within_what_is_allowed() {
     let message = refused(text);
     assert_says(
         &message,
-        &["nozzle.y_start = 0.0041 m", "0.00415 to 0.00415 m"],
+        &["nozzle.y_start = 0.0041 m", "allowed: 0.00415 m"],
     );
     let mended = text.replace("y_start_mm = 4.1", "y_start_mm = 4.15");
     parse(&mended).unwrap().build().expect("within the range");

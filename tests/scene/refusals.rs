@@ -97,23 +97,6 @@ fn what_follows_from_flanges_too_close_is_not_told_again() {
     assert!(!said.contains("start.clamp_y"), "{said}");
 }
 
-/// The file that a run leaves gives every key, and was warned of for keys that stand at their defaults.
-#[test]
-fn a_file_that_a_run_has_left_has_no_keys_without_effect() {
-    let written = parse("").unwrap().to_toml();
-    let (_, warnings) = parse(&written).unwrap().build_with_warnings().unwrap();
-    let told: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-    assert!(
-        !told.iter().any(|w| w.contains("has no effect")),
-        "{told:?}"
-    );
-    let (_, warnings) = parse("[nozzle]\nlength_mm = 3")
-        .unwrap()
-        .build_with_warnings()
-        .unwrap();
-    assert!(warnings.iter().any(|w| w.key == "nozzle.length"));
-}
-
 #[test]
 fn wrong_units_types_and_repeats_are_refused() {
     for (text, parts) in [
