@@ -83,7 +83,7 @@ fn a_range_of_a_key_without_effect_is_told() {
     let folder = tempfile::tempdir().unwrap();
     let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
     sweep.args(["sweep", "fig8", "--over", "winding.layers=1:2:2"]);
-    sweep.args(["--set", "spindle.turns=0.05", "--out"]);
+    sweep.args(["--set", "spindle.turns=0.3", "--out"]);
     sweep.arg(folder.path().join("out"));
     let said = complaint(sweep, 0);
     assert!(
