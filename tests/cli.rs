@@ -322,6 +322,38 @@ fn defects_fail_only_where_asked() {
     assert!(said.contains("break"), "{said}");
 }
 
+/// A run that failed had the verdict of what had settled until then, such as aligned, and ended without its three lines.
+///
+/// Steps of half a millisecond that the solver may not shorten do not get past a corner of the core.
+#[test]
+fn a_run_that_fails_is_not_judged() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut run = coilwind(&["run", "fig8", "--set", "spindle.turns=1.2"]);
+    run.args(["--set", "solver.step=5e-4", "--out"]).arg(&out);
+    let output = finished(&mut run, 3);
+    let summary = json(&out.join("summary.json"));
+    assert_eq!(summary["status"], "failed");
+    assert_eq!(summary["verdict"], "unjudged");
+    let reasons = summary["reasons"].as_array().unwrap();
+    let why = summary["reason"].as_str().unwrap();
+    assert_eq!(reasons.len(), 1, "{reasons:?}");
+    let first = reasons[0].as_str().unwrap();
+    assert!(
+        first.starts_with("Not judged") && first.ends_with(why),
+        "{first}"
+    );
+
+    let said = String::from_utf8(output.stdout).unwrap();
+    let lines: Vec<&str> = said.lines().collect();
+    assert_eq!(lines.len(), 3, "verdict, why and where: {said}");
+    assert!(lines[0].starts_with("verdict: unjudged;"), "{said}");
+    assert_eq!(lines[1], format!("why: {first}"));
+    assert!(lines[2].ends_with("report.html"), "{said}");
+    let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+    assert!(page.contains("\"verdict\":\"unjudged\""));
+}
+
 /// A broken wire ended with status done, verdict aligned and no word.
 #[test]
 fn a_broken_wire_is_no_success() {

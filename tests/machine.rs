@@ -137,6 +137,49 @@ fn a_damped_tensioner_pulls_harder_the_faster_the_wire_comes() {
     );
 }
 
+/// Resistance left the plastic stretch out: soft wire that is drawn thin had that of its section before.
+#[test]
+fn wire_that_is_stretched_for_good_resists_more() {
+    let run = on_a_cylinder(&[
+        ("wire.elastic", "false"),
+        ("wire.material", "aluminium"),
+        ("wire.yield_stress", "28e6"),
+    ]);
+    let (o, wire) = (*run.outputs(), run.scene().wire.clone());
+    let resistivity = run.scene().resistivity;
+    let unstretched = |length: f64| resistivity * length / wire.bare_area();
+    // the sum of L^2 / V over the edges of the wire up to a place
+    let line = run.centreline();
+    let stretched = |length: f64| -> f64 {
+        let edges = line.arc.windows(2).zip(&line.plastic_strain);
+        let of = |(ends, strain): (&[f64], &f64)| {
+            let rest = (ends[1].min(length) - ends[0]).max(0.0);
+            let (long, volume) = (rest * (1.0 + strain), rest * wire.bare_area());
+            if rest > 0.0 {
+                resistivity * long * long / volume
+            } else {
+                0.0
+            }
+        };
+        edges.map(of).sum()
+    };
+    let expected = stretched(o.wire_length);
+    assert!(expected > 1.02 * unstretched(o.wire_length), "{expected}");
+    assert!(
+        (o.wire_resistance / expected - 1.0).abs() < 1e-9,
+        "{} {expected}",
+        o.wire_resistance
+    );
+    let product = run.product();
+    assert!(product.wire_length_m > 0.03 && product.wire_length_m < o.wire_length);
+    let expected = stretched(product.wire_length_m);
+    assert!(
+        (product.resistance_ohm / expected - 1.0).abs() < 1e-9,
+        "{} {expected}",
+        product.resistance_ohm
+    );
+}
+
 /// Inertia and resistance are those of wire laid on a circle.
 #[test]
 fn the_coil_has_the_inertia_and_resistance_of_its_wire() {

@@ -135,6 +135,40 @@ fn the_page_holds_the_numbers_of_the_run() {
     );
 }
 
+/// Kinds of defect with codes above 255 became all kinds at once: stretched wire had the colour of a double turn.
+#[test]
+fn the_page_knows_every_kind_of_defect() {
+    let folder = tempfile::tempdir().unwrap();
+    let soft = [
+        "--set",
+        "wire.material=aluminium",
+        "--set",
+        "wire.yield_stress=28e6",
+        "--set",
+        "spindle.speed=100",
+    ];
+    wind(folder.path(), &soft);
+    let page = data(&folder.path().join("report.html"));
+    let summary = &page["runs"][0]["summary"];
+    let kinds: Vec<&str> = summary["defects"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|defect| defect["kind"].as_str().unwrap())
+        .collect();
+    assert!(
+        !kinds.is_empty() && kinds.iter().all(|kind| *kind == "overstretch"),
+        "{kinds:?}"
+    );
+    let text = page["runs"][0]["wire"]["defect"].as_str().unwrap();
+    let bytes = STANDARD.decode(text.strip_prefix("u16:").unwrap()).unwrap();
+    let codes: std::collections::BTreeSet<u16> = bytes
+        .chunks(2)
+        .map(|c| u16::from_le_bytes(c.try_into().unwrap()))
+        .collect();
+    assert_eq!(codes, [0, 1024].into());
+}
+
 #[test]
 fn a_product_has_the_length_and_resistance_of_its_wire() {
     let folder = tempfile::tempdir().unwrap();
@@ -157,6 +191,20 @@ fn a_product_has_the_length_and_resistance_of_its_wire() {
         "{got} ohm for {expected}"
     );
     assert!(!folder.path().join("report.html").exists());
+}
+
+#[test]
+fn a_file_is_no_folder_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("summary.json");
+    std::fs::write(&file, "{}").unwrap();
+    let output = coilwind(&["report", file.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(
+        said(&output).contains("summary.json is a file; name the folder of a run"),
+        "{}",
+        said(&output)
+    );
 }
 
 #[test]

@@ -61,6 +61,37 @@ const GRID: [&str; 6] = [
 ];
 
 /// Rows stood in the order in which runs ended, and another number of threads made another table.
+/// A run that failed had the verdict of what had settled until then.
+#[test]
+fn a_run_that_fails_has_no_verdict() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    sweep.args(["sweep", "fig8", "--over", "solver.step=5e-4:5e-4:1"]);
+    sweep
+        .args(["--set", "spindle.turns=1.2", "--out"])
+        .arg(&out);
+    finished(sweep, 0);
+    let rows = rows(&out.join("sweep.csv"));
+    assert_eq!(rows[0]["outcome"], "failed");
+    assert_eq!(rows[0]["verdict"], "unjudged");
+}
+
+/// Such a sweep told nothing: its runs were all the same.
+#[test]
+fn a_range_of_a_key_without_effect_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    sweep.args(["sweep", "fig8", "--over", "winding.layers=1:2:2"]);
+    sweep.args(["--set", "spindle.turns=0.3", "--out"]);
+    sweep.arg(folder.path().join("out"));
+    let said = complaint(sweep, 0);
+    assert!(
+        said.contains("warning: set by name: winding.layers = 2: has no effect"),
+        "{said}"
+    );
+}
+
 #[test]
 fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
     let folder = tempfile::tempdir().unwrap();

@@ -40,7 +40,7 @@ pub(super) fn motion(args: &MotionArgs) -> Result<(), Failure> {
         return Err(Failure::Signals {
             file: format!("--step {}", args.step),
             reason: format!(
-                "allowed: {} s to the length of the motion, {end} s",
+                "allowed: {:.3e} s to the length of the motion, {end} s",
                 end / MOST_ROWS
             ),
         });

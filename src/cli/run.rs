@@ -201,6 +201,10 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
         Err(Stop::Files(failure)) => return Err(failure),
         Err(Stop::Solver(reason)) => {
             Checkpoint::remove(&directory)?;
+            // Lines that say where to look, only where there is something to look at.
+            if written.is_ok() {
+                tell(args, &simulation, &ending, page.as_deref(), &directory)?;
+            }
             return Err(Failure::Solver {
                 reason,
                 directory: place,
@@ -316,36 +320,23 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     })
 }
 
-/// Three lines: the verdict, why, and where to look; exit code 1 where defects were asked to fail.
+/// Tells the end of a run that was wound as planned; exit code 1 where defects were asked to fail.
 fn conclude(
     args: &RunArgs,
     simulation: &Simulation,
     page: Option<&Path>,
     directory: &Path,
 ) -> Result<Judged, Failure> {
-    let outputs = simulation.outputs();
     let (verdict, defects) = (simulation.verdict(), simulation.defects());
-    if !args.quiet {
-        if args.verbose {
-            for d in &simulation.scene().skipped {
-                print(&format!(
-                    "{} = {} ({}): {}\n",
-                    d.name, d.decision, d.setting, d.why
-                ))?;
-            }
+    if args.verbose {
+        for d in &simulation.scene().skipped {
+            print(&format!(
+                "{} = {} ({}): {}\n",
+                d.name, d.decision, d.setting, d.why
+            ))?;
         }
-        let place = match page {
-            Some(page) => format!("report: {}", page.display()),
-            None => format!("results: {}", directory.display()),
-        };
-        print(&format!(
-            "verdict: {verdict}; {:.2} turns wound, {:.2} settled in {:.6} s\nwhy: {}\n{place}\n",
-            outputs.turns_wound,
-            outputs.turns_settled,
-            simulation.time(),
-            simulation.reasons().join("; "),
-        ))?;
     }
+    tell(args, simulation, &Ending::Done, page, directory)?;
     let defect = !defects.is_empty() || verdict.is_defect();
     if args.fail_on_defect && defect {
         return Err(Failure::Defect {
@@ -353,6 +344,32 @@ fn conclude(
         });
     }
     Ok(Judged { verdict, defect })
+}
+
+/// Three lines: the verdict, why, and where to look. They say what `summary.json` says.
+fn tell(
+    args: &RunArgs,
+    simulation: &Simulation,
+    ending: &Ending,
+    page: Option<&Path>,
+    directory: &Path,
+) -> Result<(), Failure> {
+    if args.quiet {
+        return Ok(());
+    }
+    let outputs = simulation.outputs();
+    let (verdict, reasons) = ending.judgement(simulation);
+    let place = match page {
+        Some(page) => format!("report: {}", page.display()),
+        None => format!("results: {}", directory.display()),
+    };
+    print(&format!(
+        "verdict: {verdict}; {:.2} turns wound, {:.2} settled in {:.6} s\nwhy: {}\n{place}\n",
+        outputs.turns_wound,
+        outputs.turns_settled,
+        simulation.time(),
+        reasons.join("; "),
+    ))
 }
 
 /// How many defects of each kind there are, in words.

@@ -183,10 +183,10 @@ fn columns(
         }
         let Some(row) = inputs().find(|v| v.name == name) else {
             let guess = inputs()
-                .map(|v| (strsim::jaro_winkler(v.name, name), v.name))
+                .map(|v| (strsim::jaro_winkler(v.name, name), v))
                 .filter(|g| g.0 > 0.8)
                 .max_by(|a, b| a.0.total_cmp(&b.0))
-                .map(|g| format!("; did you mean {}?", g.1))
+                .map(|g| format!("; did you mean {}, in {}?", g.1.name, g.1.unit))
                 .unwrap_or_default();
             return Err(bad(format!(
                 "unknown column {name}{guess} (allowed: time, {})",

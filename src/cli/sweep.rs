@@ -60,6 +60,11 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         None => args.over.clone(),
     };
     let grid = Grid::new(base, ranges, args.ensemble)?;
+    if !args.quiet {
+        // Runs over a key without effect would all be the same.
+        let more = grid.warnings(&warnings)?;
+        more.iter().for_each(|w| eprintln!("warning: {w}"));
+    }
     let ledger = Ledger::open(&args.out, &grid, args.find_max.is_some(), args.force)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads)

@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::members;
 use super::sweep_range::Range;
+use coilwind::scene::Warning;
 use coilwind::settings::SceneSettings;
 use coilwind::variables::{Kind, by_name};
 
@@ -62,6 +63,13 @@ impl Grid {
             grid.settings(run)?.build_with_warnings()?;
         }
         Ok(grid)
+    }
+
+    /// What the scene of the last run warns of that the base does not.
+    pub(super) fn warnings(&self, known: &[Warning]) -> Result<Vec<Warning>, Failure> {
+        let (_, mut warnings) = self.settings(self.runs() - 1)?.build_with_warnings()?;
+        warnings.retain(|warning| !known.iter().any(|other| other.key == warning.key));
+        Ok(warnings)
     }
 
     pub(super) fn points(&self) -> usize {

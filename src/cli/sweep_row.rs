@@ -1,5 +1,6 @@
 //! What a run of a sweep leaves in `sweep.csv`: the values that were swept, then this.
 
+use coilwind::measure::UNJUDGED;
 use coilwind::simulation::SimError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -80,7 +81,7 @@ impl Row {
     pub(super) fn failed_to_start(member: u32, reason: &SimError) -> Self {
         Self {
             member,
-            verdict: "unsettled".to_owned(),
+            verdict: UNJUDGED.to_owned(),
             defect: false,
             outcome: "failed".to_owned(),
             reason: reason.to_string(),

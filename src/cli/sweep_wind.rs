@@ -3,7 +3,7 @@
 use super::drive::{Drive, Motion};
 use super::failure::Failure;
 use super::sweep_row::Row;
-use coilwind::measure::DefectKind;
+use coilwind::measure::{DefectKind, UNJUDGED};
 use coilwind::settings::SceneSettings;
 use coilwind::simulation::{SimError, Simulation};
 use cpu_time::ThreadTime;
@@ -70,7 +70,10 @@ fn judge(
     let bulges = turns.iter().filter_map(|turn| turn.bulge_excess_max);
     Row {
         member,
-        verdict: simulation.verdict().as_str().to_owned(),
+        verdict: match failed {
+            Some(_) => UNJUDGED.to_owned(),
+            None => simulation.verdict().as_str().to_owned(),
+        },
         defect: !defects.is_empty() || simulation.verdict().is_defect(),
         outcome: if failed.is_some() { "failed" } else { "done" }.to_owned(),
         reason: failed.map_or_else(String::new, |reason| reason.to_string()),

@@ -86,7 +86,30 @@ pub(crate) struct Node {
     pub(crate) height_max: f64,
     /// square of the distance from the axis, summed over the wire up to here, m3
     second_moment: f64,
+    /// what plastic stretch adds to the wire's resistance up to here, see [`Coil::added_by_stretch`], m
+    added_by_stretch: f64,
     stations_before: usize,
+}
+
+impl Node {
+    /// [`Coil::added_by_stretch`] of a place behind this node and not behind the next, m.
+    fn added_by_stretch_to(&self, arc: f64) -> f64 {
+        let SettledNode {
+            arc: from,
+            plastic_strain,
+            ..
+        } = self.settled;
+        self.added_by_stretch + added_by_stretch(arc - from, plastic_strain)
+    }
+}
+
+/// Length of unstretched wire, m, that would add as much to the resistance of so much unstretched wire, m, as its plastic
+/// stretch does.
+///
+/// Plastic flow keeps the volume: wire that is longer by `1 + e` has a section smaller by as much, and `(1 + e)^2` times the
+/// resistance.
+pub fn added_by_stretch(length: f64, plastic_strain: f64) -> f64 {
+    length * plastic_strain * (2.0 + plastic_strain)
 }
 
 /// A station with all that is known after it.
@@ -290,7 +313,7 @@ impl Coil {
         let angle = from_angle + self.spec.direction * wrap_to_pi(polar - from_polar);
         let (mut y_min, mut y_max) = (settled.position.y, settled.position.y);
         let mut height_max = settled.height;
-        let mut second_moment = 0.0;
+        let (mut second_moment, mut added_by_stretch) = (0.0, 0.0);
         if let Some(last) = self.nodes.last() {
             y_min = y_min.min(last.y_min);
             y_max = y_max.max(last.y_max);
@@ -298,6 +321,7 @@ impl Coil {
             let [square, before] = [settled, last.settled].map(|n| n.position.xz().norm_squared());
             second_moment =
                 last.second_moment + 0.5 * (settled.arc - last.settled.arc) * (square + before);
+            added_by_stretch = last.added_by_stretch_to(settled.arc);
         }
         self.nodes.push(Node {
             settled,
@@ -308,6 +332,7 @@ impl Coil {
             y_max,
             height_max,
             second_moment,
+            added_by_stretch,
             stations_before: self.records.len(),
         });
         while self.records.len() as f64 * STATION_STEP <= angle + HAIR {
@@ -318,6 +343,22 @@ impl Coil {
     /// Square of the distance from the axis over the length of the settled wire, m3.
     pub fn second_moment(&self) -> f64 {
         self.nodes.last().map_or(0.0, |node| node.second_moment)
+    }
+
+    /// Length of unstretched wire, m, that would add as much to the resistance as plastic stretch does between the clamp and
+    /// the place `arc`, m of unstretched wire from there. See [`added_by_stretch`]. Wire behind the last node counts as
+    /// stretched like the wire before it.
+    pub fn added_by_stretch(&self, arc: f64) -> f64 {
+        let (mut before, mut after) = (0, self.nodes.len());
+        while before < after {
+            let middle = usize::midpoint(before, after);
+            match self.nodes[middle].settled.arc <= arc {
+                true => before = middle + 1,
+                false => after = middle,
+            }
+        }
+        let node = before.checked_sub(1).map(|node| &self.nodes[node]);
+        node.map_or(0.0, |node| node.added_by_stretch_to(arc))
     }
 
     /// Winding angle at which the pass of the wire at this winding angle begins, rad.

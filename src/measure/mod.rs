@@ -27,14 +27,14 @@ mod turn;
 mod words;
 
 pub(crate) use coil::SavedCoil;
-pub use coil::{Coil, CoilSpec, SettledNode};
+pub use coil::{Coil, CoilSpec, SettledNode, added_by_stretch};
 pub use contour::LayerContour;
 pub use defect::{BulgeLimit, Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
 pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};
 pub use turn::{TurnMeasures, Verdict};
-pub use words::reasons;
+pub use words::{UNJUDGED, reasons, reasons_unjudged};
 
 /// Polar stations per turn, one per degree.
 ///

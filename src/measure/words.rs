@@ -35,6 +35,11 @@ impl Defect {
     }
 }
 
+/// The word that stands in place of a verdict where a run failed.
+///
+/// It is no [`Verdict`]: wire that came to rest before keeps the verdict of its turn.
+pub const UNJUDGED: &str = "unjudged";
+
 /// Why a run has its verdict: a sentence for each reason, the gravest first.
 ///
 /// `diameter` is that of the wire, m.
@@ -45,10 +50,7 @@ pub fn reasons(
     judged: BulgeLimit,
     diameter: f64,
 ) -> Vec<String> {
-    let mut reasons: Vec<String> = DefectKind::ALL
-        .into_iter()
-        .filter_map(|kind| of_kind(kind, defects))
-        .collect();
+    let mut reasons = of_all_kinds(defects);
     if reasons.is_empty() {
         reasons.push(without_defect(verdict, turns, diameter));
     }
@@ -61,6 +63,26 @@ pub fn reasons(
     reasons
 }
 
+/// Why a run that failed is [`UNJUDGED`]: what it failed with, then the defects found until then, the gravest first.
+pub fn reasons_unjudged(failure: &str, defects: &[Defect]) -> Vec<String> {
+    let mut reasons = vec![format!(
+        "Not judged, because the run failed before its planned end: {failure}"
+    )];
+    let found = of_all_kinds(defects);
+    reasons.extend(
+        found
+            .iter()
+            .map(|words| format!("Found until then: {words}")),
+    );
+    reasons
+}
+
+/// A sentence for each kind of defect that there is, the gravest first.
+fn of_all_kinds(defects: &[Defect]) -> Vec<String> {
+    let kinds = DefectKind::ALL.into_iter();
+    kinds.filter_map(|kind| of_kind(kind, defects)).collect()
+}
+
 /// The defects of one kind: how many, and the largest.
 fn of_kind(kind: DefectKind, defects: &[Defect]) -> Option<String> {
     let of_kind = || defects.iter().filter(|defect| defect.kind == kind);
@@ -71,11 +93,17 @@ fn of_kind(kind: DefectKind, defects: &[Defect]) -> Option<String> {
     })?;
     let words = match of_kind().count() {
         1 => worst.in_words(),
-        count => format!(
-            "{count} times {}; the gravest: {}",
-            kind.words(),
-            worst.in_words()
-        ),
+        count => {
+            let which = match worst.size_m {
+                Some(_) => "the gravest",
+                None => "the first",
+            };
+            format!(
+                "{count} times {}; {which}: {}",
+                kind.words(),
+                worst.in_words()
+            )
+        }
     };
     let mut letters = words.chars();
     Some(letters.next()?.to_uppercase().chain(letters).collect())
@@ -143,6 +171,37 @@ mod tests {
         let said = reasons(Verdict::Gap, &defects[..1], &[], judged, 0.7e-3);
         assert!(
             said[0].starts_with("Gap of 0.140 mm (0.20 d) in turn 2"),
+            "{said:?}"
+        );
+    }
+
+    #[test]
+    fn a_run_that_failed_is_not_judged_and_keeps_what_it_found() {
+        let said = reasons_unjudged("at t = 0.1 s: not finite", &[]);
+        assert_eq!(
+            said,
+            ["Not judged, because the run failed before its planned end: at t = 0.1 s: not finite"]
+        );
+        let said = reasons_unjudged("", &[gap(2, 0.14e-3)]);
+        assert!(
+            said[1].starts_with("Found until then: Gap of 0.140 mm"),
+            "{said:?}"
+        );
+    }
+
+    /// Slack has no size, and the first was called the gravest.
+    #[test]
+    fn of_defects_without_a_size_the_first_is_named() {
+        let slack = |turn| Defect {
+            kind: DefectKind::Slack,
+            size_m: None,
+            size_d: None,
+            ..gap(turn, 0.0)
+        };
+        let judged = BulgeLimit::Absolute { limit_m: 1e-3 };
+        let said = reasons(Verdict::Slack, &[slack(2), slack(5)], &[], judged, 0.7e-3);
+        assert!(
+            said[0].starts_with("2 times slack; the first: the wire went slack in turn 2"),
             "{said:?}"
         );
     }

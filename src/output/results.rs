@@ -6,7 +6,7 @@ use super::{
 };
 use crate::geometry::Surface;
 use crate::math::V3;
-use crate::measure::Station;
+use crate::measure::{Station, UNJUDGED, reasons_unjudged};
 use crate::simulation::{Centreline, SimError, Simulation, Summary};
 use serde::Serialize;
 use std::path::Path;
@@ -20,11 +20,23 @@ pub enum Ending {
     Done,
     /// before its planned end
     Interrupted,
-    /// the solver gave up
+    /// the solver gave up, or a file could not be written
     Failed {
         /// time, place and reason
         reason: String,
     },
+}
+
+impl Ending {
+    /// The word for the verdict on a run that ended so, and why, the gravest first.
+    ///
+    /// A coil that the program could not wind to its planned end is not judged: what is missing may hold a defect.
+    pub fn judgement(&self, simulation: &Simulation) -> (&'static str, Vec<String>) {
+        match self {
+            Self::Failed { reason } => (UNJUDGED, reasons_unjudged(reason, &simulation.defects())),
+            Self::Done | Self::Interrupted => (simulation.verdict().as_str(), simulation.reasons()),
+        }
+    }
 }
 
 /// What `summary.json` holds: how the run ended, how long it took, and the run itself.
@@ -139,7 +151,9 @@ pub fn write_results(
     ending: &Ending,
     wall_s: f64,
 ) -> Result<(), OutputError> {
-    let summary = simulation.summary();
+    let mut summary = simulation.summary();
+    let (verdict, reasons) = ending.judgement(simulation);
+    (summary.verdict, summary.reasons) = (verdict.to_owned(), reasons);
     let turns = write_turns(&directory.join("turns.csv"), &summary.turns);
     let defects = write_defects(&directory.join("defects.csv"), &summary.defects);
     let real_time_factor = if wall_s > 0.0 {

@@ -1,5 +1,6 @@
 //! How a leaf of the settings is set: by name, with a unit, checked against its row.
 
+use super::allowed::{allowed_for, unit_meant};
 use super::error::Warning;
 use super::key::{Key, resolve};
 use super::problems::Problems;
@@ -86,7 +87,7 @@ impl SceneSettings {
             key: name.into(),
             value: given.to_string().into(),
             found: found.into(),
-            allowed: variable.allowed().into(),
+            allowed: allowed_for(name, variable, scale).into(),
         };
         let value = match (&given, variable.kind) {
             (Given::Value(Value::Real(x)), Kind::Real) => Value::Real(scaled(*x, scale)),
@@ -120,11 +121,15 @@ impl SceneSettings {
             (Given::Text(text), Kind::String) => Value::String((*text).to_owned()),
         };
         if !variable.admits(&value) {
+            let meant = match given {
+                Given::Number(_) | Given::Text(_) => unit_meant(name, variable, &value),
+                _ => String::new(),
+            };
             return Err(SceneError::OutOfRange {
                 origin,
                 key: name.into(),
                 value: given.to_string().into(),
-                allowed: variable.allowed().into(),
+                allowed: (allowed_for(name, variable, scale) + &meant).into(),
             });
         }
         if let Access::Parameter { set, .. } = variable.access {

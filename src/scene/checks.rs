@@ -68,7 +68,8 @@ impl SceneSettings {
             low + wire.radius() - rounding,
             high - wire.radius() + rounding,
         );
-        if !(low..=high).contains(&self.start.clamp_y) {
+        // (between flanges that leave the wire no room no place would do: their distance has been refused)
+        if low <= high && !(low..=high).contains(&self.start.clamp_y) {
             problems.add(self.impossible(
                 "start.clamp_y",
                 match extent.window {

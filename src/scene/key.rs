@@ -75,56 +75,127 @@ pub(super) fn nearest<'a>(name: &str, names: impl Iterator<Item = &'a str>) -> O
         .map(|(_, candidate)| candidate)
 }
 
+/// A key that is no leaf, taken apart.
+struct Unknown<'a> {
+    /// as given
+    name: &'a str,
+    section: &'a str,
+    /// after the section
+    leaf: &'a str,
+    /// the same without its unit, where it ends in one
+    stem: &'a str,
+    /// the unit that it ends in, in SI
+    unit: Option<&'static str>,
+}
+
+impl<'a> Unknown<'a> {
+    fn new(name: &'a str, split: Option<(&'a str, &'static str, Scale)>) -> Self {
+        let (section, leaf) = name.split_once('.').unwrap_or(("", name));
+        let stem = split.map_or(leaf, |(stem, ..)| {
+            stem.split_once('.').map_or(stem, |(_, leaf)| leaf)
+        });
+        Self {
+            name,
+            section,
+            leaf,
+            stem,
+            unit: split.map(|(_, unit, _)| unit),
+        }
+    }
+
+    /// The leaves of the section, with their variables.
+    fn siblings(&self) -> impl Iterator<Item = (&'static str, &'static Variable)> {
+        parameters().filter_map(|variable| {
+            let (section, leaf) = variable.name.split_once('.')?;
+            (section == self.section).then_some((leaf, variable))
+        })
+    }
+
+    /// The leaves of the section that can have the unit that was given; all of them without one.
+    fn of_unit(&self) -> impl Iterator<Item = &'static str> {
+        let fits = |v: &Variable| self.unit.is_none_or(|unit| v.unit == unit);
+        self.siblings()
+            .filter_map(move |(leaf, v)| fits(v).then_some(leaf))
+    }
+
+    /// A leaf of the section as it would be written, with the unit that was given.
+    fn written(&self, leaf: &str) -> String {
+        let unit = &self.leaf[self.stem.len()..];
+        format!("{}.{leaf}{unit}", self.section)
+    }
+
+    /// The key that was meant, as far as one can guess. A key of the same section is nearer than any other.
+    fn suggestion(&self) -> Option<String> {
+        let in_section = || nearest(self.stem, self.of_unit()).map(|leaf| self.written(leaf));
+        let misspelt_unit = || {
+            let found = nearest(self.leaf, self.siblings().map(|(leaf, _)| leaf))?;
+            Some(format!("{}.{found}", self.section))
+        };
+        let of_word = || self.of_same_word().map(|leaf| self.written(leaf));
+        let elsewhere = || {
+            // The right leaf in the wrong section, or a name without one.
+            let same_leaf =
+                |v: &&Variable| matches!(v.name.split_once('.'), Some((_, l)) if l == self.stem);
+            parameters().find(same_leaf).map(|v| v.name.to_owned())
+        };
+        let similar = || nearest(self.name, parameters().map(|v| v.name)).map(str::to_owned);
+        self.section_itself()
+            .or_else(|| self.of_half_or_double())
+            .or_else(of_word)
+            .or_else(in_section)
+            .or_else(misspelt_unit)
+            .or_else(elsewhere)
+            .or_else(similar)
+    }
+
+    /// A section that was given like a key.
+    fn section_itself(&self) -> Option<String> {
+        let section = sections().into_iter().find(|name| *name == self.name)?;
+        Some(format!("[{section}] with keys under it"))
+    }
+
+    /// The radius where a diameter was given, and the reverse.
+    fn of_half_or_double(&self) -> Option<String> {
+        let (leaf, share) = match self.stem.contains("diameter") {
+            true => (self.stem.replace("diameter", "radius"), "half the diameter"),
+            false => (self.stem.replace("radius", "diameter"), "twice the radius"),
+        };
+        let found = self.of_unit().any(|sibling| sibling == leaf);
+        (leaf != self.stem && found).then(|| format!("{}, {share}", self.written(&leaf)))
+    }
+
+    /// The first leaf of the section that has each word of the key among its own.
+    fn of_same_word(&self) -> Option<&'static str> {
+        let words = |text: &'a str| text.split(['.', '_']).filter(|word| !word.is_empty());
+        self.of_unit()
+            .find(|leaf| words(self.stem).all(|word| leaf.split(['.', '_']).any(|w| w == word)))
+    }
+}
+
+/// What a file can hold: `scene.file` names one.
+fn parameters() -> impl Iterator<Item = &'static Variable> {
+    let in_file = |v: &&Variable| is_leaf(v) && v.name != "scene.file";
+    table().iter().filter(in_file)
+}
+
 fn unknown(
     name: &str,
     value: &str,
     origin: &Origin,
     split: Option<(&str, &'static str, Scale)>,
 ) -> SceneError {
-    let parameters = || table().iter().filter(|v| is_leaf(v));
-    let (section, leaf) = name.split_once('.').unwrap_or(("", name));
-    let in_section = |v: &&Variable| {
-        v.name
-            .split_once('.')
-            .is_some_and(|(head, _)| head == section)
-    };
-    let siblings: Vec<_> = parameters()
-        .filter(in_section)
-        .filter_map(|v| Some(v.name.split_once('.')?.1))
-        .collect();
-
-    // With a unit, look for the stem among leaves that can have it, and give the unit back.
-    let with_unit = split.and_then(|(stem, unit, _)| {
-        let (_, stem_leaf) = stem.split_once('.')?;
-        let of_unit = parameters().filter(in_section).filter(|v| v.unit == unit);
-        let found = nearest(
-            stem_leaf,
-            of_unit.filter_map(|v| Some(v.name.split_once('.')?.1)),
-        )?;
-        Some(format!("{section}.{found}{}", &name[stem.len()..]))
-    });
-    let suggestion = with_unit
-        .or_else(|| {
-            let found = nearest(leaf, siblings.iter().copied())?;
-            Some(format!("{section}.{found}"))
-        })
-        .or_else(|| {
-            // The right leaf in the wrong section, or a name without one.
-            let stem = split.map_or(leaf, |(s, ..)| s.split_once('.').map_or(s, |(_, l)| l));
-            let same_leaf = |v: &&Variable| v.name.split_once('.').is_some_and(|(_, l)| l == stem);
-            parameters().find(same_leaf).map(|v| v.name.to_owned())
-        })
-        .or_else(|| nearest(name, parameters().map(|v| v.name)).map(str::to_owned));
+    let key = Unknown::new(name, split);
+    let siblings: Vec<_> = key.siblings().map(|(leaf, _)| leaf).collect();
     let allowed = if siblings.is_empty() {
         format!("sections are {}", sections().join(", "))
     } else {
-        format!("keys of [{section}]: {}", siblings.join(", "))
+        format!("keys of [{}]: {}", key.section, siblings.join(", "))
     };
     SceneError::UnknownKey {
         origin: origin.clone(),
         key: name.into(),
         value: value.into(),
-        suggestion: suggestion.map(Into::into),
+        suggestion: key.suggestion().map(Into::into),
         allowed: allowed.into(),
     }
 }

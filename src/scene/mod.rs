@@ -4,6 +4,7 @@
 //! packed scene, then single values); its `build` validates them into a [`Scene`], which
 //! everything else reads.
 
+mod allowed;
 mod assign;
 mod build;
 mod checks;

@@ -328,12 +328,11 @@ impl SceneSettings {
             "table" => law.start(),
             _ => self.nozzle.y_start,
         };
+        let places = [ends[0] + (start - least), ends[1] - (largest - start)].map(si);
         let allowed = match room >= 0.0 {
-            true => format!(
-                "{} to {} m",
-                si(ends[0] + (start - least)),
-                si(ends[1] - (largest - start))
-            ),
+            // a layer that fills the window leaves one place
+            true if places[0] == places[1] => format!("{} m", places[0]),
+            true => format!("{} to {} m", places[0], places[1]),
             false => format!("a way of {} m at most", si(ends[1] - ends[0])),
         };
         let key = match (self.traverse.mode.as_str(), room >= 0.0) {

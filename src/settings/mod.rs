@@ -144,7 +144,10 @@ pub struct SolverSettings {
     pub integrator: String,
     /// how the wire's twist is carried; auto: the least that matters; dynamic with the explicit methods (one of `auto`, `off`, `quasi-static`, `dynamic`)
     pub twist: String,
-    /// node spacing near the core, m; 0: 0.5 mm explicit; implicit as the wire's diameter, 0.3 mm for 0.7 mm, coarser as the cube root of a tolerance above its own, halved until below 0.45 of the radius that corners bend the wire to
+    /// node spacing near the core, m; 0: 0.5 mm explicit, implicit 0.3 mm for wire of 0.7 mm and in proportion to its diameter
+    ///
+    /// The implicit one is coarser as the cube root of a tolerance above its own. It is halved until below 0.45 of the radius that
+    /// corners bend the wire to.
     pub spacing_near: f64,
     /// node spacing in the free span, m; 0: 1 mm explicit, eight times that near the core implicit
     pub spacing_free: f64,

@@ -41,7 +41,7 @@ impl Winding {
         self.report(
             EventKind::Slack,
             format!(
-                "the wire went slack at the nozzle (tension below {SLACK} N); raise tension_setpoint or change the spindle's speed more gently"
+                "the wire went slack at the nozzle (tension below {SLACK} N); raise the tension (tensioner.tension, or the input tension_setpoint) or change the spindle's speed more gently"
             ),
         );
     }

@@ -2,6 +2,7 @@
 
 use super::Winding;
 use crate::math::{Spin, V3, polar_angle, scaled, wrap_to_pi};
+use crate::measure::added_by_stretch;
 
 /// Clearance up to which wire lies on the core, m, for wire of 0.7 mm.
 ///
@@ -20,6 +21,8 @@ pub(super) struct LayOn {
     pub(super) free_length: f64,
     /// unstretched length of wire from the clamp to there, m
     pub(super) arc: f64,
+    /// what plastic stretch adds to the resistance of that wire, m of unstretched wire
+    pub(super) added_by_stretch: f64,
 }
 
 impl Winding {
@@ -80,9 +83,19 @@ impl Winding {
         let laid: f64 = rest[..node].iter().sum();
         LayOn {
             arc: self.sys.state.arc0 + laid + share * rest[node],
+            added_by_stretch: self.added_by_stretch(node, share),
             angle: angle + share * self.coil.spec().direction * wrap_to_pi(ahead - polar),
             point: x[node] + share * edge,
             free_length: after + (1.0 - share) * length(node),
         }
+    }
+
+    /// What plastic stretch adds to the resistance of the wire from the clamp to so far behind a live node, a share of its edge:
+    /// m of unstretched wire.
+    fn added_by_stretch(&self, node: usize, share: f64) -> f64 {
+        let rod = &self.sys.state.rod;
+        let of = |edge: usize| added_by_stretch(rod.rest[edge], rod.stretch[edge].strain);
+        let live: f64 = (0..node).map(of).sum();
+        self.coil.added_by_stretch(self.sys.state.arc0) + live + share * of(node)
     }
 }

@@ -35,7 +35,7 @@ impl Winding {
             layon: [layon.point.x, layon.point.z],
             turn_in_layer: (layon.angle - self.coil.pass_begins(layon.angle)).max(0.0) / TAU,
             clearance: (y - low).min(high - y) - self.scene.wire.radius(),
-            resistance: self.resistance_of(layon.arc),
+            resistance: self.resistance_of(layon.arc, layon.added_by_stretch),
             inertia: self.coil_inertia(),
             torque: self.sys.state.torque_on_core - self.torque_of_inertia(),
         }

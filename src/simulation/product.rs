@@ -27,7 +27,7 @@ pub struct Product {
     pub wire_mass_kg: f64,
     /// resistivity of the wire at 20 degC, ohm m
     pub resistivity_ohm_m: f64,
-    /// resistance of that wire at 20 degC, of its unstretched bare section, ohm
+    /// resistance of that wire at 20 degC, with its plastic stretch, ohm
     pub resistance_ohm: f64,
     /// wire section with its enamel over the winding section it takes up, as the output `fill_factor`
     pub fill: f64,
@@ -55,9 +55,11 @@ pub struct Fill {
 }
 
 impl Winding {
-    /// Resistance of so much unstretched wire, m, at 20 degC, of its unstretched section, ohm.
-    pub(super) fn resistance_of(&self, length: f64) -> f64 {
-        self.scene.resistivity * length / self.scene.wire.bare_area()
+    /// Resistance of so much unstretched wire, m, at 20 degC, ohm, to which plastic stretch adds as much as `added`, m of it, would.
+    ///
+    /// Elastic stretch is left out: it goes with the tension and adds a few thousandths at most.
+    pub(super) fn resistance_of(&self, length: f64, added: f64) -> f64 {
+        self.scene.resistivity * (length + added) / self.scene.wire.bare_area()
     }
 
     /// The coil as a product.
@@ -88,7 +90,7 @@ impl Winding {
             wire_length_m: length,
             wire_mass_kg: wire.mass_per_length() * length,
             resistivity_ohm_m: self.scene.resistivity,
-            resistance_ohm: self.resistance_of(length),
+            resistance_ohm: self.resistance_of(length, self.coil.added_by_stretch(length)),
             fill: self.coil.fill_factor(),
             // the limit line is as high in the middle as it is on average
             window: limit.and_then(|Window { width, height, .. }| Some(fill(width?, height))),

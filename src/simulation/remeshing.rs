@@ -464,7 +464,7 @@ impl Winding {
             return;
         }
         let text = format!(
-            "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up; raise tension_setpoint or turn the spindle more slowly",
+            "the wire runs away from the nozzle, at {:.1} m/s under {:.2} N: {:.3} m of it have come in, more than twice what a core as large as the nozzle's circle could have taken up; raise the tension (tensioner.tension, or the input tension_setpoint) or turn the spindle more slowly",
             feed.rate, self.sys.state.set_tension, feed.fed
         );
         self.note_end(DefectKind::Runaway, self.sys.state.rod.nodes() - 1, text);

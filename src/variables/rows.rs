@@ -307,7 +307,7 @@ table! {
     output(143, layon_z, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along z of the same frame; layon_position is along y");
     output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns laid since the nozzle turned: those of the layer that is being wound, where it turns at the ends of layers");
     output(145, flange_clearance, "m", "mm", -10.0, 10.0, 1e-3, "from the surface of the wire where it meets the coil to the nearer flange, along y; without flanges to the nearer end of the core");
-    output(146, wire_resistance, "Ohm", "mOhm", 0.0, 1e9, 0.1, "resistance of wire_length at 20 degC, of its unstretched section");
+    output(146, wire_resistance, "Ohm", "mOhm", 0.0, 1e9, 0.1, "resistance of wire_length at 20 degC; plastic stretch makes it longer and thinner");
     output(147, coil_inertia, "kg.m2", "g.mm2", 0.0, 1e3, 1e-6, "moment of inertia of the settled wire about the core axis, without the core's");
     output(148, spindle_torque_total, "N.m", "N.mm", -1e6, 1e6, 0.1, "spindle_torque less coil_inertia times the mean acceleration of the last step; the core's own inertia is the drive's");
     output(149, break_position, "m", "", 0.0, 1e6, 1.0, "unstretched wire from the clamp to where it broke; 0: it is whole");

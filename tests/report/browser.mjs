@@ -113,6 +113,9 @@ async function look(scheme) {
   await settle();
   check(`${scheme}: runs on the page`, (await page.locator(".run").count()) === Number(given.runs));
 
+  const sizes = await page.evaluate(() => [["early_jump", 0.9], ["overstretch", 3], ["gap", 0.2]].map(([kind, d]) => sizeOf({ kind, size_m: 0.7e-3 * d, size_d: d })));
+  check(`${scheme}: jumps count in turns, stretch is that of a turn`, sizes[0] === "0.9 turns" && sizes[1].endsWith("mm a turn") && sizes[2].endsWith("(0.20 d)"), sizes.join(", "));
+
   const shot = async () => {
     await settle();
     return canvas.screenshot();

@@ -36,6 +36,67 @@ fn unknown_names_come_with_a_suggestion() {
     }
 }
 
+/// `core.diameter_mm` was answered with `wire.diameter`, which is of another section and without the unit.
+#[test]
+fn a_key_of_the_same_section_is_suggested_first() {
+    for (key, meant) in [
+        ("core.diameter_mm", "core.radius_mm, half the diameter?"),
+        ("core.diameter", "core.radius, half the diameter?"),
+        ("wire.radius_um", "wire.diameter_um, twice the radius?"),
+        ("nozzle.diameter_mm", "nozzle.outer_diameter_mm?"),
+        ("core.flange.distance_mm", "core.flange.inner_distance_mm?"),
+        // no key of the section has such a word
+        ("core.tension", "tensioner.tension?"),
+    ] {
+        let (section, leaf) = key.split_once('.').unwrap();
+        let said = unread(&format!("[{section}]\n{leaf} = 3"));
+        assert_says(&said, &[&format!("did you mean {meant}")]);
+    }
+}
+
+/// The range stood in SI only, beside a value in the unit of the key; metres for millimetres got no question back.
+#[test]
+fn a_range_is_told_in_the_unit_of_the_key() {
+    for (text, says) in [
+        (
+            "[core]\nradius_mm = -9",
+            "core.radius_mm = -9 is out of range; allowed: 5e-5 to 1 m, which is 0.05 to 1000 mm",
+        ),
+        (
+            "[spindle]\nspeed_rpm = -500",
+            "allowed: 0.1 to 2000 rad/s, which is 0.95493 to 19098.6 rpm",
+        ),
+        (
+            "[wire]\ndiameter = 0.7",
+            "allowed: 2e-5 to 0.005 m; did you mean wire.diameter_mm?",
+        ),
+        (
+            "[spindle]\nspeed = 3000",
+            "rad/s; did you mean spindle.speed_rpm?",
+        ),
+        (
+            "[wire]\ndiameter_mm = '0.7'",
+            "is a text; allowed is 2e-5 to 0.005 m, which is 0.02 to 5 mm",
+        ),
+        (
+            "wire = 3",
+            "unknown key wire (value 3); did you mean [wire] with keys under it?",
+        ),
+    ] {
+        assert_says(&unread(text), &[says]);
+    }
+    let said = unread("scene = 'fig8'");
+    assert!(!said.contains("did you mean scene.file"), "{said}");
+}
+
+/// Between flanges that leave the wire no room the place of the clamp was refused too, with a range that ran backwards.
+#[test]
+fn what_follows_from_flanges_too_close_is_not_told_again() {
+    let said = refused("[core.flange]\ninner_distance_mm = 0.5");
+    assert_says(&said, &["core.flange.inner_distance", "at least 0.0007 m"]);
+    assert!(!said.contains("start.clamp_y"), "{said}");
+}
+
 #[test]
 fn wrong_units_types_and_repeats_are_refused() {
     for (text, parts) in [

@@ -17,6 +17,12 @@ pub enum ReportError {
         /// the file that is looked for first
         missing: &'static str,
     },
+    /// a file where the folder of a run belongs
+    #[error("{} is a file; name the folder of a run", path.display())]
+    NoFolder {
+        /// the file
+        path: PathBuf,
+    },
     /// a file of the run is not whole
     #[error("{} is not whole ({reason}); wind the scene again, or go on with: coilwind run --resume {}", path.display(), path.parent().unwrap_or(path).display())]
     Broken {

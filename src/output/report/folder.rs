@@ -43,9 +43,14 @@ struct Frame {
 impl Run {
     pub(super) fn read(directory: &Path) -> Result<Self, ReportError> {
         let path = directory.join("summary.json");
-        let text = fs::read_to_string(&path).map_err(|_| ReportError::NoRun {
-            directory: directory.to_owned(),
-            missing: "summary.json",
+        let text = fs::read_to_string(&path).map_err(|_| match directory.is_file() {
+            true => ReportError::NoFolder {
+                path: directory.to_owned(),
+            },
+            false => ReportError::NoRun {
+                directory: directory.to_owned(),
+                missing: "summary.json",
+            },
         })?;
         let summary: serde_json::Value =
             serde_json::from_str(&text).map_err(|e| broken(&path, e))?;
@@ -107,7 +112,8 @@ struct Wire {
 
 /// Fields of the wire that the page colours by.
 const REALS: [&str; 5] = ["arc", "tension", "plastic_strain", "gap", "bulge"];
-const BYTES: [&str; 3] = ["layer", "defect", "frozen"];
+const BYTES: [&str; 2] = ["layer", "frozen"];
+const CODES: [&str; 1] = ["defect"];
 
 impl Wire {
     /// `None` if there is no such file, or no wire in it. `sides`: points of the file for a node of the wire.
@@ -132,7 +138,7 @@ impl Wire {
             })
             .collect();
         let mut fields = Arrays::new();
-        for name in REALS.into_iter().chain(BYTES) {
+        for name in REALS.into_iter().chain(BYTES).chain(CODES) {
             let values = arrays.remove(name).unwrap_or_default();
             if values.len() != sides * points.len() {
                 return Err(broken(path, format!("{name} is not on every node")));
@@ -154,6 +160,7 @@ impl Wire {
         let of = |name: &str| self.fields[name][from..].iter().copied();
         arrays.extend(REALS.map(|name| (name, Array::reals(of(name)))));
         arrays.extend(BYTES.map(|name| (name, Array::bytes(of(name)))));
+        arrays.extend(CODES.map(|name| (name, Array::codes(of(name)))));
         arrays
     }
 

@@ -1,7 +1,7 @@
 "use strict";
 // Arrays, elements and numbers: what every part of the page uses. SI units, lengths in the core frame.
 
-const KINDS = { f32: Float32Array, u32: Uint32Array, u8: Uint8Array };
+const KINDS = { f32: Float32Array, u32: Uint32Array, u16: Uint16Array, u8: Uint8Array };
 const TURN = 2 * Math.PI;
 const STATIONS = 360;
 

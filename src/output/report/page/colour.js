@@ -3,19 +3,19 @@
 const RAMP = ["#440154", "#482878", "#3e4a89", "#31688e", "#26828e", "#1f9e89", "#35b779", "#6dcd59", "#b4de2c", "#fde725"];
 const LAYERS = ["#c8793f", "#4f86b8", "#5fa36a", "#b45f8f", "#d0a93b", "#7a6bb5", "#48a5a8", "#a6704f"];
 const DEFECTS = [
-  { name: "bulge", bit: 1, colour: "#e0a100" },
-  { name: "gap", bit: 2, colour: "#d5422b" },
-  { name: "overlap", bit: 4, colour: "#a02bb0" },
-  { name: "break", bit: 8, colour: "#111111" },
   { name: "slack", bit: 16, colour: "#2b76d5" },
   { name: "loose_turn", bit: 512, colour: "#5aa9a0" },
+  { name: "bulge", bit: 1, colour: "#e0a100" },
+  { name: "gap", bit: 2, colour: "#d5422b" },
   { name: "late_jump", bit: 256, colour: "#8a7a2b" },
   { name: "early_jump", bit: 128, colour: "#b5651d" },
   { name: "skipped_groove", bit: 64, colour: "#c2417c" },
+  { name: "overlap", bit: 4, colour: "#a02bb0" },
   { name: "double_turn", bit: 32, colour: "#6a1fb0" },
   { name: "overstretch", bit: 1024, colour: "#7a1f1f" },
   { name: "collision", bit: 2048, colour: "#333333" },
   { name: "runaway", bit: 4096, colour: "#555555" },
+  { name: "break", bit: 8, colour: "#111111" },
 ];
 const PLAIN = "#c08457";
 const UNKNOWN = "#9aa0a6";

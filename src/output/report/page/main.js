@@ -79,7 +79,7 @@ class Run {
   }
 
   goToDefect(defect) {
-    const size = defect.size_m == null ? "" : `  ·  ${mm(defect.size_m)}`;
+    const size = defect.size_m == null ? "" : `  ·  ${sizeOf(defect)}`;
     this.view?.renderer && this.view.goTo(defect.place_m, `${defect.kind}  ·  turn ${defect.turn}, ${Math.round(defect.angle_deg)}°${size}`, defect.turn - 1 + defect.angle_deg / STATIONS);
     const rows = document.querySelectorAll(".defects tbody tr");
     rows.forEach((row) => row.classList.toggle("chosen", row.defect === defect));
@@ -89,7 +89,7 @@ class Run {
 function head(run) {
   const s = run.summary;
   const kind = GOOD.includes(s.verdict) ? "good" : s.verdict === "marginal" ? "fair" : BAD.includes(s.verdict) ? "bad" : "";
-  const status = { done: "wound to its end", interrupted: "interrupted", failed: `the solver gave up: ${s.reason}` }[s.status] ?? s.status;
+  const status = { done: "wound to its end", interrupted: "interrupted", failed: s.reasons ? "failed before its planned end" : `failed: ${s.reason}` }[s.status] ?? s.status;
   const rpm = (s.speed_rad_per_s * 30) / Math.PI;
   const meta = [status, `${fixed(s.turns_wound, 2)} turns wound, ${fixed(s.turns_settled, 2)} at rest`,
     `${duration(s.simulated_s)} simulated`, `${digits(s.speed_rad_per_s)} rad/s (${Math.round(rpm)} rpm) at the end`, `folder ${run.name}`];
@@ -118,11 +118,19 @@ function product(run) {
     el("div", {}, el("dt", {}, name), el("dd", {}, `${value} `, el("small", {}, unit)))));
 }
 
+/** How large a defect is, in the words of the reasons: jumps count in turns, and stretch is that of a turn. */
+function sizeOf(defect) {
+  if (defect.size_m == null) return null;
+  if (defect.kind.endsWith("_jump")) return `${fixed(defect.size_d, 1)} turns`;
+  if (defect.kind === "overstretch") return `${mm(defect.size_m)} a turn`;
+  return `${mm(defect.size_m)} (${fixed(defect.size_d, 2)} d)`;
+}
+
 function defects(run) {
   const table = el("table", { class: "defects" },
     el("thead", {}, el("tr", {}, ...["Defect", "Turn", "Layer", "Angle", "Time", "Size"].map((name) => el("th", {}, name)))),
     el("tbody", {}, ...run.defects.slice(0, 500).map((defect) => {
-      const size = defect.size_m == null ? "–" : `${mm(defect.size_m)} (${fixed(defect.size_d, 2)} d)`;
+      const size = sizeOf(defect) ?? "–";
       const cells = [defect.kind, defect.turn, defect.layer, `${Math.round(defect.angle_deg)}°`, duration(defect.time_s), size];
       const go = () => run.goToDefect(defect);
       const row = el("tr", { tabindex: 0, onclick: go, onkeydown: (event) => event.key === "Enter" && go() }, ...cells.map((cell) => el("td", {}, `${cell}`)));
@@ -132,7 +140,7 @@ function defects(run) {
   const count = run.defects.length;
   const title = el("div", { class: "bar" }, el("h2", {}, count ? `Defects (${count})` : "Defects"));
   const more = count > 500 ? el("p", { class: "note" }, "The first 500; all stand in defects.csv.") : null;
-  const body = count ? el("div", { class: "scroll" }, table) : el("p", { class: "soft" }, "None found.");
+  const body = count ? el("div", { class: "scroll" }, table) : el("p", { class: "soft" }, run.summary.status === "failed" ? "None found until the run failed." : "None found.");
   return el("section", { class: "card" }, title, body, count ? el("p", { class: "note" }, "A click moves the view there.") : null, more);
 }
 
