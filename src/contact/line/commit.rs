@@ -58,6 +58,16 @@ impl LineContact<'_> {
         }
     }
 
+    /// [`Self::list_busy`], and makes the places of the other points the accepted ones: they touch nothing, so nothing else of
+    /// them moves on.
+    #[inline(always)]
+    pub fn commit_idle(&mut self, x: &[V3], to_core: impl Fn(V3) -> V3) {
+        self.list_busy_with(x, to_core, |point, p| {
+            debug_assert!(point.touch.iter().all(TouchState::is_unused));
+            point.last = p;
+        });
+    }
+
     /// Makes `p` (m) the accepted place of point `k` after a step of `step` (s): anchors follow, slip and landings are
     /// added to the losses. Returns the force on the point, core frame, N. Arguments as in [`Self::push`].
     ///

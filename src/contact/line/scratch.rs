@@ -18,6 +18,8 @@ pub struct LineScratch {
     pub accepted: Vec<AcceptedTouch>,
     /// of the pairs of live wire
     pub pairs: PairScratch,
+    /// numbers of the points that something may be near, ascending
+    pub busy: Vec<u32>,
     /// the points with surfaces near them at the last evaluation
     pub(super) near: Vec<NearPoint>,
     /// points whose surroundings this attempt at a step looked up, as they were
@@ -36,6 +38,7 @@ impl LineScratch {
             lifted: 0.0,
             accepted: Vec::with_capacity(256),
             pairs: PairScratch::default(),
+            busy: Vec::new(),
             near: Vec::new(),
             undo: Vec::with_capacity(256),
             found: Vec::with_capacity(64),
@@ -50,6 +53,7 @@ impl LineScratch {
             lifted,
             accepted,
             pairs,
+            busy,
             near,
             undo,
             found,
@@ -59,6 +63,7 @@ impl LineScratch {
         *lifted = other.lifted;
         accepted.clone_from(&other.accepted);
         pairs.clear();
+        busy.clear();
         near.clear();
         undo.clear();
         found.clear();

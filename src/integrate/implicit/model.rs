@@ -300,33 +300,27 @@ impl Model<'_> {
             return;
         };
         line.begin();
-        let mut arc = self.arc0;
-        for (j, rest) in self.rod.rest.iter().enumerate() {
-            if j > 0 {
-                let point = ContactPoint::Node(j);
-                self.contact_of::<D, U, HESSIAN>(point, arc, &mut line, work, value);
-            }
-            let point = ContactPoint::Edge(j);
-            self.contact_of::<D, U, HESSIAN>(point, arc, &mut line, work, value);
-            arc += rest;
+        line.list_busy(&work.q, |p| p);
+        for at in 0..line.scratch.busy.len() {
+            let point = ContactPoint::of_number(line.scratch.busy[at] as usize);
+            self.contact_of::<D, U, HESSIAN>(point, &mut line, work, value);
         }
         self.contact_of_pairs::<D, U, HESSIAN>(&mut line, work, value);
         self.line = Some(line);
     }
 
-    /// Adds the touches of one contact point, whose node or edge begins at the unstretched length `arc`.
+    /// Adds the touches of one contact point.
     #[inline(always)]
     fn contact_of<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
         &self,
         point: ContactPoint,
-        arc: f64,
         line: &mut LineContact<'_>,
         work: &mut Work<D, U>,
         value: &mut Value,
     ) {
         let rest = &self.rod.rest;
         let p = point.place(&work.q);
-        let own = || own_wire(point.arc(arc, rest), self.diameter);
+        let own = || own_wire(point.arc(self.arc0, rest), self.diameter);
         let length = || point.length_with(rest, |i| voronoi(self.rod, self.grown, i));
         if let Some(response) = line.push(point.number(), p, length, own, self.elapsed) {
             value.merit += response.energy_lagged;
