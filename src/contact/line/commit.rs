@@ -193,6 +193,9 @@ impl LineState {
 impl PointState {
     /// Energy stored in the touches of the point, which stands for `length` (m), J.
     pub(super) fn stored(&self, model: &LineModel, length: f64) -> f64 {
+        if !self.has_surroundings() {
+            return 0.0;
+        }
         let k_n = model.law.stiffness * length;
         self.touches()
             .iter()

@@ -98,8 +98,11 @@ impl Unknowns<4> for PlacesAndRolls {
         let behind = joints.load(simd, TORQUE + 1, first, 1);
         (behind + joints.load(simd, TORQUE, first, 2)).store(&mut torque);
         let to = &mut self.rolls.gradient[start..];
-        let count = Lanes::<S>::COUNT.min(to.len());
-        to[..count].copy_from_slice(&torque[..count]);
+        // (a copy of a length that is known takes no call)
+        match to.get_mut(..Lanes::<S>::COUNT) {
+            Some(to) => to.copy_from_slice(&torque[..Lanes::<S>::COUNT]),
+            None => to.copy_from_slice(&torque[..to.len()]),
+        }
     }
 
     /// The roll of the edge before a joint is an unknown of the node before it.
