@@ -80,7 +80,7 @@ impl System {
         let diameter = self.model.section.diameter;
         let rest = &self.state.rod.rest;
         let mut share = 1.0_f64;
-        line.list_busy(guess, |p| p);
+        line.list_busy_at(guess);
         for at in 0..line.scratch.busy.len() {
             let point = ContactPoint::of_number(line.scratch.busy[at] as usize);
             let own = || own_wire(point.arc(self.state.arc0, rest), diameter);

@@ -15,6 +15,7 @@ impl LineContact<'_> {
     /// Begins an attempt at a step.
     pub fn begin_attempt(&mut self) {
         self.scratch.undo.clear();
+        self.scratch.listed_at.clear();
     }
 
     /// Takes back all that a failed attempt at a step changed.

@@ -8,6 +8,11 @@ use crate::contact::friction::{ContactResponse, LimitFrom};
 use crate::math::V3;
 
 impl LineContact<'_> {
+    /// Begins a solve that [`Self::begin_attempt`] did not begin: points are listed anew.
+    pub fn begin_solve(&mut self) {
+        self.scratch.listed_at.clear();
+    }
+
     /// Begins an evaluation of all points.
     pub fn begin(&mut self) {
         self.scratch.near.clear();

@@ -13,6 +13,10 @@ use crate::math::V3;
 /// them up again, in wire diameters. Chosen.
 const SKIN: f64 = 0.15;
 
+/// Way, in wire diameters, that a point with nothing near it has to spare before its surroundings are looked up again. Chosen: well
+/// below [`SKIN`], and more than an update of Newton's method mostly moves a node.
+const ROOM: f64 = 0.03;
+
 /// Passages whose segments are nearer along the wire than this are one passage at successive searches.
 const SAME_PASSAGE: u32 = 6;
 
@@ -73,13 +77,39 @@ impl LineContact<'_> {
     }
 
     /// Lists in `scratch.busy` the points that something may be near with the nodes at `x`, m, which `to_core` takes to the core
-    /// frame. Nothing is near the others, and that stays so: each of them is where its surroundings hold that were looked up.
+    /// frame. Nothing is near the others: each of them is where its surroundings hold that were looked up, with [`ROOM`] to spare.
     ///
     /// Most points have nothing near them; asking them for nothing but that takes a third of the work of going through
     /// all points by their numbers.
     #[inline(always)]
     pub fn list_busy(&mut self, x: &[V3], to_core: impl Fn(V3) -> V3) {
         self.list_busy_with(x, to_core, |_, _| {});
+    }
+
+    /// [`Self::list_busy`] with the nodes at `q`, core frame, m, as a list for [`Self::keep_busy`].
+    pub fn list_busy_at(&mut self, q: &[V3]) {
+        self.list_busy(q, |p| p);
+        self.scratch.listed_at.extend_from_slice(q);
+    }
+
+    /// Lists the points anew where a node is farther from where it was at [`Self::list_busy_at`] than the others have to spare;
+    /// `q` as there. In the iterates of a step that is seldom.
+    pub fn keep_busy(&mut self, q: &[V3]) {
+        // (a little less, for rounding)
+        let most = 0.999 * ROOM * 2.0 * self.scratch.tube.radius();
+        let far = |(now, then): (&V3, &V3)| (now - then).norm_squared() > most * most;
+        let then = &self.scratch.listed_at;
+        if then.len() != q.len() || q.iter().zip(then).any(far) {
+            self.list_busy_at(q);
+        }
+        debug_assert!(
+            ContactPoint::all(q.len() - 1).all(|point| {
+                let (k, state) = (point.number(), &self.state.points[point.number()]);
+                !state.has_surroundings() && !state.has_left(point.place(q))
+                    || self.scratch.busy.contains(&(k as u32))
+            }),
+            "a busy point is not listed"
+        );
     }
 
     /// [`Self::list_busy`], which hands the other points to `idle` with their places in the core frame, m.
@@ -90,14 +120,18 @@ impl LineContact<'_> {
         to_core: impl Fn(V3) -> V3,
         idle: impl Fn(&mut PointState, V3),
     ) {
+        let spare = ROOM * 2.0 * self.scratch.tube.radius();
         let (points, busy) = (&mut self.state.points, &mut self.scratch.busy);
         busy.clear();
+        self.scratch.listed_at.clear();
         let mut look = |k: usize, point: &mut PointState, p: V3| {
             let p = to_core(p);
-            if point.has_surroundings() || point.has_left(p) {
-                busy.push(k as u32);
-            } else {
+            let room = point.reach - spare;
+            let stays = room > 0.0 && (p - point.centre).norm_squared() < room * room;
+            if stays && !point.has_surroundings() {
                 idle(point, p);
+            } else {
+                busy.push(k as u32);
             }
         };
         // the edge before each inner node and that node, with the nodes around it
@@ -108,7 +142,11 @@ impl LineContact<'_> {
             look(2 * j + 2, node, ContactPoint::Node(1).place(x));
         }
         let ends = &x[x.len() - 2..];
-        look(2 * x.len() - 3, &mut last[0], ContactPoint::Edge(0).place(ends));
+        look(
+            2 * x.len() - 3,
+            &mut last[0],
+            ContactPoint::Edge(0).place(ends),
+        );
     }
 
     /// Whether core or frozen wire is near point `k` at `p`; looks its surroundings up if they may have changed since they were.

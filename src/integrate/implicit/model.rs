@@ -295,7 +295,7 @@ impl Model<'_> {
             return;
         };
         line.begin();
-        line.list_busy(&work.q, |p| p);
+        line.keep_busy(&work.q);
         for at in 0..line.scratch.busy.len() {
             let point = ContactPoint::of_number(line.scratch.busy[at] as usize);
             self.contact_of::<D, U, HESSIAN>(point, &mut line, work, value);

@@ -94,14 +94,15 @@ impl Unknowns<4> for PlacesAndRolls {
         first: usize,
         start: usize,
     ) {
-        let mut torque = [0.0; ROWS];
         let behind = joints.load(simd, TORQUE + 1, first, 1);
-        (behind + joints.load(simd, TORQUE, first, 2)).store(&mut torque);
+        let torques = behind + joints.load(simd, TORQUE, first, 2);
         let to = &mut self.rolls.gradient[start..];
-        // (a copy of a length that is known takes no call)
-        match to.get_mut(..Lanes::<S>::COUNT) {
-            Some(to) => to.copy_from_slice(&torque[..Lanes::<S>::COUNT]),
-            None => to.copy_from_slice(&torque[..to.len()]),
+        if to.len() >= Lanes::<S>::COUNT {
+            torques.store(to);
+        } else {
+            let mut all = [0.0; ROWS];
+            torques.store(&mut all);
+            to.copy_from_slice(&all[..to.len()]);
         }
     }
 
