@@ -109,7 +109,8 @@ impl LineContact<'_> {
         let onset = self.model.onset;
         let point = &mut self.state.points[k];
         let last = point.last;
-        for (slot, t) in point.touches_mut().iter_mut().enumerate() {
+        for slot in point.slots() {
+            let t = &mut point.touch[slot];
             t.limit.accept();
             let out = (p - last).dot(&t.normal);
             if t.depth <= 0.0 {

@@ -158,8 +158,9 @@ impl Unknowns<4> for PlacesAndRolls {
     }
 
     fn take(&mut self, update: &[f64], share: f64) {
-        for (j, angle) in self.rolls.angle.iter_mut().enumerate() {
-            *angle = self.rolls.start[j] + Self::roll(update, j) * share;
+        let rolls = self.rolls.angle.iter_mut().zip(&self.rolls.start);
+        for ((angle, start), [.., roll]) in rolls.zip(update.as_chunks::<4>().0) {
+            *angle = start + roll * share;
         }
     }
 
