@@ -79,8 +79,7 @@ impl LineContact<'_> {
     /// Lists in `scratch.busy` the points that something may be near with the nodes at `x`, m, which `to_core` takes to the core
     /// frame. Nothing is near the others: each of them is where its surroundings hold that were looked up, with [`ROOM`] to spare.
     ///
-    /// Most points have nothing near them; asking them for nothing but that takes a third of the work of going through
-    /// all points by their numbers.
+    /// Most points have nothing near them, and are asked for nothing but that, in one loop along the wire.
     #[inline(always)]
     pub fn list_busy(&mut self, x: &[V3], to_core: impl Fn(V3) -> V3) {
         self.list_busy_with(x, to_core, |_, _| {});
@@ -93,7 +92,7 @@ impl LineContact<'_> {
     }
 
     /// Lists the points anew where a node is farther from where it was at [`Self::list_busy_at`] than the others have to spare;
-    /// `q` as there. In the iterates of a step that is seldom.
+    /// `q` as there. In the iterates of a step that is seldom: in one of fifty evaluations (`fig8`, 300 rad/s, 2e-6 m).
     pub fn keep_busy(&mut self, q: &[V3]) {
         // (a little less, for rounding)
         let most = 0.999 * ROOM * 2.0 * self.scratch.tube.radius();
