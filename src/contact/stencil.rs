@@ -84,12 +84,13 @@ impl ContactPoint {
         }
     }
 
-    /// Unstretched length from the clamp of a point whose node or edge begins at `arc`, m.
-    #[inline(always)]
-    pub fn arc(self, arc: f64, rest: &[f64]) -> f64 {
+    /// Unstretched length from the clamp, m, on a wire whose first node is at `start` and whose edges have the unstretched
+    /// lengths `rest`. They are summed up anew: few points are asked, and few of them more than once.
+    pub fn arc(self, start: f64, rest: &[f64]) -> f64 {
+        let to_node = |i: usize| rest[..i].iter().fold(start, |arc, rest| arc + rest);
         match self {
-            Self::Node(_) => arc,
-            Self::Edge(j) => arc + 0.5 * rest[j],
+            Self::Node(i) => to_node(i),
+            Self::Edge(j) => to_node(j) + 0.5 * rest[j],
         }
     }
 }

@@ -64,17 +64,17 @@ impl Grid {
     /// Enters `piece`, higher than all before, into the cells that the box from `low` to `high`
     /// meets and that do not have it yet.
     pub(super) fn add(&mut self, piece: u32, low: V3, high: V3) {
-        for cell in cells_between(self.cell(low), self.cell(high)) {
+        for_cells_between(self.cell(low), self.cell(high), |cell| {
             let pieces = self.cells.entry(cell).or_default();
             if pieces.last() != Some(&piece) {
                 pieces.push(piece);
             }
-        }
+        });
     }
 
     /// Takes `piece`, the highest, out of the cells of a box.
     pub(super) fn remove(&mut self, piece: u32, low: V3, high: V3) {
-        for cell in cells_between(self.cell(low), self.cell(high)) {
+        for_cells_between(self.cell(low), self.cell(high), |cell| {
             if let Some(pieces) = self.cells.get_mut(&cell)
                 && pieces.last() == Some(&piece)
             {
@@ -83,7 +83,7 @@ impl Grid {
                     self.cells.remove(&cell);
                 }
             }
-        }
+        });
     }
 
     /// Calls `visit` with the pieces of each cell within `reach` of `p` along every axis, in no
@@ -104,16 +104,22 @@ impl Grid {
             }
             return;
         }
-        for cell in cells_between(low, high) {
+        for_cells_between(low, high, |cell| {
             if let Some(pieces) = self.cells.get(&cell) {
                 visit(pieces);
             }
-        }
+        });
     }
 }
 
-fn cells_between(low: Cell, high: Cell) -> impl Iterator<Item = Cell> {
-    (low[0]..=high[0]).flat_map(move |x| {
-        (low[1]..=high[1]).flat_map(move |y| (low[2]..=high[2]).map(move |z| [x, y, z]))
-    })
+/// Calls `visit` with each cell from `low` to `high`.
+#[inline(always)]
+fn for_cells_between(low: Cell, high: Cell, mut visit: impl FnMut(Cell)) {
+    for x in low[0]..=high[0] {
+        for y in low[1]..=high[1] {
+            for z in low[2]..=high[2] {
+                visit([x, y, z]);
+            }
+        }
+    }
 }

@@ -283,14 +283,37 @@ impl<const D: usize> Banded<D> {
         for b in 0..D {
             *self.entry(i, a, i, b) = 0.0;
         }
-        for other in i.saturating_sub(2)..(i + 3).min(self.nodes) {
-            if other != i {
-                for b in 0..D {
-                    *self.entry(i, a, other, b) = 0.0;
+        for j in i.saturating_sub(2)..i {
+            self.clear_row(j, i, |b| (b, a));
+        }
+        for j in i + 1..(i + 3).min(self.nodes) {
+            self.clear_row(i, j, |b| (a, b));
+        }
+        *self.entry(i, a, i, a) = 1.0;
+    }
+
+    /// Clears the couplings `of(0)`, `of(1)`, ... of the unknowns of nodes `i < j`, whose place is looked for once.
+    fn clear_row(&mut self, i: usize, j: usize, of: impl Fn(usize) -> (usize, usize)) {
+        match self.slot(i, j) {
+            Slot::Step(step, lane) => {
+                self.kept = self.kept.min(step);
+                let rows = &mut self.steps[step];
+                let block = if j - i == 1 {
+                    &mut rows.near
+                } else {
+                    &mut rows.far
+                };
+                for (a, b) in (0..D).map(of) {
+                    let (row, column) = if lane == 0 { (a, b) } else { (b, a) };
+                    block[row][column].0[lane] = 0.0;
+                }
+            }
+            Slot::Middle(column, row) => {
+                for (a, b) in (0..D).map(of) {
+                    self.middle[row + b][column + a] = 0.0;
                 }
             }
         }
-        *self.entry(i, a, i, a) = 1.0;
     }
 
     /// `y = A x` with the matrix as it was added and pinned, factored or not.

@@ -427,6 +427,12 @@ impl<const N: usize> RowBlock<N> {
         self.0[k][row + 1]
     }
 
+    /// Numbers of columns `k`, `k + 1` and `k + 2` in row `row`.
+    #[inline(always)]
+    pub fn vector(&self, k: usize, row: usize) -> V3 {
+        V3::new(self.get(k, row), self.get(k + 1, row), self.get(k + 2, row))
+    }
+
     /// Writes the number of column `k` in row `row`.
     #[inline(always)]
     pub fn set(&mut self, k: usize, row: usize, x: f64) {
@@ -486,12 +492,20 @@ impl<const N: usize> Columns<N> {
     /// Columns `k`, `k + 1` and `k + 2` at row `i`.
     #[inline(always)]
     pub fn vector(&self, k: usize, i: usize) -> V3 {
-        let (block, row) = (&self.0[i / ROWS], i % ROWS);
-        V3::new(
-            block.get(k, row),
-            block.get(k + 1, row),
-            block.get(k + 2, row),
-        )
+        let (block, row) = self.row(i);
+        block.vector(k, row)
+    }
+
+    /// The block of row `i`, and the number of the row in it.
+    #[inline(always)]
+    pub fn row(&self, i: usize) -> (&RowBlock<N>, usize) {
+        (&self.0[i / ROWS], i % ROWS)
+    }
+
+    /// The block of row `i`, to be written, and the number of the row in it.
+    #[inline(always)]
+    pub fn row_mut(&mut self, i: usize) -> (&mut RowBlock<N>, usize) {
+        (&mut self.0[i / ROWS], i % ROWS)
     }
 
     /// Puts columns `k`, `k + 1` and `k + 2` at row `i`.

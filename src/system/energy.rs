@@ -65,8 +65,12 @@ impl System {
             .map(|(rest, spin)| inertia * rest * spin.powi(2))
             .sum();
         let density = section.mass_per_length();
-        let of_node = |i: usize| 0.5 * (density * rod.voronoi(i)) * rod.v[i].norm_squared();
-        self.free_nodes().map(of_node).sum::<f64>() + spin - self.kinetic_between()
+        let free = self.free_nodes();
+        let nodes = free.clone().zip(&rod.v[free]);
+        let motion: f64 = nodes
+            .map(|(i, v)| 0.5 * (density * rod.voronoi(i)) * v.norm_squared())
+            .sum();
+        motion + spin - self.kinetic_between()
     }
 
     /// What lumped mass has too much of motion energy where it is not lumped, J.

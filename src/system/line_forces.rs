@@ -79,16 +79,13 @@ impl System {
         };
         let diameter = self.model.section.diameter;
         let rest = &self.state.rod.rest;
-        let (mut arc, mut share) = (self.state.arc0, 1.0_f64);
-        for (j, rest_of) in rest.iter().enumerate() {
-            for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {
-                if point != ContactPoint::Node(0) {
-                    let own = || own_wire(point.arc(arc, rest), diameter);
-                    let to = point.place(guess);
-                    share = share.min(line.share_to_turn(point.number(), to, own, [most, unseen]));
-                }
-            }
-            arc += rest_of;
+        let mut share = 1.0_f64;
+        line.list_busy_at(guess);
+        for at in 0..line.scratch.busy.len() {
+            let point = ContactPoint::of_number(line.scratch.busy[at] as usize);
+            let own = || own_wire(point.arc(self.state.arc0, rest), diameter);
+            let to = point.place(guess);
+            share = share.min(line.share_to_turn(point.number(), to, own, [most, unseen]));
         }
         share
     }
@@ -157,7 +154,6 @@ impl System {
         ) {
             let (rod, force) = (&self.state.rod, &mut self.state.load.force);
             let diameter = self.model.section.diameter;
-            let mut arc = self.state.arc0;
             let step = if h > 0.0 { h } else { f64::INFINITY };
             line.scratch.accepted.clear();
             if commit {
@@ -165,32 +161,29 @@ impl System {
                     |k| spin.to_core(ContactPoint::of_number(k).place(&rod.x)),
                     |k| ContactPoint::of_number(k).length(rod),
                 );
+                line.commit_idle(&rod.x, |p| spin.to_core(p));
+            } else {
+                line.list_busy(&rod.x, |p| spin.to_core(p));
             }
-            for j in 0..rod.edges() {
-                let rest = rod.rest[j];
-                for point in [ContactPoint::Node(j), ContactPoint::Edge(j)] {
-                    if point == ContactPoint::Node(0) {
-                        continue;
-                    }
-                    let k = point.number();
-                    let length = || point.length(rod);
-                    let own = || own_wire(point.arc(arc, &rod.rest), diameter);
-                    let p = point.place(&rod.x);
-                    let q = spin.to_core(p);
-                    let f = if commit {
-                        line.commit(k, q, length, own, step)
-                    } else {
-                        line.push(k, q, length, own, step)
-                            .map_or(V3::zeros(), |s| -s.gradient)
-                    };
-                    if f == V3::zeros() {
-                        continue;
-                    }
-                    let f = spin.to_lab(f);
-                    moment -= p.z * f.x - p.x * f.z;
-                    point.weights().spread(&f, force);
+            for at in 0..line.scratch.busy.len() {
+                let point = ContactPoint::of_number(line.scratch.busy[at] as usize);
+                let k = point.number();
+                let length = || point.length(rod);
+                let own = || own_wire(point.arc(self.state.arc0, &rod.rest), diameter);
+                let p = point.place(&rod.x);
+                let q = spin.to_core(p);
+                let f = if commit {
+                    line.commit(k, q, length, own, step)
+                } else {
+                    line.push(k, q, length, own, step)
+                        .map_or(V3::zeros(), |s| -s.gradient)
+                };
+                if f == V3::zeros() {
+                    continue;
                 }
-                arc += rest;
+                let f = spin.to_lab(f);
+                moment -= p.z * f.x - p.x * f.z;
+                point.weights().spread(&f, force);
             }
             self.state.deepest = self.state.deepest.max(line.state.deepest);
             moment += between_forces(&mut line, rod, force, &self.state.past, spin, step, commit);

@@ -15,6 +15,7 @@ impl LineContact<'_> {
     /// Begins an attempt at a step.
     pub fn begin_attempt(&mut self) {
         self.scratch.undo.clear();
+        self.scratch.listed_at.clear();
     }
 
     /// Takes back all that a failed attempt at a step changed.
@@ -58,6 +59,16 @@ impl LineContact<'_> {
         }
     }
 
+    /// [`Self::list_busy`], and makes the places of the other points the accepted ones: they touch nothing, so nothing else of
+    /// them moves on.
+    #[inline(always)]
+    pub fn commit_idle(&mut self, x: &[V3], to_core: impl Fn(V3) -> V3) {
+        self.list_busy_with(x, to_core, |point, p| {
+            debug_assert!(point.touch.iter().all(TouchState::is_unused));
+            point.last = p;
+        });
+    }
+
     /// Makes `p` (m) the accepted place of point `k` after a step of `step` (s): anchors follow, slip and landings are
     /// added to the losses. Returns the force on the point, core frame, N. Arguments as in [`Self::push`].
     ///
@@ -98,7 +109,8 @@ impl LineContact<'_> {
         let onset = self.model.onset;
         let point = &mut self.state.points[k];
         let last = point.last;
-        for (slot, t) in point.touches_mut().iter_mut().enumerate() {
+        for slot in point.slots() {
+            let t = &mut point.touch[slot];
             t.limit.accept();
             let out = (p - last).dot(&t.normal);
             if t.depth <= 0.0 {
@@ -183,6 +195,9 @@ impl LineState {
 impl PointState {
     /// Energy stored in the touches of the point, which stands for `length` (m), J.
     pub(super) fn stored(&self, model: &LineModel, length: f64) -> f64 {
+        if !self.has_surroundings() {
+            return 0.0;
+        }
         let k_n = model.law.stiffness * length;
         self.touches()
             .iter()

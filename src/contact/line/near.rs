@@ -11,12 +11,19 @@ pub(super) struct NearPoint {
     pub(super) length: f64,
     /// place at the iterate, m
     pub(super) place: V3,
-    /// gradient at the iterate, N
-    pub(super) gradient: V3,
-    /// Hessian, N/m
-    pub(super) hessian: Block,
+    /// tangent at the iterate; none where nothing touches (then there is nothing to write down)
+    pub(super) tangent: Option<Tangent>,
     /// way from the iterate without any touch, while the model has none, m
     pub(super) room: f64,
     /// way that the last prediction looked along, m; none: the model is that of the iterate
     pub(super) looked_along: Option<V3>,
+}
+
+/// Gradient and Hessian of a contact point.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tangent {
+    /// gradient at the iterate, N
+    pub(super) gradient: V3,
+    /// Hessian, N/m
+    pub(super) hessian: Block,
 }

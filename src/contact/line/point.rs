@@ -65,6 +65,12 @@ impl PointState {
         self.core_near || self.flange_near || self.passages > 0
     }
 
+    /// Whether its surroundings have to be looked up at `p`, m.
+    #[inline(always)]
+    pub(super) fn has_left(&self, p: V3) -> bool {
+        self.reach < 0.0 || (p - self.centre).norm_squared() >= self.reach * self.reach
+    }
+
     /// The friction limits of its touches at the last evaluation, N.
     #[inline]
     pub(super) fn limits(&self) -> [f64; SLOTS] {

@@ -1,6 +1,7 @@
 //! Tangents of contact where an update of Newton's method leads.
 
 use super::line_contact::LineContact;
+use super::near::Tangent;
 use crate::math::{Block, V3, block_difference, block_times};
 
 /// Change of an update that calls for no new look, as a share of the prediction tolerance. Chosen.
@@ -39,18 +40,22 @@ impl LineContact<'_> {
             }
             n.looked_along = Some(way);
             let there = self.respond_ahead(n.point as usize, n.place + way, n.length, step);
-            let off = there.gradient - n.gradient - block_times(&n.hessian, &way);
+            let known = n.tangent.unwrap_or_default();
+            let off = there.gradient - known.gradient - block_times(&known.hessian, &way);
             if off.amax() <= tolerance * self.model.law.stiffness * n.length {
                 continue;
             }
             any = true;
-            let gradient = there.gradient - block_times(&there.hessian, &way);
+            let tangent = Tangent {
+                gradient: there.gradient - block_times(&there.hessian, &way),
+                hessian: there.hessian,
+            };
             correct(
                 n.point as usize,
-                &block_difference(&there.hessian, &n.hessian),
-                &(gradient - n.gradient),
+                &block_difference(&tangent.hessian, &known.hessian),
+                &(tangent.gradient - known.gradient),
             );
-            (n.gradient, n.hessian, n.room) = (gradient, there.hessian, 0.0);
+            (n.tangent, n.room) = (Some(tangent), 0.0);
         }
         self.scratch.near = near;
         any

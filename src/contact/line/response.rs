@@ -1,13 +1,18 @@
 //! Potential, gradient and Hessian of a contact point at an iterate, and where an update leads it.
 
 use super::line_contact::LineContact;
-use super::near::NearPoint;
+use super::near::{NearPoint, Tangent};
 use super::search::depth_at;
 use super::touch::{Conditions, TouchState};
 use crate::contact::friction::{ContactResponse, LimitFrom};
-use crate::math::{Block, V3};
+use crate::math::V3;
 
 impl LineContact<'_> {
+    /// Begins a solve that [`Self::begin_attempt`] did not begin: points are listed anew.
+    pub fn begin_solve(&mut self) {
+        self.scratch.listed_at.clear();
+    }
+
     /// Begins an evaluation of all points.
     pub fn begin(&mut self) {
         self.scratch.near.clear();
@@ -35,8 +40,8 @@ impl LineContact<'_> {
         }
     }
 
-    /// [`Self::push`] for a point with surfaces near it.
-    #[inline(never)]
+    /// [`Self::push`] for a point with surfaces near it. Most of these touch nothing within a way that is known.
+    #[inline(always)]
     pub(super) fn push_near(
         &mut self,
         k: usize,
@@ -52,8 +57,7 @@ impl LineContact<'_> {
                     point: k as u32,
                     length,
                     place: p,
-                    gradient: V3::zeros(),
-                    hessian: Block::default(),
+                    tangent: None,
                     room: point.clear_within - way,
                     looked_along: None,
                 });
@@ -64,6 +68,7 @@ impl LineContact<'_> {
     }
 
     /// [`Self::push`] for a point that may touch.
+    #[inline(never)]
     fn respond(&mut self, k: usize, p: V3, length: f64, step: f64) -> Option<ContactResponse> {
         let Self {
             model,
@@ -111,8 +116,10 @@ impl LineContact<'_> {
             point: k as u32,
             length,
             place: p,
-            gradient: sum.gradient,
-            hessian: sum.hessian,
+            tangent: any.then_some(Tangent {
+                gradient: sum.gradient,
+                hessian: sum.hessian,
+            }),
             room: point.clear_within,
             looked_along: None,
         });

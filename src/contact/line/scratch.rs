@@ -5,6 +5,7 @@ use super::point::PointState;
 use crate::contact::accepted_touch::AcceptedTouch;
 use crate::contact::self_contact::PairScratch;
 use crate::geometry::{SplineTube, WallFoot};
+use crate::math::V3;
 use std::sync::Arc;
 
 /// Work arrays of contact along the wire, and the search among frozen wire. None of it is saved.
@@ -18,6 +19,10 @@ pub struct LineScratch {
     pub accepted: Vec<AcceptedTouch>,
     /// of the pairs of live wire
     pub pairs: PairScratch,
+    /// numbers of the points that something may be near, ascending
+    pub busy: Vec<u32>,
+    /// places of the nodes for which they were listed, core frame, m; none: the list is not to be kept
+    pub(super) listed_at: Vec<V3>,
     /// the points with surfaces near them at the last evaluation
     pub(super) near: Vec<NearPoint>,
     /// points whose surroundings this attempt at a step looked up, as they were
@@ -36,6 +41,8 @@ impl LineScratch {
             lifted: 0.0,
             accepted: Vec::with_capacity(256),
             pairs: PairScratch::default(),
+            busy: Vec::new(),
+            listed_at: Vec::new(),
             near: Vec::new(),
             undo: Vec::with_capacity(256),
             found: Vec::with_capacity(64),
@@ -50,6 +57,8 @@ impl LineScratch {
             lifted,
             accepted,
             pairs,
+            busy,
+            listed_at,
             near,
             undo,
             found,
@@ -59,6 +68,8 @@ impl LineScratch {
         *lifted = other.lifted;
         accepted.clone_from(&other.accepted);
         pairs.clear();
+        busy.clear();
+        listed_at.clear();
         near.clear();
         undo.clear();
         found.clear();

@@ -164,7 +164,11 @@ impl LineState {
 
     /// Whether node `i` or the middle of an edge at it touches core or frozen wire.
     pub fn touches(&self, i: usize) -> bool {
-        self.depth(i) > 0.0
+        let from = (2 * i).saturating_sub(1);
+        // (most have nothing near them, and searches for the last one that touches go through all of these)
+        self.points[from..=2 * i + 1]
+            .iter()
+            .any(|p| p.has_surroundings() && p.touches().iter().any(|t| t.depth > 0.0))
     }
 
     /// Makes the friction limits of the iterate in hand the lagged ones; call when an iterate is accepted.

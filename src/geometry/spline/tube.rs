@@ -150,7 +150,7 @@ impl SplineTube {
         }
         let mut consider = |segment: u32| {
             let k = segment as usize;
-            if self.arc_of(k) <= own && self.may_reach(k, p, reach) && self.has_foot(k, p, reach) {
+            if self.arc_of(k) <= own && self.may_reach(k, p, reach) {
                 out.push(segment);
             }
         };
@@ -160,9 +160,10 @@ impl SplineTube {
         if !self.goes_on {
             consider(self.points.len() as u32 - 1);
         }
-        // a segment may have been met in several cells
+        // a segment may have been met in several cells; what follows is the dear part
         out.sort_unstable();
         out.dedup();
+        out.retain(|&segment| self.has_foot(segment as usize, p, reach));
     }
 
     /// Arc length of a segment, m: that of its node, or at a seam that of the next node, where the

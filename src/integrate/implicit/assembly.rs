@@ -52,9 +52,10 @@ impl Assembly {
     /// Edge `j` pulls with `tension` and has these stiffnesses along and across itself.
     #[inline(always)]
     pub(super) fn stretch(&mut self, j: usize, tension: f64, stiff: f64, across: f64) {
-        self.stretch.set(TENSION, j, tension);
-        self.stretch.set(STIFF, j, stiff);
-        self.stretch.set(ACROSS, j, across);
+        let (block, row) = self.stretch.row_mut(j);
+        block.set(TENSION, row, tension);
+        block.set(STIFF, row, stiff);
+        block.set(ACROSS, row, across);
     }
 
     /// Puts the gradient of rod and inertia at `q`, and with `HESSIAN` the matrix, and completes the yield branches;

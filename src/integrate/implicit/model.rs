@@ -210,46 +210,48 @@ impl Model<'_> {
         energy
     }
 
-    /// Stretch of edge `j` with its direction, length and inverse length: into `work.axial` and the energy in
-    /// `sum`; returns the stiffness across it.
+    /// Stretch of all edges, into `work.axial` and the assembly; returns its energy, J.
     #[inline(always)]
-    fn stretch<const D: usize, U: Unknowns<D>>(
-        &self,
-        work: &mut Work<D, U>,
-        j: usize,
-        (along, length, inverse): (V3, f64, f64),
-        sum: &mut Value,
-    ) -> f64 {
-        let nozzle = self.nozzle.as_ref();
-        let at_nozzle = nozzle.filter(|_| j + 1 == self.rod.edges());
-        let s = match at_nozzle {
-            Some(nozzle) => nozzle.stretched(length),
-            None => stretched(
-                &self.laws.stretch,
-                &self.rod.stretch[j],
-                self.rod.rest[j],
-                length,
+    fn stretch<const D: usize, U: Unknowns<D>>(&self, work: &mut Work<D, U>) -> Value {
+        let Work {
+            unknowns,
+            assembly,
+            axial,
+            expected,
+            ..
+        } = work;
+        let mut sum = Value::default();
+        let last = self.rod.edges() - 1;
+        let states = self.rod.stretch.iter().zip(&self.rod.rest);
+        let edges = axial.iter_mut().zip(expected.iter()).zip(states);
+        for (j, ((axial, expected), (state, rest))) in edges.enumerate() {
+            let (along, length, inverse) = unknowns.joints().edge(j);
+            let mut expected = *expected;
+            let s = match &self.nozzle {
+                Some(nozzle) if j == last => {
+                    let s = nozzle.stretched(length);
+                    // it gives way and can go slack: nothing to straighten out there
+                    (expected.energy, expected.tension) = (s.energy, s.tension);
+                    expected.length = length;
+                    s
+                }
                 // a spike of tension that the update is about to straighten out is no reason to yield
-                work.expected[j].length,
-            ),
-        };
-        let mut expected = work.expected[j];
-        if at_nozzle.is_some() {
-            // it gives way and can go slack: nothing to straighten out there
-            (expected.energy, expected.tension) = (s.energy, s.tension);
-            expected.length = length;
+                _ => stretched(&self.laws.stretch, state, *rest, length, expected.length),
+            };
+            sum.now += s.energy;
+            sum.merit += expected.energy + expected.tension * (length - expected.length);
+            *axial = Axial {
+                along,
+                length,
+                tension: s.tension,
+                stiffness: s.stiffness,
+                energy: s.energy,
+            };
+            // a pressed edge would turn over: its geometric part is left out
+            let across = expected.tension.max(0.0) * inverse;
+            assembly.stretch(j, s.tension, s.stiffness, across);
         }
-        sum.now += s.energy;
-        sum.merit += expected.energy + expected.tension * (length - expected.length);
-        work.axial[j] = Axial {
-            along,
-            length,
-            tension: s.tension,
-            stiffness: s.stiffness,
-            energy: s.energy,
-        };
-        // a pressed edge would turn over: its geometric part is left out
-        expected.tension.max(0.0) * inverse
+        sum
     }
 
     /// Energy of inertia, gravity and joints, and of stretch.
@@ -261,14 +263,7 @@ impl Model<'_> {
         let wire = (self.rod, self.laws, self.grown);
         let branches = &mut work.yield_branches;
         let mut energy = (work.unknowns).respond::<HESSIAN>(wire, &work.q, branches);
-        let mut axial = Value::default();
-        for j in 0..self.rod.edges() {
-            let joints = work.unknowns.joints();
-            let edge = (joints.along(j), joints.length(j), joints.inverse(j));
-            let across = self.stretch(work, j, edge, &mut axial);
-            let s = work.axial[j];
-            work.assembly.stretch(j, s.tension, s.stiffness, across);
-        }
+        let axial = self.stretch(work);
         let weight = 1.0 / (self.gamma * self.gamma);
         let gravity = self.back.to_core(self.loads.gravity);
         let Work {
@@ -300,33 +295,27 @@ impl Model<'_> {
             return;
         };
         line.begin();
-        let mut arc = self.arc0;
-        for (j, rest) in self.rod.rest.iter().enumerate() {
-            if j > 0 {
-                let point = ContactPoint::Node(j);
-                self.contact_of::<D, U, HESSIAN>(point, arc, &mut line, work, value);
-            }
-            let point = ContactPoint::Edge(j);
-            self.contact_of::<D, U, HESSIAN>(point, arc, &mut line, work, value);
-            arc += rest;
+        line.keep_busy(&work.q);
+        for at in 0..line.scratch.busy.len() {
+            let point = ContactPoint::of_number(line.scratch.busy[at] as usize);
+            self.contact_of::<D, U, HESSIAN>(point, &mut line, work, value);
         }
         self.contact_of_pairs::<D, U, HESSIAN>(&mut line, work, value);
         self.line = Some(line);
     }
 
-    /// Adds the touches of one contact point, whose node or edge begins at the unstretched length `arc`.
+    /// Adds the touches of one contact point.
     #[inline(always)]
     fn contact_of<const D: usize, U: Unknowns<D>, const HESSIAN: bool>(
         &self,
         point: ContactPoint,
-        arc: f64,
         line: &mut LineContact<'_>,
         work: &mut Work<D, U>,
         value: &mut Value,
     ) {
         let rest = &self.rod.rest;
         let p = point.place(&work.q);
-        let own = || own_wire(point.arc(arc, rest), self.diameter);
+        let own = || own_wire(point.arc(self.arc0, rest), self.diameter);
         let length = || point.length_with(rest, |i| voronoi(self.rod, self.grown, i));
         if let Some(response) = line.push(point.number(), p, length, own, self.elapsed) {
             value.merit += response.energy_lagged;

@@ -94,12 +94,16 @@ impl Unknowns<4> for PlacesAndRolls {
         first: usize,
         start: usize,
     ) {
-        let mut torque = [0.0; ROWS];
         let behind = joints.load(simd, TORQUE + 1, first, 1);
-        (behind + joints.load(simd, TORQUE, first, 2)).store(&mut torque);
+        let torques = behind + joints.load(simd, TORQUE, first, 2);
         let to = &mut self.rolls.gradient[start..];
-        let count = Lanes::<S>::COUNT.min(to.len());
-        to[..count].copy_from_slice(&torque[..count]);
+        if to.len() >= Lanes::<S>::COUNT {
+            torques.store(to);
+        } else {
+            let mut all = [0.0; ROWS];
+            torques.store(&mut all);
+            to.copy_from_slice(&all[..to.len()]);
+        }
     }
 
     /// The roll of the edge before a joint is an unknown of the node before it.
@@ -154,8 +158,9 @@ impl Unknowns<4> for PlacesAndRolls {
     }
 
     fn take(&mut self, update: &[f64], share: f64) {
-        for (j, angle) in self.rolls.angle.iter_mut().enumerate() {
-            *angle = self.rolls.start[j] + Self::roll(update, j) * share;
+        let rolls = self.rolls.angle.iter_mut().zip(&self.rolls.start);
+        for ((angle, start), [.., roll]) in rolls.zip(update.as_chunks::<4>().0) {
+            *angle = start + roll * share;
         }
     }
 

@@ -116,6 +116,9 @@ pub(super) fn still(sys: &mut System) -> StepFormula {
 
 pub(super) fn model_at_rest(sys: &mut System) -> Model<'_> {
     let held = [sys.state.support[0].hold, sys.state.support[1].hold];
+    if let Some(mut line) = sys.line_contact() {
+        line.begin_solve();
+    }
     Model {
         last: &sys.state.past.q[0],
         rod: &sys.state.rod,

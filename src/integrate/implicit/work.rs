@@ -118,8 +118,9 @@ impl<const D: usize, U: Unknowns<D>> Work<D, U> {
 
     /// Takes this share of the update from the start.
     pub(super) fn take(&mut self, share: f64) {
-        for i in 0..self.q.len() {
-            self.q[i] = self.start[i] + self.update_of(i) * share;
+        let places = self.q.iter_mut().zip(&self.start);
+        for ((q, start), u) in places.zip(self.update.as_chunks::<D>().0) {
+            *q = start + V3::new(u[0], u[1], u[2]) * share;
         }
         self.unknowns.take(&self.update, share);
     }

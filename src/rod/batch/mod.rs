@@ -46,14 +46,8 @@ pub trait Joints {
     /// Directions of the edges of `block` from row `first` on.
     fn directions<S: Simd>(&self, simd: S, block: usize, first: usize) -> Lanes3<S>;
 
-    /// Unit direction of edge `j`.
-    fn along(&self, j: usize) -> V3;
-
-    /// Length of edge `j`, m.
-    fn length(&self, j: usize) -> f64;
-
-    /// Inverse length of edge `j`, 1/m.
-    fn inverse(&self, j: usize) -> f64;
+    /// Unit direction of edge `j`, its length, m, and its inverse length, 1/m.
+    fn edge(&self, j: usize) -> (V3, f64, f64);
 
     /// Gradients, and Hessians where asked for, of the joints of `block` from row `first` on; with
     /// `near` also the derivatives that [`YieldBranch`] needs.

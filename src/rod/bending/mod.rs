@@ -62,7 +62,7 @@ pub struct Stretched {
 ///
 /// The branch, elastic or yielding, is that at the length `expected` (m), where an iteration may
 /// know it better than at its iterate.
-#[inline]
+#[inline(always)]
 pub fn stretched(law: &Law, state: &Scalar, rest: f64, length: f64, expected: f64) -> Stretched {
     let promised = law.modulus * (expected / rest - 1.0 - state.strain);
     if promised.abs() <= law.limit + state.rise {

@@ -45,7 +45,7 @@ impl Forces {
         self.joints.place(&rod.x, roll);
         self.joints.respond_explicit(rod, laws, clamp, parts, load);
         for j in 0..edges {
-            let length = self.joints.length(j);
+            let (_, length, _) = self.joints.edge(j);
             let (tension, state, work) =
                 respond_scalar(&laws.stretch, &rod.stretch[j], length / rod.rest[j] - 1.0);
             load.stored += 0.5 * tension * tension / laws.stretch.modulus * rod.rest[j];

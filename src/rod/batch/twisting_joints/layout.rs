@@ -3,7 +3,6 @@
 use crate::math::simd::Columns;
 use crate::math::simd::ROWS;
 use crate::math::{Quat, V3, rotate};
-use crate::rod::batch::Joints;
 use crate::rod::forces::Laws;
 use crate::rod::plasticity::{Bend, Scalar};
 use crate::rod::twisting::Turned;
@@ -103,6 +102,11 @@ impl TwistingJoints {
         }
     }
 
+    /// Unit direction of edge `j`.
+    pub(super) fn along(&self, j: usize) -> V3 {
+        self.edge.vector(ALONG, j)
+    }
+
     /// Frame of edge `j`; the far clamp's after the last.
     pub(super) fn frame(&self, j: usize) -> Quat {
         quaternion(|a| self.edge.get(FRAME + a, j))
@@ -116,7 +120,12 @@ impl TwistingJoints {
     /// Edge `j` as [`twisted`](crate::rod::twisted()) takes it.
     pub fn turned(&self, j: usize) -> Turned {
         let detour = self.edge.vector(DETOUR, j);
-        Turned::known(self.frame(j), self.along(j), self.inverse(j), detour)
+        Turned::known(
+            self.frame(j),
+            self.along(j),
+            self.edge.get(INVERSE, j),
+            detour,
+        )
     }
 
     /// Takes over the plastic state of the joints from `first` to `last`; other joints carry no

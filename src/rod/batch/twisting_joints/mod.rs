@@ -214,19 +214,14 @@ impl Joints for TwistingJoints {
         self.edge.blocks()[block].load3(simd, ALONG, first, 1)
     }
 
-    #[inline]
-    fn along(&self, j: usize) -> V3 {
-        self.edge.vector(ALONG, j)
-    }
-
-    #[inline]
-    fn length(&self, j: usize) -> f64 {
-        self.edge.get(LENGTH, j)
-    }
-
-    #[inline]
-    fn inverse(&self, j: usize) -> f64 {
-        self.edge.get(INVERSE, j)
+    #[inline(always)]
+    fn edge(&self, j: usize) -> (V3, f64, f64) {
+        let (block, row) = self.edge.row(j);
+        (
+            block.vector(ALONG, row),
+            block.get(LENGTH, row),
+            block.get(INVERSE, row),
+        )
     }
 
     #[inline(always)]
