@@ -267,6 +267,7 @@ fn a_look_ahead_comes_back() {
         let mut look = |way: V3| {
             line.contact().predict(
                 STEP,
+                way.norm(),
                 |_| way,
                 |_, more, change| {
                     gradient += change;

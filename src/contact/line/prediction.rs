@@ -9,7 +9,7 @@ const SAME_UPDATE: f64 = 0.2;
 
 impl LineContact<'_> {
     /// Evaluates the response where the update `move_of(point)` (m) leads every point, and replaces the models that promise
-    /// something else by the tangents there; returns whether there were any.
+    /// something else by the tangents there; returns whether there were any. No node goes farther than `farthest`, m.
     ///
     /// `correct(point, change of the Hessian, change of the gradient at the iterate)` hands the replacement over, N/m and N.
     /// Without it a point on its way through a surface that the Hessian does not hold yet would be thrown back
@@ -19,6 +19,7 @@ impl LineContact<'_> {
     pub fn predict(
         &mut self,
         step: f64,
+        farthest: f64,
         move_of: impl Fn(usize) -> V3,
         mut correct: impl FnMut(usize, &Block, &V3),
     ) -> bool {
@@ -27,6 +28,10 @@ impl LineContact<'_> {
         let same = SAME_UPDATE * tolerance;
         let mut near = std::mem::take(&mut self.scratch.near);
         for n in &mut near {
+            // no point goes farther than its nodes
+            if n.room > farthest {
+                continue;
+            }
             let way = move_of(n.point as usize);
             let far = way.norm_squared();
             // too short a way to change the force by more than the tolerance, or as good as the one looked along

@@ -379,10 +379,16 @@ fn solve_linear<const D: usize, U: Unknowns<D>>(
             }
         };
         if let Some(line) = &mut model.line {
-            any |= line.predict(model.elapsed, move_of, |point, stiffness, gradient| {
-                let place = ContactPoint::of_number(point).weights();
-                correct(&place, stiffness, gradient);
-            });
+            let farthest = farthest_move::<D>(update);
+            any |= line.predict(
+                model.elapsed,
+                farthest,
+                move_of,
+                |point, stiffness, gradient| {
+                    let place = ContactPoint::of_number(point).weights();
+                    correct(&place, stiffness, gradient);
+                },
+            );
             let conditions = line.model.of_pairs(model.elapsed, line.state.hold_limits);
             if let Some(pairs) = &mut line.state.self_contact {
                 there.clear();
@@ -417,6 +423,15 @@ fn solve_linear<const D: usize, U: Unknowns<D>>(
         work.solves += 1;
     }
     Ok(true)
+}
+
+/// Upper bound of the way of a node in an update, m.
+fn farthest_move<const D: usize>(update: &[f64]) -> f64 {
+    let square = |u: &[f64; D]| u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+    let nodes = update.as_chunks::<D>().0;
+    let most = nodes.iter().map(square).fold(0.0, f64::max);
+    // (rounding)
+    most.sqrt() * (1.0 + 1e-9)
 }
 
 /// Looks where the update leads every joint, and corrects the tangents of those that change their branch.

@@ -121,7 +121,7 @@ impl Places {
     fn turn_plastic_curvature(&mut self) {
         for (i, carried) in &self.bent {
             // (a clamp's direction stands behind that of the last edge)
-            let after = self.joints.along(*i);
+            let after = self.joints.edge(*i).0;
             self.set[*i] = carried.at([&self.along_before(*i), &after]);
         }
     }
@@ -130,7 +130,7 @@ impl Places {
     fn along_before(&self, i: usize) -> V3 {
         match i {
             0 => self.clamps[0].unwrap_or(V3::z()),
-            _ => self.joints.along(i - 1),
+            _ => self.joints.edge(i - 1).0,
         }
     }
 }
