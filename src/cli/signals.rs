@@ -350,7 +350,7 @@ mod tests {
         for (text, parts) in [
             (
                 "time,spindel_speed\n0,1\n",
-                &["in.csv", "spindel_speed", "mean spindle_speed?"][..],
+                &["in.csv", "spindel_speed", "mean spindle_speed, in rad/s?"][..],
             ),
             ("spindle_speed\n1\n", &["no column time"]),
             ("time,time\n1,1\n", &["time is there twice"]),

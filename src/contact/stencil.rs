@@ -85,7 +85,7 @@ impl ContactPoint {
     }
 
     /// Unstretched length from the clamp, m, on a wire whose first node is at `start` and whose edges have the unstretched
-    /// lengths `rest`. They are summed up anew: few points are asked, and few of them more than once.
+    /// lengths `rest`. They are summed up at each call: few points are asked, and few of them more than once.
     pub fn arc(self, start: f64, rest: &[f64]) -> f64 {
         let to_node = |i: usize| rest[..i].iter().fold(start, |arc, rest| arc + rest);
         match self {

@@ -8,7 +8,7 @@ use crate::contact::friction::{ContactResponse, LimitFrom};
 use crate::math::V3;
 
 impl LineContact<'_> {
-    /// Begins a solve that [`Self::begin_attempt`] did not begin: points are listed anew.
+    /// Begins a solve that [`Self::begin_attempt`] did not begin: points are listed again.
     pub fn begin_solve(&mut self) {
         self.scratch.listed_at.clear();
     }

@@ -91,7 +91,7 @@ impl LineContact<'_> {
         self.scratch.listed_at.extend_from_slice(q);
     }
 
-    /// Lists the points anew where a node is farther from where it was at [`Self::list_busy_at`] than the others have to spare;
+    /// Lists the points again where a node is farther from where it was at [`Self::list_busy_at`] than the others have to spare;
     /// `q` as there. In the iterates of a step that is seldom: in one of fifty evaluations (`fig8`, 300 rad/s, 2e-6 m).
     pub fn keep_busy(&mut self, q: &[V3]) {
         // (a little less, for rounding)

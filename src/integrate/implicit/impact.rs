@@ -104,7 +104,7 @@ impl Impacts {
                 .in_landings(sys, step, (solved, old), (&self.impulses, &self.start[0]));
         sys.state.balance.numerical -= blow + rubbed;
         let landed = [blow, rubbed];
-        self.give_back_friction(sys, (step, old), parts, &mut carried);
+        self.give_back_friction(sys, step, parts, &mut carried);
         let bound = UNSEEN * tolerance;
         self.settle(step.h, bound, parts, restitution);
         self.take_over(sys, step, old, parts);
@@ -227,17 +227,15 @@ impl Impacts {
     fn give_back_friction(
         &mut self,
         sys: &mut System,
-        (step, old): (&StepFormula, Spindle),
+        step: &StepFormula,
         parts: usize,
         carried: &mut Carried,
     ) {
         let spin = Spin::new(sys.state.spindle.angle);
-        let before = Spin::new(old.angle);
         for impulse in &mut self.impulses {
-            let past = &sys.state.past;
-            let at_start =
-                |i: usize| before.to_core(past.v[i] - spin_velocity(old.speed, past.x[i]));
-            impulse.bound_surplus(step.gamma, &self.motion[0], at_start);
+            let [now, start, _] = &sys.state.past.q;
+            let way = impulse.seen_of(now) - impulse.seen_of(start);
+            impulse.bound_surplus(step.gamma, &self.motion[0], (way, step.h));
             for (i, share) in impulse.shares() {
                 let speed = impulse.touch.surplus * (share * step.gamma);
                 sys.state.rod.v[i] += spin.to_lab(speed);
@@ -351,11 +349,11 @@ mod tests {
                     ..touch(normal, surplus * 0.1)
                 });
             let mut impacts = wedged(speed, &touches);
-            let start = impacts.start[0].clone();
+            let way = speed * 1e-5;
             for _ in 0..10 {
                 for (impulse, surplus) in impacts.impulses.iter_mut().zip(surplus) {
                     impulse.touch.surplus = surplus * 1e7;
-                    impulse.bound_surplus(1e-12, &impacts.motion[0], |i| start[i]);
+                    impulse.bound_surplus(1e-12, &impacts.motion[0], (way, 1e-5));
                     let surplus = impulse.touch.surplus;
                     for (i, share) in impulse.shares() {
                         impacts.motion[0][i] += surplus * (share * 1e-12);
@@ -363,8 +361,8 @@ mod tests {
                 }
             }
             let [before, after] = [&impacts.start[0], &impacts.motion[0]].map(|v| energy(v));
-            // (along either direction the wire may become as fast as at the start)
-            assert!(after <= 2.0 * before, "{speed}: {before} J, {after} J");
+            // (along either direction the wire may become twice as fast as its way says)
+            assert!(after <= 5.0 * before, "{speed}: {before} J, {after} J");
         }
     }
 

@@ -134,31 +134,28 @@ impl Impulse {
         self.nodes().map(part).sum()
     }
 
-    /// Bounds what the solve took too much of friction, or left: as an impulse over `gamma` (s) it no more than stops a slide of the present
-    /// `motion`, and drives one to no more than its speed at the step's start.
-    pub(super) fn bound_surplus(
-        &mut self,
-        gamma: f64,
-        motion: &[V3],
-        at_start: impl Fn(usize) -> V3,
-    ) {
+    /// Bounds what the solve took too much of friction, or left: as an impulse over `gamma` (s) it changes the slide in `motion` by no more than
+    /// its speed. It drives it to no more than what a slide from rest ends with that makes its `way`, m, in a step of `h`, s.
+    pub(super) fn bound_surplus(&mut self, gamma: f64, motion: &[V3], (way, h): (V3, f64)) {
         let change = self.touch.surplus.norm() * self.inverse * gamma;
         if change == 0.0 {
             return;
         }
-        let along = self.touch.surplus.normalize();
-        let now = self.part_of(motion, &along);
-        let then: f64 = (self.nodes())
-            .map(|(i, w)| w * at_start(i).dot(&along))
-            .sum();
-        let most = if now < 0.0 {
-            -now
-        } else {
-            (then - now).max(0.0)
-        };
+        let across = |v: V3| v - self.touch.normal * v.dot(&self.touch.normal);
+        let slide = across(self.seen_of(motion));
+        let along = slide.dot(&self.touch.surplus.normalize());
+        let mut most = slide.norm();
+        if along >= 0.0 {
+            most = most.min((2.0 * across(way).norm() / h - along).max(0.0));
+        }
         if change > most {
             self.touch.surplus *= most / change;
         }
+    }
+
+    /// What the touch sees of a motion of the nodes.
+    pub(super) fn seen_of(&self, motion: &[V3]) -> V3 {
+        self.nodes().map(|(i, w)| motion[i] * w).sum()
     }
 
     /// All that was added to a part of the motion, N s or N s^2.
