@@ -7,7 +7,7 @@
 //! the twist, gives two bending components that neither edge prefers. The moment is the exact
 //! derivative of the energy, whatever the plastic state.
 
-use crate::math::{Quat, V3};
+use crate::math::{Quat, V3, relative, rotate};
 
 /// Bending and twist angle between two edge frames, and what their derivative needs.
 #[derive(Clone, Copy, Debug)]
@@ -131,6 +131,15 @@ impl Joint {
     }
 }
 
+/// A vector with components `k` in the frame half-way between the frames of two edges.
+pub fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
+    let joint = Joint::between(p, n);
+    let half = relative([0.5 * joint.bend[0], 0.5 * joint.bend[1]], 0.0);
+    let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
+    let mid = p * Quat::new(c, 0.0, 0.0, s) * half;
+    rotate(&mid, &V3::new(k[0], k[1], 0.0))
+}
+
 /// A polynomial by its coefficients.
 #[inline(always)]
 fn series<const N: usize>(terms: &[f64; N], x: f64) -> f64 {
@@ -144,7 +153,6 @@ fn series<const N: usize>(terms: &[f64; N], x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::{relative, rotate};
     use proptest::prelude::*;
 
     fn quat(a: [f64; 4]) -> Quat {

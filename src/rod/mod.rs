@@ -29,7 +29,7 @@ pub use bending::{SetCurvature, Stretched, stretched, turning};
 pub use exit_bend::ExitBend;
 pub use flow_curve::{Bilinear, FlowCurve, FlowCurveError, InPieces, MOST_STRAIN, RoundLaws};
 pub use forces::{ForceParts, Laws, Load, internal_forces, stored_energy};
-pub use joint::Joint;
+pub use joint::{Joint, mid_frame_vector};
 pub use material::Material;
 pub use pieces::Pieces;
 pub use plasticity::{Bend, Law, Scalar};

@@ -3,9 +3,9 @@
 use super::lengths::{set_share, voronoi};
 use super::scheme::StepFormula;
 use super::unknowns::Unknowns;
-use crate::math::{Quat, Spin, V3, align, rotate, turn_about_y};
+use crate::math::{Spin, V3, align, rotate, turn_about_y};
 use crate::rod::batch::Joints;
-use crate::rod::{BendingJoints, Joint, Laws, Rod, SetCurvature, YieldBranches};
+use crate::rod::{BendingJoints, Laws, Rod, SetCurvature, YieldBranches, mid_frame_vector};
 use crate::system::{Spindle, Support, System};
 
 /// Joints that bend.
@@ -133,15 +133,6 @@ impl Places {
             _ => self.joints.edge(i - 1).0,
         }
     }
-}
-
-/// A vector with components `k` in the frame half-way between the frames of two edges.
-fn mid_frame_vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
-    let joint = Joint::between(p, n);
-    let half = crate::math::relative([0.5 * joint.bend[0], 0.5 * joint.bend[1]], 0.0);
-    let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
-    let mid = p * Quat::new(c, 0.0, 0.0, s) * half;
-    rotate(&mid, &V3::new(k[0], k[1], 0.0))
 }
 
 /// Directions of the clamped ends in the core frame.

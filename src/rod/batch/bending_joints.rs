@@ -1,6 +1,6 @@
 //! Joints of a rod without twist: what [`bent`](crate::rod::bent()) does for one.
 
-use super::{CROSS, GRADIENT, JOINT, Joints, LEAD, OWN, put_places, series};
+use super::{CROSS, GRADIENT, JOINT, Joints, LEAD, OWN, edge_of, put_places, series};
 use crate::math::V3;
 use crate::math::simd::{Columns, Lanes, Lanes3, ROWS, RowBlock, WithSimd, run};
 use crate::rod::bending::{FOLD, SERIES, SLOPE_TERMS, TERMS, angle_over_tangent, respond};
@@ -192,12 +192,7 @@ impl Joints for BendingJoints {
 
     #[inline(always)]
     fn edge(&self, j: usize) -> (V3, f64, f64) {
-        let (block, row) = self.edge.row(j);
-        (
-            block.vector(ALONG, row),
-            block.get(LENGTH, row),
-            block.get(INVERSE, row),
-        )
+        edge_of(&self.edge, j, [ALONG, LENGTH, INVERSE])
     }
 
     /// Third pass; see [`crate::rod::bent()`] for the formulas.

@@ -93,6 +93,18 @@ pub trait Joints {
     }
 }
 
+/// Unit direction of edge `j`, its length, m, and its inverse length, 1/m, from these `columns` of the `edges`.
+#[inline(always)]
+fn edge_of<const N: usize>(edges: &Columns<N>, j: usize, columns: [usize; 3]) -> (V3, f64, f64) {
+    let (block, row) = edges.row(j);
+    let [along, length, inverse] = columns;
+    (
+        block.vector(along, row),
+        block.get(length, row),
+        block.get(inverse, row),
+    )
+}
+
 /// Writes the positions of all nodes into three columns.
 fn put_places(columns: &mut Columns<3>, q: &[V3]) {
     columns.put(q, |block, row, p| {

@@ -28,10 +28,9 @@ pub struct Bent {
 
 /// Bending of a joint between two edges without twist.
 ///
-/// `t` are the unit directions of the edges and `il` their inverse lengths, 1/m. `set` is the
-/// plastic curvature as a vector, 1/m, in the frame of `t`; it turns
-/// [along with the wire](super::SetCurvature). `rise` is the rise of the yield moment,
-/// N m, `lv` the Voronoi length, m.
+/// The edges have the unit directions `t` and the inverse lengths `il`, 1/m. The plastic curvature
+/// `set` is a vector, 1/m, in the frame of `t`. It turns [along with the wire](super::SetCurvature).
+/// The yield moment has risen by `rise`, N m. The Voronoi length is `lv`, m.
 #[inline]
 pub fn bent(law: &Law, set: &V3, rise: f64, lv: f64, t: [&V3; 2], il: [f64; 2]) -> Bent {
     let chi = (1.0 + t[0].dot(t[1])).max(FOLD);

@@ -59,19 +59,8 @@ pub(super) fn spin_per_way(t: [&V3; 2]) -> V3 {
 mod tests {
     use super::*;
     use crate::math::{Quat, align, relative, rotate};
-    use crate::rod::Joint;
+    use crate::rod::mid_frame_vector;
     use proptest::prelude::*;
-
-    /// Components `k` in the frame half-way between two frames.
-    fn vector(p: &Quat, n: &Quat, k: [f64; 2]) -> V3 {
-        let joint = Joint::between(p, n);
-        let half = relative([0.5 * joint.bend[0], 0.5 * joint.bend[1]], 0.0);
-        let (s, c) = (libm::sin(0.25 * joint.twist), libm::cos(0.25 * joint.twist));
-        rotate(
-            &(p * Quat::new(c, 0.0, 0.0, s) * half),
-            &V3::new(k[0], k[1], 0.0),
-        )
-    }
 
     proptest! {
         #[test]
@@ -81,12 +70,12 @@ mod tests {
             let n = p * relative(bend, twist);
             let along = |q: &Quat| rotate(q, &V3::z());
             let t = [along(&p), along(&n)];
-            let set = SetCurvature::new(vector(&p, &n, k), [&t[0], &t[1]]);
+            let set = SetCurvature::new(mid_frame_vector(&p, &n, k), [&t[0], &t[1]]);
             let size = k[0].hypot(k[1]);
             for (far, off) in [(1e-3, 3e-6), (1e-2, 3e-4)] {
                 let a = (t[0] + V3::new(turn[0], turn[1], turn[2]) * far).normalize();
                 let b = (t[1] + V3::new(turn[3], turn[4], turn[5]) * far).normalize();
-                let want = vector(&align(&p, &a, 0.0), &align(&n, &b, 0.0), k);
+                let want = mid_frame_vector(&align(&p, &a, 0.0), &align(&n, &b, 0.0), k);
                 let got = set.at([&a, &b]);
                 prop_assert!((got - want).norm() <= off * size, "{got} {want}");
             }

@@ -8,7 +8,7 @@ mod passes;
 #[cfg(test)]
 mod tests;
 
-use super::{JOINT, Joints, put_places};
+use super::{JOINT, Joints, edge_of, put_places};
 use crate::math::V3;
 use crate::math::align;
 use crate::math::simd::{Lanes3, ROWS, RowBlock, run};
@@ -216,12 +216,7 @@ impl Joints for TwistingJoints {
 
     #[inline(always)]
     fn edge(&self, j: usize) -> (V3, f64, f64) {
-        let (block, row) = self.edge.row(j);
-        (
-            block.vector(ALONG, row),
-            block.get(LENGTH, row),
-            block.get(INVERSE, row),
-        )
+        edge_of(&self.edge, j, [ALONG, LENGTH, INVERSE])
     }
 
     #[inline(always)]
