@@ -15,7 +15,7 @@ ROOT = Path(__file__).resolve().parent.parent
 GOLDEN = ROOT / "tests" / "golden" / "results.json"
 FILES = ["history.csv", "turns.csv", "defects.csv", "stations.csv", "coil.vtp", "core.vtp", "summary.json"]
 # the words in which a random scene says why it ended
-REASON = re.compile(r"((?:wire broke|gave up) at t = [0-9.e-]+ s): .*")
+REASON = re.compile(r"((?:wire broke|ended|gave up) at t = [0-9.e-]+ s): .*")
 # what a run takes, not what it computes
 CLOCK = re.compile(r'"(wall_s|cpu_s|real_time_factor)": ?[0-9.eE+-]+,?')
 

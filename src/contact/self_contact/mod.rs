@@ -7,10 +7,11 @@
 //! gradients with the banded part as preconditioner.
 //!
 //! * [`SelfContact`]: the pairs, and how they follow changes of the wire; [`PairScratch`]: what they are worked on with
-//! * `search`: which pairs a step has to look at
+//! * `search`: which pairs a step has to look at; `by_place`: where loops make that another question than "a turn back"
 //! * `response`: potential, gradient, Hessian and couplings, at an iterate and where an update leads
 //! * `commit`: an iterate becomes the accepted instant; what was lost and is stored
 
+mod by_place;
 mod commit;
 mod coupling;
 mod pairs;

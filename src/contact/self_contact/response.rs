@@ -89,7 +89,12 @@ impl SelfContact {
             let foot = curve.foot(p, pair.segment);
             pair.segment = foot.segment;
             (pair.share, pair.normal) = (foot.share, foot.normal);
-            pair.depth = foot.depth(around.diameter);
+            // (a loop that opens leaves no passage to touch: downhill from there lies the point's own wire)
+            pair.depth = if foot.segment + 1 >= pair.point / 2 {
+                -around.diameter
+            } else {
+                foot.depth(around.diameter)
+            };
             let old = NodeWeights::from(curve.weights(foot.segment as usize, foot.share));
             let stiffness = around.law.stiffness * length(pair.point as usize);
             let mut near = NearPair {

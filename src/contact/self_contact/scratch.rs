@@ -1,5 +1,6 @@
 //! What contact of live wire with live wire works with.
 
+use super::by_place::Blocks;
 use super::coupling::Coupling;
 use super::pairs::Pair;
 use crate::contact::stencil::NodeWeights;
@@ -50,6 +51,11 @@ pub struct PairScratch {
     pub(super) angle: Vec<f64>,
     /// unstretched length from the clamp to each node, m
     pub(super) arc: Vec<f64>,
+    /// the wire by place, where it has loops
+    pub(super) blocks: Blocks,
+    /// nodes of older wire near the point that is looked at, and segments with which it was paired
+    pub(super) found: Vec<u32>,
+    pub(super) paired: Vec<u32>,
     /// points next to wire with which they make no pair
     pub(super) unpaired: Vec<Unpaired>,
     /// by turns back along the wire, the node that the search has reached
@@ -71,6 +77,9 @@ impl PairScratch {
             previous,
             angle,
             arc,
+            blocks,
+            found,
+            paired,
             unpaired,
             reached,
             used,
@@ -81,6 +90,9 @@ impl PairScratch {
         previous.clear();
         angle.clear();
         arc.clear();
+        blocks.clear();
+        found.clear();
+        paired.clear();
         unpaired.clear();
         reached.clear();
         used.clear();

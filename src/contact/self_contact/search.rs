@@ -29,10 +29,14 @@ impl SelfContact {
         diameter: f64,
     ) {
         scratch.measure_wire(q, rest);
+        let folded = scratch.is_folded(q, diameter);
         let PairScratch {
             previous,
             angle,
             arc,
+            blocks,
+            found,
+            paired,
             unpaired,
             reached,
             ..
@@ -44,10 +48,16 @@ impl SelfContact {
         // both lists of pairs run along the wire
         let mut known = 0;
         reached.clear();
+        let way_of = |node: usize| (guess[node] - q[node]).norm();
+        let mut fastest = 0;
+        if folded {
+            blocks.build(q);
+            fastest = (0..q.len()).fold(0, |a, b| if way_of(b) > way_of(a) { b } else { a });
+        }
         for contact_point in ContactPoint::all(q.len() - 1) {
             let point = contact_point.number() as u32;
             let i = point as usize / 2;
-            if angle[i] - TAU < -WINDOW {
+            if !folded && angle[i] - TAU < -WINDOW {
                 continue;
             }
             let weights = contact_point.weights();
@@ -61,37 +71,32 @@ impl SelfContact {
             while known < previous.len() && previous[known].point < point {
                 known += 1;
             }
-            // from every whole turn back along the wire to the closest point
-            for turns in 1.. {
-                let back = angle[i] - turns as f64 * TAU;
-                if back < -WINDOW {
-                    break;
-                }
-                if reached.len() < turns {
-                    reached.push(0);
-                }
-                let near = &mut reached[turns - 1];
-                while *near + 1 < end - 1 && angle[*near] < back {
-                    *near += 1;
-                }
-                while *near > 0 && angle[*near - 1] >= back {
-                    *near -= 1;
-                }
-                let foot = curve.foot(p, *near as u32);
+            paired.clear();
+            // pairs the point with the passage of the wire that node `near` belongs to
+            let mut look = |near: u32, back: Option<f64>| {
+                let foot = curve.foot(p, near);
                 let gap = -foot.depth(diameter);
                 let other = foot.segment as usize;
-                if arc[other] > own || (angle[other] - back).abs() > WINDOW {
-                    continue;
+                let elsewhere = back.is_some_and(|back| (angle[other] - back).abs() > WINDOW);
+                if arc[other] > own || elsewhere {
+                    return;
                 }
-                let way = way + (guess[other] - q[other]).norm();
+                let way = way + way_of(other);
                 if gap > SKIN * diameter + FOLLOW * way {
                     unpaired.push(Unpaired {
                         point,
                         room: gap,
                         other: foot.segment,
                     });
-                    continue;
+                    return;
                 }
+                if paired
+                    .iter()
+                    .any(|s| s.abs_diff(foot.segment) < SAME_PASSAGE)
+                {
+                    return;
+                }
+                paired.push(foot.segment);
                 let before = previous[known..]
                     .iter()
                     .take_while(|o| o.point == point)
@@ -112,6 +117,36 @@ impl SelfContact {
                     normal: foot.normal,
                     rebound: before.map_or(0.0, |o| o.rebound),
                 });
+            };
+            if folded {
+                let room = SKIN * diameter + FOLLOW * (way + way_of(fastest));
+                blocks.passages(q, p, end, diameter + room, found);
+                found.iter().for_each(|near| look(*near, None));
+                // what is farther off was not looked at
+                unpaired.push(Unpaired {
+                    point,
+                    room,
+                    other: fastest as u32,
+                });
+                continue;
+            }
+            // from every whole turn back along the wire to the closest point
+            for turns in 1.. {
+                let back = angle[i] - turns as f64 * TAU;
+                if back < -WINDOW {
+                    break;
+                }
+                if reached.len() < turns {
+                    reached.push(0);
+                }
+                let near = &mut reached[turns - 1];
+                while *near + 1 < end - 1 && angle[*near] < back {
+                    *near += 1;
+                }
+                while *near > 0 && angle[*near - 1] >= back {
+                    *near -= 1;
+                }
+                look(*near as u32, Some(back));
             }
         }
     }
@@ -137,6 +172,24 @@ impl PairScratch {
         }
     }
 
+    /// Whether wire may come near older live wire elsewhere than at whole turns back along it: it gets no farther round the core than older
+    /// wire, its own neighbourhood left out, by as much as two wires side by side take up. `measure_wire` has been called.
+    fn is_folded(&self, q: &[V3], diameter: f64) -> bool {
+        let (mut behind, mut farthest) = (0, f64::NEG_INFINITY);
+        self.arc
+            .iter()
+            .zip(&self.angle)
+            .zip(q)
+            .any(|((arc, angle), p)| {
+                let own = own_wire(*arc, diameter);
+                while self.arc[behind] <= own {
+                    farthest = farthest.max(self.angle[behind]);
+                    behind += 1;
+                }
+                (angle - farthest) * p.x.hypot(p.z) < (1.0 + SKIN) * diameter
+            })
+    }
+
     /// The first node next to wire that may have moved, from `q` to `now`, past wire with which it is not paired.
     pub fn missed(&self, q: &[V3], now: &[V3]) -> Option<usize> {
         self.unpaired
@@ -148,5 +201,60 @@ impl PairScratch {
                 way + (now[other] - q[other]).norm() > near.room
             })
             .map(|near| near.point as usize / 2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DIAMETER: f64 = 1.0;
+
+    /// Numbers of points and segments that are paired in a wire through these places.
+    fn pairs(q: &[V3]) -> Vec<(u32, u32)> {
+        let rest: Vec<f64> = q.windows(2).map(|e| (e[1] - e[0]).norm()).collect();
+        let mut live = SelfContact::default();
+        live.list(&mut PairScratch::default(), (q, q), &rest, DIAMETER);
+        live.pairs.iter().map(|p| (p.point, p.segment)).collect()
+    }
+
+    /// Wire that goes once round a core of radius 20 and on for a third of a radian, smoothly or in loops.
+    fn turn(loops: f64) -> Vec<V3> {
+        let at = |k: i32| {
+            let s = f64::from(k) * 0.02;
+            let angle = s + loops * (2.5 * s).sin();
+            let out = 20.0 + 4.0 * loops * (2.5 * s).cos();
+            V3::new(out * angle.cos(), 0.15 * s, out * angle.sin())
+        };
+        (0..345).map(at).collect()
+    }
+
+    #[test]
+    fn wire_without_loops_meets_itself_a_turn_back() {
+        let found = pairs(&turn(0.0));
+        assert!(!found.is_empty());
+        for (point, segment) in found {
+            let back = f64::from(point) * 0.01 - f64::from(segment) * 0.02;
+            assert!((back - TAU).abs() < 0.05, "{point} {segment}");
+        }
+    }
+
+    /// Live wire was sought a turn back only: loops under little tension went through each other.
+    #[test]
+    fn wire_with_loops_meets_itself_anywhere() {
+        let q = turn(0.6);
+        let found = pairs(&q);
+        let nodes = || (0..q.len() as u32).filter(|n| *n > 0);
+        let mut near = 0;
+        for (i, j) in nodes().flat_map(|i| (1..i.saturating_sub(30)).map(move |j| (i, j))) {
+            if (q[i as usize] - q[j as usize]).norm() < 1.1 * DIAMETER {
+                let is_paired = |(point, segment): &(u32, u32)| {
+                    (*point / 2).abs_diff(i) < 3 && segment.abs_diff(j) < 6
+                };
+                assert!(found.iter().any(is_paired), "nodes {i} and {j}");
+                near += 1;
+            }
+        }
+        assert!(near > 20, "{near} places where wire is near wire");
     }
 }

@@ -120,6 +120,7 @@ pub fn row(case: &Case, verdict: &Verdict) -> String {
     let outcome = match &verdict.outcome {
         Outcome::Completed => "completed".to_owned(),
         Outcome::Broke { .. } => "broke".to_owned(),
+        Outcome::Ended { .. } => "ended".to_owned(),
         Outcome::GaveUp { .. } => "gave up".to_owned(),
         Outcome::Invariant { what, .. } => what.to_string(),
     };

@@ -38,6 +38,7 @@ fn same_way(a: &Outcome, b: &Outcome) -> bool {
     match (a, b) {
         (Outcome::Completed, Outcome::Completed)
         | (Outcome::Broke { .. }, Outcome::Broke { .. })
+        | (Outcome::Ended { .. }, Outcome::Ended { .. })
         | (Outcome::GaveUp { .. }, Outcome::GaveUp { .. }) => true,
         (Outcome::Invariant { what: a, .. }, Outcome::Invariant { what: b, .. }) => a == b,
         _ => false,

@@ -145,6 +145,7 @@ struct Tally {
     cases: u64,
     completed: u64,
     broke: u64,
+    ended: u64,
     gave_up: u64,
     invariant: u64,
     turns: f64,
@@ -160,6 +161,7 @@ impl Tally {
         match verdict.outcome {
             Outcome::Completed => self.completed += 1,
             Outcome::Broke { .. } => self.broke += 1,
+            Outcome::Ended { .. } => self.ended += 1,
             Outcome::GaveUp { .. } => self.gave_up += 1,
             Outcome::Invariant { .. } => self.invariant += 1,
         }
@@ -178,10 +180,11 @@ impl Tally {
 
     fn row(&self, name: &str) -> String {
         format!(
-            "| {name} | {} | {} | {} | {} | {} | {:.0} | {:.0} | {:.2} | {:.1} % |\n",
+            "| {name} | {} | {} | {} | {} | {} | {} | {:.0} | {:.0} | {:.2} | {:.1} % |\n",
             self.cases,
             self.completed,
             self.broke,
+            self.ended,
             self.gave_up,
             self.invariant,
             self.steps as f64 / self.turns.max(1e-9),
@@ -192,8 +195,8 @@ impl Tally {
     }
 }
 
-const HEAD: &str = "| cases | completed | wire broke | gave up | invariant | steps/turn | at most | depth/d | energy |
-|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|
+const HEAD: &str = "| cases | completed | wire broke | ran away, collided | gave up | invariant | steps/turn | at most | depth/d | energy |
+|---|---:|---:|---:|---:|---:|---:|---:|---:|---:|---:|
 ";
 
 /// Totals over all cases and by region.
@@ -245,10 +248,11 @@ impl Totals {
     pub fn line(&self) -> String {
         let t = &self.all;
         format!(
-            "{} cases: {} completed, {} wire broke, {} gave up ({:.1} %), {} broke an invariant",
+            "{} cases: {} completed, {} wire broke, {} ran away or collided, {} gave up ({:.1} %), {} broke an invariant",
             t.cases,
             t.completed,
             t.broke,
+            t.ended,
             t.gave_up,
             100.0 * t.gave_up as f64 / (t.cases as f64).max(1.0),
             t.invariant

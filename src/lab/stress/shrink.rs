@@ -36,7 +36,7 @@ impl Best {
     fn cut(&mut self) {
         let time = match &self.verdict.outcome {
             Outcome::GaveUp { time, .. } | Outcome::Invariant { time, .. } => *time,
-            Outcome::Completed | Outcome::Broke { .. } => return,
+            Outcome::Completed | Outcome::Broke { .. } | Outcome::Ended { .. } => return,
         };
         let needed = (time / self.case.step).ceil() as usize + 2;
         if needed < self.case.inputs.len() {

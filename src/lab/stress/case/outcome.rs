@@ -15,6 +15,13 @@ pub enum Outcome {
         /// of the event
         text: String,
     },
+    /// the wire ran away from the nozzle, or something met the nozzle: what becomes of the scene, not of the solver
+    Ended {
+        /// s
+        time: f64,
+        /// of the event
+        text: String,
+    },
     /// the solver found no way on
     GaveUp {
         /// s
@@ -56,6 +63,7 @@ impl fmt::Display for Outcome {
         match self {
             Self::Completed => f.write_str("completed"),
             Self::Broke { time, text } => write!(f, "wire broke at t = {time:.6} s: {text}"),
+            Self::Ended { time, text } => write!(f, "ended at t = {time:.6} s: {text}"),
             Self::GaveUp {
                 time,
                 place,

@@ -84,17 +84,19 @@ impl Energy {
         m.remeshing = b.remeshing / over;
         let allowed = draw(sim) + OWN * (m.dissipated + scale);
         let taken = allowed + self.moved;
+        let most = if b.numerical > 0.0 { taken } else { allowed };
         let own = [
-            (
-                "numerical",
-                (b.numerical / taken).max(-b.numerical / allowed),
-            ),
-            ("remeshing", b.remeshing.abs() / allowed),
+            ("numerical", b.numerical, most),
+            ("remeshing", b.remeshing, allowed),
         ];
-        for (k, (name, share)) in own.into_iter().enumerate() {
+        for (k, (name, energy, most)) in own.into_iter().enumerate() {
+            let share = energy.abs() / most;
             m.own[k] = m.own[k].max(share);
             if share > 1.0 {
-                let text = format!("{name} energy is {share:.2} of what is allowed");
+                let text = format!(
+                    "{name} energy is {energy:.3e} J, {share:.2} of what is allowed ({:.3e} J dissipated)",
+                    m.dissipated
+                );
                 return Err(Broken::new(Invariant::Energy, text));
             }
         }

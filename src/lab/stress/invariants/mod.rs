@@ -82,18 +82,11 @@ fn wind(case: &Case, measures: &mut Measures) -> Outcome {
             matches!(event.kind, Break | Collision | Runaway)
         };
         if let Some(event) = sim.drain_events().into_iter().find(ends) {
-            if event.kind == EventKind::Break {
-                return Outcome::Broke {
-                    time: event.time,
-                    text: event.text,
-                };
-            }
-            let error = SimError {
-                time: event.time,
-                node: Some(sim.system().state.rod.nodes() - 1),
-                reason: event.text,
+            let Event { time, text, .. } = event;
+            return match event.kind {
+                EventKind::Break => Outcome::Broke { time, text },
+                _ => Outcome::Ended { time, text },
             };
-            return gave_up(&error, Some(&sim));
         }
         if let Err(broken) = watch.look(&sim, measures) {
             return broken.at(end);
