@@ -172,8 +172,10 @@ impl PairScratch {
         }
     }
 
-    /// Whether wire may come near older live wire elsewhere than at whole turns back along it: it gets no farther round the core than older
-    /// wire, its own neighbourhood left out, by as much as two wires side by side take up. `measure_wire` has been called.
+    /// Whether wire may come near older live wire elsewhere than at whole turns back along it.
+    ///
+    /// It may where it is no farther round the core than older wire by what two wires side by side take up. Its own neighbourhood does not
+    /// count. `measure_wire` has been called.
     fn is_folded(&self, q: &[V3], diameter: f64) -> bool {
         let (mut behind, mut farthest) = (0, f64::NEG_INFINITY);
         self.arc

@@ -8,10 +8,10 @@ use crate::simulation::Simulation;
 const ROUNDING: f64 = 1e-9;
 /// ... and so much of it may have gone where arcs became chords, node by node; ...
 const JOINED: f64 = 2e-4;
-/// ... or have come where chords became arcs, and gone where bent wire went back into the nozzle. Edges with an angle between them that become
-/// one chord lose an 8th of its square; wire that bends by it from edge to edge is longer than its chords by a 24th of it. It may
-/// bend by the sharpest bend that was seen at coarse edges, and by four times the angle from which on they are halved wherever less was seen.
-const BENT: f64 = 0.2;
+/// ... or have come where chords became arcs, and gone where bent wire went back into the nozzle. Wire that bends by an angle from edge to
+/// edge, rad, is longer than its chords by a 32nd of the square of that angle. All of this wire may bend by 0.2 rad, four times the angle
+/// from which on coarse edges are halved.
+const ARCS: f64 = 0.2 * 0.2 / 32.0;
 
 /// Remembers how much wire there was.
 #[derive(Clone, Copy, Debug)]
@@ -22,8 +22,6 @@ pub(super) struct Length {
     fed: f64,
     /// wire that came out of the nozzle and wire that went back, m
     passed: [f64; 2],
-    /// sharpest bend that was seen at an edge that may still be split, rad
-    bend: f64,
 }
 
 impl Length {
@@ -32,7 +30,6 @@ impl Length {
             start: wire_length(sim),
             fed: sim.outputs().fed_length,
             passed: [0.0; 2],
-            bend: BENT,
         }
     }
 
@@ -44,13 +41,8 @@ impl Length {
         let joined = sim.system().state.joined_away;
         let [out, back] = self.passed;
         let all = self.start + out + back;
-        self.bend = self.bend.max(sharpest(sim));
-        let square = self.bend * self.bend;
-        if joined > JOINED * all + square / 8.0 * back || -joined > square / 24.0 * all {
-            let text = format!(
-                "{joined:.3e} m of {all:.3e} m lost where nodes went and came; {back:.3e} m went back, bends {:.2} rad",
-                self.bend
-            );
+        if joined > JOINED * all + ARCS * back || -joined > ARCS * all {
+            let text = format!("{joined:.3e} m of {all:.3e} m lost where nodes went and came");
             return Err(Broken::new(Invariant::Length, text));
         }
         if (is - self.start - fed).abs() > ROUNDING * all {
@@ -62,16 +54,6 @@ impl Length {
         }
         Ok(())
     }
-}
-
-/// Sharpest bend between edges one of which is longer than those near the core, rad.
-fn sharpest(sim: &Simulation) -> f64 {
-    let rod = &sim.system().state.rod;
-    let long = 1.5 * sim.scene().solver.spacing_near;
-    (1..rod.edges())
-        .filter(|&i| rod.rest[i - 1].max(rod.rest[i]) > long)
-        .map(|i| rod.tangent(i - 1).angle(&rod.tangent(i)))
-        .fold(0.0, f64::max)
 }
 
 /// Unstretched wire from clamp to nozzle, m.
