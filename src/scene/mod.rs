@@ -19,6 +19,7 @@ mod material;
 mod nozzle_body;
 mod nozzle_law;
 mod nozzle_plan;
+mod nozzle_trail;
 mod problems;
 mod saved;
 mod stress_strain;

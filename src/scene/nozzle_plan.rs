@@ -7,7 +7,9 @@ use super::SceneError;
 use super::extent::Extent;
 use super::impossible::si;
 use super::nozzle_law::NozzleLaw;
+use super::nozzle_trail::Trail;
 use super::problems::Problems;
+use crate::rod::Section;
 use crate::settings::SceneSettings;
 use crate::variables::{Scale, scaled, split_suffix};
 use std::f64::consts::TAU;
@@ -45,16 +47,52 @@ struct Layers {
 }
 
 impl Layers {
-    /// Turns between which the wire climbs to each next layer, in a step that takes so many.
-    fn jumps(&self, step: f64) -> Vec<[f64; 2]> {
+    /// Turns between which the wire climbs to each next layer, in a step that takes so many and comes so much later.
+    fn jumps(&self, step: f64, delay: f64) -> Vec<[f64; 2]> {
         let mut done = 0.0;
         let mut ends: Vec<[f64; 2]> = Vec::new();
         for layer in &self.layers {
             done += f64::from(layer.turns);
-            ends.push([done - step, done]);
+            ends.push([done - step + delay, done + delay]);
         }
         ends.pop();
         ends
+    }
+
+    /// How far a layer rises over the one below, in whose grooves it lies, m, for wire of this diameter.
+    fn rise(&self, d: f64) -> f64 {
+        (d * d - 0.25 * self.pitch * self.pitch).max(0.0).sqrt()
+    }
+
+    /// From where to where a nozzle goes that leads wire with these trails through crossovers of so many rad, m.
+    fn reach(&self, trail: impl Fn(usize) -> Trail, crossover: f64) -> [f64; 2] {
+        let mut reach = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut add = |y: f64| reach = [reach[0].min(y), reach[1].max(y)];
+        for (number, layer) in self.layers.iter().enumerate() {
+            let [before, behind] = trail(number).swing(crossover);
+            let step = layer.sense * self.pitch * f64::from(u8::from(layer.turns > 1));
+            add(layer.first - before * step);
+            add(layer.last + behind * step);
+            if let Some(next) = self.layers.get(number + 1) {
+                let step = next.first - layer.last;
+                add(layer.last - before * step);
+                add(next.first + behind * step);
+            }
+        }
+        reach
+    }
+
+    /// Places of all turns, m, each with its layer, from 0; `lead`, m, goes with the direction of each.
+    fn places(&self, lead: f64) -> Vec<(usize, f64)> {
+        let pitch = self.pitch;
+        let layers = self.layers.iter().enumerate();
+        layers
+            .flat_map(|(number, layer)| {
+                let place =
+                    move |turn| layer.first + layer.sense * (f64::from(turn) * pitch + lead);
+                (0..layer.turns).map(move |turn| (number, place(turn)))
+            })
+            .collect()
     }
 }
 
@@ -64,23 +102,34 @@ impl SceneSettings {
         matches!(self.traverse.mode.as_str(), "orthocyclic" | "helical")
     }
 
-    /// The nozzle's way, and what is wrong with it.
+    /// The nozzle's way, and what is wrong with it; of a nozzle that leads this `wire`, where there is one.
     pub(super) fn nozzle_law(
         &self,
-        diameter: f64,
+        wire: Option<&Section>,
         extent: &Extent,
         problems: &mut Problems,
     ) -> Option<NozzleLaw> {
         let t = &self.traverse;
+        let diameter = self.wire.outer_diameter();
         let law = match t.mode.as_str() {
             "table" => {
                 let law = problems.note(self.law_of_table())?;
                 match self.winding.turns_per_layer {
                     0.0 => law,
-                    _ => law.with_jumps(&self.layers(diameter, extent, problems)?.jumps(0.0)),
+                    _ => law.with_jumps(&self.layers(diameter, extent, problems)?.jumps(0.0, 0.0)),
                 }
             }
-            "orthocyclic" => self.orthocyclic(&self.layers(diameter, extent, problems)?),
+            "orthocyclic" => {
+                let layers = self.layers(diameter, extent, problems)?;
+                let places = self.orthocyclic(&layers);
+                if self.leads_trail() {
+                    // the wire stays in the window, the nozzle swings past its places
+                    self.check_way(&places, diameter, extent, problems);
+                    let led = problems.note(self.led(&layers, wire?, extent))?;
+                    return Some(self.for_run(led));
+                }
+                places
+            }
             "helical" => self.helical(&self.layers(diameter, extent, problems)?),
             // without inputs the nozzle goes with the core's angle
             _ => {
@@ -94,12 +143,17 @@ impl SceneSettings {
         };
         // The places of all turns, also those that a nozzle ahead of them leaves out.
         self.check_way(&law, diameter, extent, problems);
-        let law = law.advanced(t.advance);
+        Some(self.for_run(law))
+    }
+
+    /// The law as a run follows it: ahead, and for as many turns as the run has.
+    fn for_run(&self, law: NozzleLaw) -> NozzleLaw {
+        let law = law.advanced(self.traverse.advance);
         let turns = match self.spindle.turns {
             0.0 => law.turns(),
             turns => turns,
         };
-        Some(law.for_turns(turns))
+        law.for_turns(turns)
     }
 
     /// The layers that the nozzle winds, from the window between the flanges.
@@ -216,26 +270,57 @@ impl SceneSettings {
 
     /// Straight in its place for most of a turn, a step to the next in the rest.
     ///
-    /// The step ends at the clamp's angle, where the next turn begins.
+    /// The step ends at the clamp's angle, where the next turn begins, or later by the delay from the second layer on.
     fn orthocyclic(&self, stacked: &Layers) -> NozzleLaw {
-        let Layers { layers, pitch } = stacked;
-        let places: Vec<f64> = layers
-            .iter()
-            .flat_map(|layer| {
-                let lead = self.traverse.lead;
-                let place =
-                    move |turn| layer.first + layer.sense * (f64::from(turn) * pitch + lead);
-                (0..layer.turns).map(place)
-            })
-            .collect();
-        let mut points = vec![[0.0, places[0]]];
+        let places = stacked.places(self.traverse.lead);
+        let step = self.traverse.crossover / TAU;
+        let mut points = vec![[0.0, places[0].1]];
         for (turn, pair) in places.windows(2).enumerate() {
-            let end = (turn + 1) as f64;
-            points.push([end - self.traverse.crossover / TAU, pair[0]]);
-            points.push([end, pair[1]]);
+            let [(_, from), (layer, to)] = [pair[0], pair[1]];
+            let end = (turn + 1) as f64 + self.crossover_delay(layer);
+            points.push([end - step, from]);
+            points.push([end, to]);
         }
-        points.push([places.len() as f64, places[places.len() - 1]]);
-        NozzleLaw::through(&points).with_jumps(&stacked.jumps(self.traverse.crossover / TAU))
+        points.push([places.len() as f64, places[places.len() - 1].1]);
+        NozzleLaw::through(&points).with_jumps(&self.jumps(stacked))
+    }
+
+    /// Turns by which crossovers to turns of this layer, from 0, come later.
+    fn crossover_delay(&self, layer: usize) -> f64 {
+        match layer {
+            0 => 0.0,
+            _ => self.traverse.crossover_delay / TAU,
+        }
+    }
+
+    /// Turns in which an orthocyclic law climbs.
+    fn jumps(&self, stacked: &Layers) -> Vec<[f64; 2]> {
+        stacked.jumps(self.traverse.crossover / TAU, self.crossover_delay(1))
+    }
+
+    /// The nozzle's way that lays this `wire` where the orthocyclic law of these layers says: it stands where that stands, and
+    /// swings beyond its steps.
+    fn led(
+        &self,
+        stacked: &Layers,
+        wire: &Section,
+        extent: &Extent,
+    ) -> Result<NozzleLaw, SceneError> {
+        let crossover = self.traverse.crossover;
+        let trail = self.trails(wire, extent, stacked.rise(wire.diameter))?;
+        self.check_swing(|crossover| stacked.reach(&trail, crossover), extent)?;
+        let places = stacked.places(self.traverse.lead);
+        let mut points = vec![[0.0, places[0].1]];
+        for (turn, pair) in places.windows(2).enumerate() {
+            let [(below, from), (layer, to)] = [pair[0], pair[1]];
+            let end = (turn + 1) as f64 + self.crossover_delay(layer);
+            for [u, share] in trail(below).points(crossover) {
+                let turns = end - (1.0 - u) * crossover / TAU;
+                points.push([turns, from + share * (to - from)]);
+            }
+        }
+        points.push([places.len() as f64, places[places.len() - 1].1]);
+        Ok(NozzleLaw::through(&points).with_jumps(&self.jumps(stacked)))
     }
 
     /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there.

@@ -49,7 +49,15 @@ const KEYS_OF_CHOICES: [KeysOf; 11] = [
     ),
     keys_of(SHAPE, &["mesh"], &["core.file", "core.unit"]),
     keys_of(MODE, &["by-input", "by-angle"], &["traverse.per_turn"]),
-    keys_of(MODE, &["orthocyclic"], &["traverse.crossover"]),
+    keys_of(
+        MODE,
+        &["orthocyclic"],
+        &[
+            "traverse.crossover",
+            "traverse.crossover_delay",
+            "traverse.trail",
+        ],
+    ),
     keys_of(MODE, &["helical"], &["traverse.dwell_turns"]),
     keys_of(MODE, &["table"], &["traverse.file"]),
     keys_of(

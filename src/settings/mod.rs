@@ -334,6 +334,8 @@ impl Default for SceneSettings {
                 per_turn: 0.7e-3,
                 lead: 0.0,
                 crossover: 0.25 * std::f64::consts::PI,
+                crossover_delay: 0.0,
+                trail: "free".to_owned(),
                 advance: 0.0,
                 dwell_turns: 0.5,
                 file: String::new(),

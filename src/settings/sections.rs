@@ -132,6 +132,10 @@ pub struct Traverse {
     pub lead: f64,
     /// orthocyclic: core angle of the step to the next turn, rad
     pub crossover: f64,
+    /// orthocyclic: core angle by which crossovers come later from the second layer on, rad
+    pub crossover_delay: f64,
+    /// orthocyclic: whether wire trails behind a nozzle on the law, or is led onto it (one of `free`, `led`)
+    pub trail: String,
     /// core angle by which the nozzle is ahead of the law, rad
     pub advance: f64,
     /// helical: turns that the nozzle stands at the end of a layer

@@ -401,6 +401,8 @@ table! {
     fixed(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: turns that the nozzle stands at the end of a layer");
     text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file, set in the FMU relative to its resources or as given");
     fixed(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
+    text(1607, "traverse.trail", (traverse.trail), ["free", "led"], "orthocyclic: what the law says; free: where the nozzle is, and the wire trails behind it; led: where the wire is laid, in smooth crossovers, and the nozzle swings ahead of it; on a cylinder");
+    fixed(1608, "traverse.crossover_delay", traverse.crossover_delay, "rad", "deg", 0.0, 6.0, 1.0, "orthocyclic: core angle by which crossovers come later from the second layer on");
 
     fixed(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
     fixed(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");
@@ -474,4 +476,5 @@ table! {
     number_of(3012, "solver.coarse_settled_number", "solver.coarse_settled", 3.0, "number of solver.coarse_settled; 0: as solver.coarse_settled says, 1 auto, 2 on, 3 off");
     number_of(3013, "solver.steps_beyond_number", "solver.steps_beyond", 3.0, "number of solver.steps_beyond; 0: as solver.steps_beyond says, 1 auto, 2 on, 3 off");
     number_of(3014, "preset_number", "preset", 2.0, "number of preset; 0: as preset says, 1 default, 2 paper");
+    number_of(3015, "traverse.trail_number", "traverse.trail", 2.0, "number of traverse.trail; 0: as traverse.trail says, 1 free, 2 led");
 }
