@@ -65,9 +65,9 @@ impl SceneSettings {
         let wire = wire.map(|wire| wire.section);
         let core = self.core(&mut problems);
         let core = problems.note(core);
-        let law = core.as_ref().and_then(|(_, extent)| {
-            self.nozzle_law(wire.as_ref(), extent, &mut problems)
-        });
+        let law = core
+            .as_ref()
+            .and_then(|(_, extent)| self.nozzle_law(wire.as_ref(), extent, &mut problems));
         self.check_motion_and_friction(law.as_ref(), &mut problems);
         if let (Some(wire), Some((_, extent))) = (&wire, &core) {
             self.check_core(wire, extent, &mut problems);

@@ -270,32 +270,19 @@ impl SceneSettings {
 
     /// Straight in its place for most of a turn, a step to the next in the rest.
     ///
-    /// The step ends at the clamp's angle, where the next turn begins, or later by the delay from the second layer on.
+    /// The step ends at the clamp's angle, where the next turn begins, or so much later as the scene says.
     fn orthocyclic(&self, stacked: &Layers) -> NozzleLaw {
         let places = stacked.places(self.traverse.lead);
-        let step = self.traverse.crossover / TAU;
+        let [step, delay] =
+            [self.traverse.crossover, self.traverse.crossover_delay].map(|angle| angle / TAU);
         let mut points = vec![[0.0, places[0].1]];
         for (turn, pair) in places.windows(2).enumerate() {
-            let [(_, from), (layer, to)] = [pair[0], pair[1]];
-            let end = (turn + 1) as f64 + self.crossover_delay(layer);
-            points.push([end - step, from]);
-            points.push([end, to]);
+            let end = (turn + 1) as f64 + delay;
+            points.push([end - step, pair[0].1]);
+            points.push([end, pair[1].1]);
         }
         points.push([places.len() as f64, places[places.len() - 1].1]);
-        NozzleLaw::through(&points).with_jumps(&self.jumps(stacked))
-    }
-
-    /// Turns by which crossovers to turns of this layer, from 0, come later.
-    fn crossover_delay(&self, layer: usize) -> f64 {
-        match layer {
-            0 => 0.0,
-            _ => self.traverse.crossover_delay / TAU,
-        }
-    }
-
-    /// Turns in which an orthocyclic law climbs.
-    fn jumps(&self, stacked: &Layers) -> Vec<[f64; 2]> {
-        stacked.jumps(self.traverse.crossover / TAU, self.crossover_delay(1))
+        NozzleLaw::through(&points).with_jumps(&stacked.jumps(step, delay))
     }
 
     /// The nozzle's way that lays this `wire` where the orthocyclic law of these layers says: it stands where that stands, and
@@ -309,18 +296,18 @@ impl SceneSettings {
         let crossover = self.traverse.crossover;
         let trail = self.trails(wire, extent, stacked.rise(wire.diameter))?;
         self.check_swing(|crossover| stacked.reach(&trail, crossover), extent)?;
+        let [step, delay] = [crossover, self.traverse.crossover_delay].map(|angle| angle / TAU);
         let places = stacked.places(self.traverse.lead);
         let mut points = vec![[0.0, places[0].1]];
         for (turn, pair) in places.windows(2).enumerate() {
-            let [(below, from), (layer, to)] = [pair[0], pair[1]];
-            let end = (turn + 1) as f64 + self.crossover_delay(layer);
+            let [(below, from), (_, to)] = [pair[0], pair[1]];
+            let end = (turn + 1) as f64 + delay;
             for [u, share] in trail(below).points(crossover) {
-                let turns = end - (1.0 - u) * crossover / TAU;
-                points.push([turns, from + share * (to - from)]);
+                points.push([end - (1.0 - u) * step, from + share * (to - from)]);
             }
         }
         points.push([places.len() as f64, places[places.len() - 1].1]);
-        Ok(NozzleLaw::through(&points).with_jumps(&self.jumps(stacked)))
+        Ok(NozzleLaw::through(&points).with_jumps(&stacked.jumps(step, delay)))
     }
 
     /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there.

@@ -168,7 +168,11 @@ impl SceneSettings {
                 false => short = middle,
             }
         }
-        let allowed = format!("{} to {} rad, or traverse.trail = free", si(long), si(LONGEST));
+        let allowed = format!(
+            "{} to {} rad, or traverse.trail = free",
+            si(long),
+            si(LONGEST)
+        );
         Err(self.impossible("traverse.crossover", reason, allowed))
     }
 }
@@ -191,7 +195,11 @@ mod tests {
     #[test]
     fn the_nozzle_is_at_the_end_of_a_beam_under_tension() {
         let way = |u: f64| u - libm::sin(TAU * u) / TAU;
-        for (radius, distance, stiff) in [(8e-3, 20e-3, 9.7e-3), (3e-3, 40e-3, 2e-3), (6e-3, 9e-3, 30e-3)] {
+        for (radius, distance, stiff) in [
+            (8e-3, 20e-3, 9.7e-3),
+            (3e-3, 40e-3, 2e-3),
+            (6e-3, 9e-3, 30e-3),
+        ] {
             let span = f64::sqrt(distance * distance - radius * radius);
             let trail = Trail::of(radius, distance, stiff);
             for crossover in [0.5, 2.1, 4.0] {
@@ -222,7 +230,10 @@ mod tests {
 
     #[test]
     fn limp_wire_without_a_span_lies_where_the_nozzle_is() {
-        let none = Trail { slope: 0.0, bend: 0.0 };
+        let none = Trail {
+            slope: 0.0,
+            bend: 0.0,
+        };
         for [u, share] in none.points(2.0) {
             assert!((share - (u - libm::sin(TAU * u) / TAU)).abs() < 1e-15);
         }

@@ -132,7 +132,7 @@ pub struct Traverse {
     pub lead: f64,
     /// orthocyclic: core angle of the step to the next turn, rad
     pub crossover: f64,
-    /// orthocyclic: core angle by which crossovers come later from the second layer on, rad
+    /// orthocyclic: core angle after that of the clamp at which crossovers end, rad
     pub crossover_delay: f64,
     /// orthocyclic: whether wire trails behind a nozzle on the law, or is led onto it (one of `free`, `led`)
     pub trail: String,

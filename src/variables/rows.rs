@@ -402,7 +402,7 @@ table! {
     text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file, set in the FMU relative to its resources or as given");
     fixed(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
     text(1607, "traverse.trail", (traverse.trail), ["free", "led"], "orthocyclic: what the law says; free: where the nozzle is, and the wire trails behind it; led: where the wire is laid, in smooth crossovers, and the nozzle swings ahead of it; on a cylinder");
-    fixed(1608, "traverse.crossover_delay", traverse.crossover_delay, "rad", "deg", 0.0, 6.0, 1.0, "orthocyclic: core angle by which crossovers come later from the second layer on");
+    fixed(1608, "traverse.crossover_delay", traverse.crossover_delay, "rad", "deg", 0.0, 6.0, 1.0, "orthocyclic: core angle after that of the clamp at which crossovers end");
 
     fixed(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
     fixed(1651, "winding.layers", winding.layers, "1", "", 1.0, 1000.0, 1.0, "layered traverse modes: number of layers");
