@@ -366,6 +366,11 @@ impl Coil {
         self.passes.at(angle).1.from.max(0.0)
     }
 
+    /// See [`Passes::last_swing`].
+    pub(crate) fn last_swing(&self, angle: f64) -> Option<u32> {
+        self.passes.last_swing(angle)
+    }
+
     /// The part of this coil that a saved state holds; everything else is computed from it.
     pub(crate) fn saved(&self) -> SavedCoil {
         SavedCoil {

@@ -2,6 +2,7 @@
 
 use super::STATIONS_PER_TURN;
 use super::coil::Coil;
+use super::station::Station;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -94,9 +95,16 @@ impl Coil {
 
     /// Layers of the settled wire.
     ///
-    /// The nozzle makes a pass for each, so wire that climbs within its pass is none of its own; from two turns on it is.
+    /// The nozzle makes a pass for each, so wire that climbs within its pass is none of its own; from two turns on it is. The last
+    /// swing of a nozzle that swings past its places is no pass.
     pub fn layers(&self) -> u32 {
-        let by_pass = self.stations().map(|s| s.layer.min(s.pass)).max();
+        let end = self.stations().last().map_or(0.0, |station| station.angle);
+        let swing = self.last_swing(end);
+        let passes = |station: &Station| match swing {
+            Some(swing) if station.pass == swing => swing - 1,
+            _ => station.pass,
+        };
+        let by_pass = self.stations().map(|s| s.layer.min(passes(s))).max();
         let contour = self.contour();
         let by_wire = contour.iter().filter(|layer| layer.turns >= LAYER);
         by_wire

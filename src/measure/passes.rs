@@ -81,6 +81,14 @@ impl Passes {
         })
     }
 
+    /// Number of the last pass of a nozzle that swings past its places, where less wire than a swing takes has been laid in it up
+    /// to this winding angle, rad: what it turned for shows once it goes on.
+    pub(crate) fn last_swing(&self, angle: f64) -> Option<u32> {
+        let judged: Vec<Pass> = self.judged().collect();
+        let swings = judged.len() < self.passes.len() && judged.last() == self.passes.last();
+        (swings && angle - self.last().from < HUNG_BACK).then_some(judged.len() as u32)
+    }
+
     /// Where the wire begins that the last pass says something about, rad: with it the one before may turn out to be none.
     pub(crate) fn open_from(&self) -> f64 {
         match self.passes[..] {

@@ -53,13 +53,24 @@ impl Coil {
         let climbs_at_flange = !row.is_over_in(pass)
             && row.sense == pass.sense
             && at.has_no_room_in(row, self.spec.diameter)
-            && self.support(row.number + 1, bucket, y, height).layer
-                > last.map_or(1, |last| last.station.layer);
+            && self.support(row.number + 1, bucket, y, height).layer > self.layer_of(row);
         let row = match climbs_at_flange {
             true => row.beside_flange(pass, angle, y),
             false => row.next(pass, angle, y, climbed, self.spec.diameter),
         };
         (row, self.support(row.number, bucket, y, height))
+    }
+
+    /// Layer that wire of this row, the row of the last station, leaves where it climbs: that of the station, or of the turn
+    /// before at this angle where that lies higher. Wire that sank into a hole beside the flange comes back to its own layer.
+    fn layer_of(&self, row: Row) -> u32 {
+        let last = self.records.last().map_or(1, |last| last.station.layer);
+        let before = self.records.len().checked_sub(STATIONS_PER_TURN);
+        let before = before.map(|index| &self.records[index]);
+        match before {
+            Some(before) if before.row.number == row.number => last.max(before.station.layer),
+            _ => last,
+        }
     }
 
     /// What lies below wire at `y` (m) and `height` over the core (m) among the stations of one polar angle. Only

@@ -190,3 +190,53 @@ fn crossing_the_climb_beside_the_flange_was_an_overlap() {
     assert!(riding.flags().overlap, "{:?}", riding.defects());
     assert_eq!(riding.turns()[6].verdict, Verdict::Overlap);
 }
+
+/// Place of wire in three layers between flanges. Before the last turn of the second layer wire sinks into the hole beside the
+/// flange, down to the first layer's height, and comes up again.
+fn sunk_beside_the_flange(angle: f64) -> (f64, f64) {
+    let turn = angle / TAU;
+    let sunk = (0.33 * D, 0.3 * D);
+    match turn {
+        t if (8.86..8.98).contains(&t) => sunk,
+        t if (8.98..9.02).contains(&t) => {
+            let share = (t - 8.98) / 0.04;
+            let (y, height) = orthocyclic(9.5 * TAU);
+            (
+                sunk.0 + share * (y - sunk.0),
+                sunk.1 + share * (height - sunk.1),
+            )
+        }
+        _ => orthocyclic(angle),
+    }
+}
+
+/// Wire that came up from a hole beside the flange began the next row. The last turn of its layer was in that row, and the first of
+/// the next layer, which lies half a pitch back, was an overlap and a double turn.
+#[test]
+fn wire_that_comes_up_from_a_hole_beside_the_flange_goes_on_in_its_row() {
+    let face = -0.5 * D;
+    let mut nodes = on_cylinder(3.0 * TURNS - 0.15, 1.0, sunk_beside_the_flange);
+    for node in &mut nodes {
+        let way = face - node.position.y;
+        node.flange = (way > -2.0 * D).then_some(way);
+    }
+    let mut coil = wound(spec(), &nodes);
+    // the nozzle turns where the wire of the third layer begins
+    coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    coil.begin_pass((2.0 * TURNS + 0.02) * TAU, 1.0);
+    let turns = coil.turns();
+    for (turn, place) in [(10, (2, 5)), (11, (3, 1)), (12, (3, 2))] {
+        let turn = &turns[turn - 1];
+        assert_eq!((turn.layer, turn.turn_in_layer), place, "{turn:?}");
+    }
+    let verdicts: Vec<Verdict> = turns[9..].iter().map(|turn| turn.verdict).collect();
+    assert!(
+        verdicts.iter().all(|verdict| !verdict.is_defect()),
+        "{:?}",
+        coil.defects()
+    );
+    // the hole itself stays told
+    let defects = coil.defects();
+    let kinds: Vec<_> = defects.iter().map(|d| (d.kind, d.turn)).collect();
+    assert_eq!(kinds, [(DefectKind::Gap, 9)], "{defects:?}");
+}

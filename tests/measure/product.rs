@@ -115,6 +115,27 @@ fn a_last_turn_that_climbs_is_no_layer() {
     assert!(Coil::new(spec()).contour().is_empty());
 }
 
+/// Of a nozzle that swings past each place the last swing, which nothing follows, was a pass, and a last turn that climbs was a layer.
+#[test]
+fn the_last_swing_of_the_nozzle_makes_no_layer() {
+    let mut coil = ideal(4, 1.4, true);
+    let sense = coil
+        .stations()
+        .last()
+        .map_or(0.0, |s| if s.pass % 2 == 0 { -1.0 } else { 1.0 });
+    let mut turn_at = |turn: f64, way: f64, place: f64| {
+        coil.begin_pass_at((4.0 * TURNS + turn) * TAU, way * sense, sense * place * D);
+    };
+    for place in 0..4 {
+        let place = f64::from(place);
+        turn_at(place - 3.3, -1.0, place + 1.5);
+        turn_at(place - 2.9, 1.0, place);
+    }
+    turn_at(0.7, -1.0, 5.5);
+    assert_eq!(coil.stations().last().unwrap().pass, 5);
+    assert_eq!(coil.layers(), 4);
+}
+
 #[test]
 fn clearance_is_the_distance_to_the_limit_line() {
     let coil = ideal(2, -0.01, false);
