@@ -302,3 +302,116 @@ fn a_way_past_a_flange_is_told_in_round_numbers() {
     let said = refused(text);
     assert_says(&said, &["nozzle.y_start", "goes from 0 to 0.0038 m"]);
 }
+
+/// A bobbin whose nozzle swings within the outer faces of its flanges.
+const NEAR: &str = "[core]\nshape = 'cylinder'\nradius_mm = 8\n[core.flange]\ninner_distance_mm = 14.5\nheight_mm = 4\n\
+                    thickness_mm = 1.5\n[start]\nclamp_y_mm = -6.9\n[nozzle]\ndistance_mm = 20\ny_start_mm = -6.9\n\
+                    [winding]\nlayers = 3\n[traverse]\nmode = 'orthocyclic'\ncrossover_deg = 140\n";
+
+fn near(more: &str) -> Result<Scene, String> {
+    parse(&format!("{NEAR}{more}"))
+        .and_then(|settings| settings.build())
+        .map_err(|e| e.to_string())
+}
+
+/// Without the key the law is the polyline of the places, as it was before there was one: all numbers to the bit.
+#[test]
+fn a_free_trail_is_the_law_of_the_places() {
+    let pitch = (14.5e-3 - 0.7e-3) / 19.5;
+    let crossover = 140_f64.to_radians();
+    let law = near("").unwrap().nozzle_law;
+    assert_eq!(near("trail = 'free'\n").unwrap().nozzle_law, law);
+    let (mut first, mut sense) = (-6.9e-3, 1.0);
+    let mut places = Vec::new();
+    for _ in 0..3 {
+        places.extend((0..20).map(|turn| first + sense * (f64::from(turn) * pitch)));
+        first = first + sense * 19.0 * pitch + 0.5 * pitch * sense;
+        sense = -sense;
+    }
+    for (turn, pair) in places.windows(2).enumerate() {
+        let end = (turn + 1) as f64;
+        let pieces = &law.pieces()[2 * turn..2 * turn + 2];
+        assert_eq!(pieces[1].from, (end - crossover / TAU) * TAU);
+        assert_eq!(
+            (pieces[0].y, pieces[0].travel),
+            (pair[0], 0.0),
+            "turn {turn}"
+        );
+        assert_eq!(pieces[1].y, pair[0]);
+    }
+}
+
+/// The way of a nozzle that leads is the wire's own at the ends of each crossover, and beyond it in between.
+#[test]
+fn a_led_trail_stands_at_the_places_and_swings_between_them() {
+    let delay = 60.0 / 360.0;
+    let free = near("crossover_delay_deg = 60\n").unwrap().nozzle_law;
+    let led = near("crossover_delay_deg = 60\ntrail = 'led'\n")
+        .unwrap()
+        .nozzle_law;
+    assert_eq!(
+        (led.turns(), led.start(), led.jumps()),
+        (free.turns(), free.start(), free.jumps())
+    );
+    let mut swing = 0.0_f64;
+    for k in 0..60 * 360 {
+        let angle = f64::from(k).to_radians();
+        let within = (angle / TAU - delay).rem_euclid(1.0) * 360.0;
+        let off = led.position(angle) - free.position(angle);
+        swing = swing.max(off.abs());
+        let first = angle / TAU < delay;
+        assert!(
+            off.abs() < 1e-15 || (within >= 220.0 && !first),
+            "{off} at {k} deg"
+        );
+    }
+    assert!((1.0e-3..2.0e-3).contains(&swing), "{swing}");
+}
+
+#[test]
+fn what_cannot_be_led_is_refused_with_the_key_to_change() {
+    let led = format!("{NEAR}trail = 'led'\n");
+    let with = |from: &str, to: &str| refused(&led.replace(from, to));
+    let boxed = with(
+        "shape = 'cylinder'\nradius_mm = 8",
+        "width_x_mm = 16\nheight_z_mm = 16",
+    );
+    assert_says(
+        &boxed,
+        &[
+            "traverse.trail = led",
+            "rounded-box",
+            "allowed: free, or core.shape = cylinder",
+        ],
+    );
+    let short = with("crossover_deg = 140", "crossover_deg = 40");
+    assert_says(
+        &short,
+        &[
+            "traverse.crossover",
+            "past the outer face of a flange",
+            "to 6 rad, or traverse.trail = free",
+        ],
+    );
+    // the shortest that is allowed is
+    let least = short
+        .split("allowed: ")
+        .nth(1)
+        .unwrap()
+        .split(' ')
+        .next()
+        .unwrap();
+    let text = led.replace("crossover_deg = 140", &format!("crossover = {least}"));
+    parse(&text).unwrap().build().expect("within the range");
+    let wrong = parse(&led.replace("trail = 'led'", "trail = 'lead'")).unwrap_err();
+    assert_says(&wrong.to_string(), &["traverse.trail", "free, led"]);
+    // where wire would lie is checked as without it
+    let past = with("\ny_start_mm = -6.9", "\ny_start_mm = -6");
+    assert_says(&past, &["nozzle.y_start", "past a flange"]);
+    let helical = led.replace("orthocyclic", "helical");
+    let (_, warnings) = parse(&helical).unwrap().build_with_warnings().unwrap();
+    assert!(
+        warnings.iter().any(|w| w.key == "traverse.trail"),
+        "{warnings:?}"
+    );
+}
