@@ -21,8 +21,12 @@ import tables
 NEAR = 5.0
 SHARE = 0.1
 MEMBERS = 4
-# Coarse, and the turns in which the first layer has its largest gap.
-BOBBIN = ["bobbin", "--set", "spindle.turns=6", "--set", "solver.tolerance=2e-5"]
+# Coarse, and the turns in which the first layer has its largest gap. As it is the scene has none at any speed: here its wire trails, from farther
+# away and with less tension.
+TRAILS = ["traverse.trail=free", "traverse.crossover_deg=60", "traverse.crossover_delay=0", "traverse.advance_deg=120"]
+FAR = ["nozzle.distance_mm=30", "tensioner.tension=8"]
+COARSE = ["spindle.turns=6", "solver.tolerance=2e-5"]
+BOBBIN = ["bobbin", *(word for setting in TRAILS + FAR + COARSE for word in ("--set", setting))]
 BRACKET = (1100, 1500)
 TOOTH = ["tooth", "--set", "winding.layers=1"]
 SPEEDS, TENSIONS, MAP_MEMBERS = (60, 340, 8), (10, 35, 6), 8
