@@ -3,7 +3,7 @@
 
 mod parts;
 
-use coilwind::contact::{ContactLaw, ContactResponse};
+use coilwind::contact::{ContactLaw, ContactResponse, LimitFrom};
 use coilwind::geometry::{Flanges, Shape};
 use coilwind::math::V3;
 use parts::Parts;
@@ -17,8 +17,6 @@ const MU: f64 = 0.2;
 /// Stiffness of what the point stands for, N/m, and the share of it along the surface (Mindlin).
 const K: f64 = STIFFNESS * LENGTH;
 const ALONG: f64 = 2.0 * (1.0 - 0.34) / (2.0 - 0.34);
-/// Share of a sliding bristle's missing stiffness that the Hessian leaves in.
-const ALONG_SLIDE: f64 = 0.9;
 /// Step of the differences, m: depths are some um, the wire's radius is 350 um.
 const H: f64 = 1e-10;
 
@@ -126,7 +124,7 @@ fn held(mu: f64, [q, out, _]: [V3; 3], before: f64, p: V3) -> Parts {
     // an iterate that is accepted leaves its limit behind
     at(&mut line, p);
     line.state.renew_limits();
-    line.state.hold_limits = true;
+    line.state.limit_from = LimitFrom::Lagged;
     line
 }
 
@@ -176,35 +174,40 @@ proptest! {
         prop_assert!(off < 1.01 * turning + noise, "{off} {turning} {noise}");
     }
 
-    /// On a flat the Hessian is the gradient's derivative where the bristle sticks, and keeps a tenth of its
-    /// stiffness along the slide where it gives way.
+    /// On a flat Hessian and slip coupling together are the gradient's derivative, whether the bristle sticks or gives way,
+    /// and the Hessian alone where the friction limit is held.
     #[test]
-    fn hessian_on_a_flat(
+    fn hessian_and_slip_coupling_on_a_flat(
         place in 0.0..1.0f64, before in prop_oneof![Just(0.0), 0.2e-6..30e-6f64],
-        depth in 0.3e-6..30e-6f64, slide in 5e-8..8e-6f64, round in 0.0..6.3f64,
+        depth in 0.3e-6..30e-6f64, slide in 5e-8..8e-6f64, round in 0.0..6.3f64, follows in proptest::bool::ANY,
     ) {
         let g = ground(On::Flat, place);
         let [q, out, along] = g;
         let way = along * libm::cos(round) + out.cross(&along) * libm::sin(round);
         let p = q - out * depth + way * slide;
         let mut line = held(MU, g, before, p);
+        if follows {
+            // the coefficient is that of the slide at `p`, whatever it is at the places of the differences
+            line.model.law.mu_static = 1.5 * MU;
+            line.state.limit_from = LimitFrom::Slide;
+            at(&mut line, p);
+            line.state.limit_from = LimitFrom::NormalForce;
+        }
         let push = at(&mut line, p);
         let (_, rows) = differences(&mut line, p);
         let across = out.cross(&way);
         let normal = push.gradient.dot(&out).abs();
-        let limit = MU * normal;
+        let mu = if follows { line.model.law.mu(slide / STEP) } else { MU };
+        let limit = mu * normal;
         let sticks = K * ALONG * slide < limit;
         prop_assume!((K * ALONG * slide / limit - 1.0).abs() > 1e-3 && (depth / 1e-5 - 1.0).abs() > 1e-3);
         let noise = 1e-5 * K;
         for v in [out, across, way] {
-            let exact = V3::from_fn(|a, _| rows[a].dot(&v));
-            let mut kept = V3::zeros();
-            if !sticks && v == way {
-                kept = way * ((1.0 - ALONG_SLIDE) * limit / slide);
-            }
-            let off = times(&push.hessian, v) - exact - kept;
+            let exact = rows[0] * v.x + rows[1] * v.y + rows[2] * v.z;
+            let off = times(&push.hessian, v) + times(&push.slip_coupling, v) - exact;
             prop_assert!(off.norm() < noise, "{sticks} {v} off by {off} of {}", K);
         }
+        prop_assert_eq!(times(&push.slip_coupling, out).norm() > 0.0, follows && !sticks);
     }
 
     /// Off a flat the Hessian leaves out the normal's turning: force over radius, which pulls on the
@@ -259,10 +262,10 @@ fn a_look_ahead_comes_back() {
         let [place, out, _] = ground(on, 0.4);
         let p = place - out * 60e-6;
         line.contact().begin();
-        line.state.hold_limits = true;
+        line.state.limit_from = LimitFrom::Lagged;
         let push = line.contact().push(1, p, || LENGTH, || f64::INFINITY, STEP);
         let push = push.expect("it touches");
-        line.state.hold_limits = false;
+        line.state.limit_from = LimitFrom::Slide;
         let (mut gradient, mut hessian) = (push.gradient, push.hessian);
         let mut look = |way: V3| {
             line.contact().predict(

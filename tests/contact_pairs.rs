@@ -4,7 +4,8 @@ mod brute;
 
 use brute::Coil;
 use coilwind::contact::{
-    ContactLaw, ContactPoint, ContactResponse, Coupling, PairConditions, PairScratch, SelfContact,
+    ContactLaw, ContactPoint, ContactResponse, Coupling, LimitFrom, PairConditions, PairScratch,
+    SelfContact,
 };
 use coilwind::math::V3;
 use proptest::prelude::*;
@@ -84,7 +85,7 @@ fn fast(
         diameter: DIAMETER,
         prediction: 1e-7,
         step: STEP,
-        hold_limits: false,
+        limit_from: LimitFrom::Slide,
     };
     pairs.evaluate(
         scratch,

@@ -2,16 +2,13 @@
 //!
 //! Friction is a spring, the bristle, that gives way at the friction limit: the coefficient times a normal
 //! force that is held while the potential is differentiated. For given limits normal and tangential force
-//! derive from one potential, with a symmetric Hessian. Wire on core, wire on frozen wire and wire on
+//! derive from one potential, with a symmetric Hessian. That the limit follows the normal force adds a derivative which is
+//! not symmetric, the slip coupling. Wire on core, wire on frozen wire and wire on
 //! live wire use the same law; they differ in where the stretch of the bristle comes from.
 
 use super::law::{ContactLaw, NormalLaw};
 use crate::math::{Block, V3, add_identity, add_outer};
 use serde::{Deserialize, Serialize};
-
-/// Share of the zero stiffness of a sliding bristle along its slide that the Hessian takes over. With
-/// all of it updates overshoot to the far side of the anchor, with none they crawl.
-const ALONG_SLIDE: f64 = 0.9;
 
 /// What the touches of one contact point add to potential, gradient and Hessian of a step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,19 +19,27 @@ pub struct ContactResponse {
     pub energy: f64,
     /// gradient with respect to the point (minus the force on it), N
     pub gradient: V3,
-    /// Hessian with respect to the point, N/m
+    /// Hessian with respect to the point, for given friction limits, N/m
     pub hessian: Block,
+    /// derivative of the gradient by way of the friction limits that follow the normal force, N/m; not symmetric
+    pub slip_coupling: Block,
 }
 
-/// The largest friction force of a touch by the normal force of three iterates, N.
+/// The largest friction force of a touch by the normal force of three iterates, N, and the coefficient in it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct FrictionLimit {
+pub struct FrictionLimit {
     /// of the iterate accepted last within the step
     pub(super) lagged: f64,
     /// of the last accepted instant
     pub(super) accepted: f64,
     /// of the last evaluation
     pub(super) current: f64,
+    /// coefficient of friction by the last evaluation of this solve that went by the speed of the slide; 0: there was none
+    #[serde(skip)]
+    pub(super) coefficient: f64,
+    /// the linear system has the limit follow the normal force
+    #[serde(skip)]
+    pub(super) follows: bool,
 }
 
 impl FrictionLimit {
@@ -43,7 +48,23 @@ impl FrictionLimit {
         lagged: 0.0,
         accepted: 0.0,
         current: 0.0,
+        coefficient: 0.0,
+        follows: false,
     };
+
+    /// Nothing touches.
+    pub(super) fn lift(&mut self) {
+        (self.current, self.coefficient, self.follows) = (0.0, 0.0, false);
+    }
+
+    /// The friction limit that a solve went by which ended with this normal `force`, N.
+    pub(super) fn used(&self, force: f64) -> f64 {
+        if self.follows {
+            self.coefficient * force
+        } else {
+            self.current
+        }
+    }
 
     /// The last evaluation becomes the accepted instant.
     pub(super) fn accept(&mut self) {
@@ -52,13 +73,19 @@ impl FrictionLimit {
 }
 
 /// Which friction limit a response takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum LimitFrom {
-    /// [`FrictionLimit::lagged`]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum LimitFrom {
+    /// that of the iterate before. A guess may lie deep in what it lands on; friction from such a normal force would throw the
+    /// wire sideways.
     Lagged,
-    /// the normal force of this response
+    /// the normal force of this response, the coefficient by the speed of this slide
+    #[default]
+    Slide,
+    /// the normal force of this response, the coefficient by the last [`LimitFrom::Slide`]. Where friction falls with the speed
+    /// of the slide, more than one slide may be in balance; iterates that each had a coefficient of their own would go from
+    /// one to the other.
     NormalForce,
-    /// [`FrictionLimit::current`]: the response is that of a prediction, which keeps the limit of the iterate
+    /// that of the last evaluation: the response is that of a prediction, which keeps the limit of the iterate
     Current,
 }
 
@@ -87,13 +114,13 @@ pub(super) struct Touching<'a> {
 }
 
 impl ContactResponse {
-    /// Adds the response of one touch; returns its friction limit, N, and the direction of its slide (0: the
+    /// Adds the response of one touch; returns its friction limits after it and the direction of its slide (0: the
     /// bristle holds).
     ///
     /// A prediction that leaves the sliding branch for a slide the other way is evaluated on the sticking branch
     /// once; otherwise the update alternates between both slides.
     #[inline(always)]
-    pub(super) fn add_touch(&mut self, t: &Touching) -> (f64, V3) {
+    pub(super) fn add_touch(&mut self, t: &Touching) -> (FrictionLimit, V3) {
         let n = t.normal;
         let force = t.stiffness * t.pressed.force;
         let pressed = t.stiffness * t.pressed.energy;
@@ -102,14 +129,17 @@ impl ContactResponse {
         self.gradient -= n * force;
         let mut along = t.stiffness * t.pressed.stiffness;
         let (mut limit, mut slide) = (0.0, V3::zeros());
+        let (mut coefficient, mut follows) = (t.limit.coefficient, false);
         if t.law.mu_static > 0.0 {
+            if t.limit_from == LimitFrom::Slide || coefficient == 0.0 {
+                let slid = (t.way - n * t.way.dot(&n)).norm();
+                coefficient = t.law.mu(slid / t.step);
+            }
+            let by_force = matches!(t.limit_from, LimitFrom::Slide | LimitFrom::NormalForce);
             limit = match t.limit_from {
                 LimitFrom::Lagged => t.limit.lagged,
                 LimitFrom::Current => t.limit.current,
-                LimitFrom::NormalForce => {
-                    let slid = (t.way - n * t.way.dot(&n)).norm();
-                    t.law.mu(slid / t.step) * force
-                }
+                LimitFrom::Slide | LimitFrom::NormalForce => coefficient * force,
             };
             let (b, k_t) = (t.bristle, t.bristle_stiffness);
             let size = b.norm();
@@ -126,11 +156,26 @@ impl ContactResponse {
                 let h = limit / size;
                 self.gradient += unit * limit;
                 add_identity(&mut self.hessian, h);
-                add_outer(&mut self.hessian, &(unit * (-ALONG_SLIDE * h)), &unit);
+                add_outer(&mut self.hessian, &(unit * -h), &unit);
                 along -= h;
+                if by_force {
+                    follows = true;
+                    let stiffness = t.stiffness * t.pressed.stiffness;
+                    add_outer(
+                        &mut self.slip_coupling,
+                        &unit,
+                        &(n * (-coefficient * stiffness)),
+                    );
+                }
             }
         }
         add_outer(&mut self.hessian, &(n * along), &n);
+        let limit = FrictionLimit {
+            current: limit,
+            coefficient,
+            follows,
+            ..t.limit
+        };
         (limit, slide)
     }
 }

@@ -15,6 +15,7 @@ pub mod line;
 pub mod nodal;
 mod own_wire;
 mod self_contact;
+mod slip_coupling;
 mod stencil;
 mod tolerance;
 
@@ -23,6 +24,7 @@ pub use accepted_touch::AcceptedTouch;
 pub use accepted_touch::TouchOwner;
 #[cfg(feature = "lab")]
 pub use friction::ContactResponse;
+pub use friction::LimitFrom;
 #[cfg(feature = "lab")]
 pub use law::ContactLoss;
 pub use law::{ContactLaw, damping_for_restitution};
@@ -39,4 +41,5 @@ pub use own_wire::own_wire;
 pub use self_contact::{Coupling, add_couplings};
 #[cfg(feature = "lab")]
 pub use self_contact::{HeldPair, PairConditions, PairScratch, SelfContact};
+pub use slip_coupling::SlipCoupling;
 pub use stencil::{ContactPoint, NodeWeights};

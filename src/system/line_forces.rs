@@ -1,7 +1,7 @@
 //! Forces of the production method: joints of the whole wire at once, contact along its smooth centreline.
 
 use super::{Past, System, line_contact};
-use crate::contact::{ContactPoint, LineContact, own_wire};
+use crate::contact::{ContactPoint, LimitFrom, LineContact, own_wire};
 use crate::math::{Spin, V3};
 use crate::rod::Rod;
 
@@ -211,7 +211,7 @@ fn between_forces(
     step: f64,
     commit: bool,
 ) -> f64 {
-    let conditions = line.model.of_pairs(step, false);
+    let conditions = line.model.of_pairs(step, LimitFrom::Slide);
     let Some(pairs) = &mut line.state.self_contact else {
         return 0.0;
     };

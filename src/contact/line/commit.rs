@@ -6,7 +6,7 @@ use super::point::{PointState, SLOTS};
 use super::state::LineState;
 use super::touch::TouchState;
 use crate::contact::accepted_touch::{AcceptedTouch, OUTSIDE, TouchOwner, friction_of};
-use crate::contact::friction::across;
+use crate::contact::friction::{FrictionLimit, across};
 use crate::contact::law::{NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
 use crate::contact::stencil::ContactPoint;
 use crate::math::V3;
@@ -88,7 +88,13 @@ impl LineContact<'_> {
         let point = &self.state.points[k];
         let limits = point.has_surroundings().then(|| point.limits());
         if self.has_near(k, p, own) {
-            self.commit_near(k, p, length(), step, limits.unwrap_or_default())
+            self.commit_near(
+                k,
+                p,
+                length(),
+                step,
+                limits.unwrap_or([FrictionLimit::ZERO; SLOTS]),
+            )
         } else {
             // no touch is in use, so none has anything to move on
             let point = &mut self.state.points[k];
@@ -98,9 +104,16 @@ impl LineContact<'_> {
         }
     }
 
-    /// [`Self::commit`] for a point with surfaces near it, whose touches had these friction `limits` (N) before.
+    /// [`Self::commit`] for a point with surfaces near it, whose touches were solved with the friction limits `used`.
     #[inline(never)]
-    fn commit_near(&mut self, k: usize, p: V3, length: f64, step: f64, used: [f64; SLOTS]) -> V3 {
+    fn commit_near(
+        &mut self,
+        k: usize,
+        p: V3,
+        length: f64,
+        step: f64,
+        used: [FrictionLimit; SLOTS],
+    ) -> V3 {
         let force = self
             .push_near(k, p, length, step)
             .map_or(V3::zeros(), |s| -s.gradient);
@@ -133,12 +146,13 @@ impl LineContact<'_> {
             t.depth_before = t.depth;
             self.state.deepest = self.state.deepest.max(t.depth);
             let b = t.bristle(p, last);
-            let (friction, surplus) = friction_of(&b, k_t, t.limit.current, used[slot]);
+            let force = stiffness * pressed.force;
+            let (friction, surplus) = friction_of(&b, k_t, t.limit.current, used[slot].used(force));
             self.scratch.accepted.push(AcceptedTouch {
                 point: ContactPoint::of_number(k),
                 old: None,
                 normal: t.normal,
-                force: t.normal * (stiffness * pressed.force) + friction,
+                force: t.normal * force + friction,
                 surplus,
                 began,
                 lands,

@@ -1,5 +1,6 @@
 //! What the scene gives of contact along the wire, and a run leaves as it is.
 
+use crate::contact::friction::LimitFrom;
 use crate::contact::law::ContactLaw;
 use crate::contact::self_contact::PairConditions;
 use crate::contact::tolerance::prediction_tolerance;
@@ -56,16 +57,16 @@ impl LineModel {
             .map_or(core, |flange| flange.distance.min(core))
     }
 
-    /// What contact of live wire with live wire goes by, `step` (s) after the last accepted instant; it may take the friction
-    /// limits of the iterate before.
-    pub(crate) fn of_pairs(&self, step: f64, hold_limits: bool) -> PairConditions<'_> {
+    /// What contact of live wire with live wire goes by, `step` (s) after the last accepted instant, and which friction limits
+    /// it takes.
+    pub(crate) fn of_pairs(&self, step: f64, limit_from: LimitFrom) -> PairConditions<'_> {
         PairConditions {
             law: &self.law,
             onset: self.onset,
             diameter: 2.0 * self.radius,
             prediction: self.prediction,
             step,
-            hold_limits,
+            limit_from,
         }
     }
 }

@@ -26,4 +26,6 @@ pub(super) struct Tangent {
     pub(super) gradient: V3,
     /// Hessian, N/m
     pub(super) hessian: Block,
+    /// see [`ContactResponse::slip_coupling`](crate::contact::ContactResponse::slip_coupling)
+    pub(super) slip_coupling: Block,
 }

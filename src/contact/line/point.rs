@@ -2,6 +2,7 @@
 
 use super::saved_touches;
 use super::touch::TouchState;
+use crate::contact::friction::FrictionLimit;
 use crate::geometry::{Surface, WallFoot};
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
@@ -71,10 +72,10 @@ impl PointState {
         self.reach < 0.0 || (p - self.centre).norm_squared() >= self.reach * self.reach
     }
 
-    /// The friction limits of its touches at the last evaluation, N.
+    /// The friction limits of its touches.
     #[inline]
-    pub(super) fn limits(&self) -> [f64; SLOTS] {
-        self.touch.each_ref().map(|t| t.limit.current)
+    pub(super) fn limits(&self) -> [FrictionLimit; SLOTS] {
+        self.touch.each_ref().map(|t| t.limit)
     }
 
     /// The slots of what is near the point.

@@ -2,6 +2,8 @@
 
 use super::line_contact::LineContact;
 use super::near::Tangent;
+use crate::contact::slip_coupling::SlipCoupling;
+use crate::contact::stencil::ContactPoint;
 use crate::math::{Block, V3, block_difference, block_times};
 
 /// Change of an update that calls for no new look, as a share of the prediction tolerance. Chosen.
@@ -54,6 +56,7 @@ impl LineContact<'_> {
             let tangent = Tangent {
                 gradient: there.gradient - block_times(&there.hessian, &way),
                 hessian: there.hessian,
+                slip_coupling: there.slip_coupling,
             };
             correct(
                 n.point as usize,
@@ -61,8 +64,26 @@ impl LineContact<'_> {
                 &(tangent.gradient - known.gradient),
             );
             (n.tangent, n.room) = (Some(tangent), 0.0);
+            for touch in &mut self.state.points[n.point as usize].touch {
+                touch.limit.follows = false;
+            }
         }
         self.scratch.near = near;
         any
+    }
+
+    /// Adds the slip couplings of the linear system to `list`.
+    pub fn list_slip_couplings(&self, list: &mut Vec<SlipCoupling>) {
+        for near in &self.scratch.near {
+            let block = near.tangent.map_or(Block::default(), |t| t.slip_coupling);
+            if block != Block::default() {
+                list.push(SlipCoupling {
+                    point: ContactPoint::of_number(near.point as usize).weights(),
+                    foot: None,
+                    block,
+                });
+            }
+        }
+        self.scratch.pairs.list_slip_couplings(list);
     }
 }

@@ -83,11 +83,7 @@ impl LineContact<'_> {
             stiffness: law.stiffness * length,
             step,
             last: point.last,
-            limit_from: if state.hold_limits {
-                LimitFrom::Lagged
-            } else {
-                LimitFrom::NormalForce
-            },
+            limit_from: state.limit_from,
         };
         let mut sum = ContactResponse::default();
         let mut any = false;
@@ -98,18 +94,19 @@ impl LineContact<'_> {
             let double = point.has_before(slot, segment);
             let touch = &mut point.touch[slot];
             if double {
-                (touch.depth, touch.limit.current) = (0.0, 0.0);
+                touch.depth = 0.0;
+                touch.limit.lift();
                 continue;
             }
             touch.depth = depth;
             touch.normal = normal;
             if depth <= 0.0 {
-                touch.limit.current = 0.0;
+                touch.limit.lift();
                 gap = gap.min(-depth);
                 continue;
             }
             any = true;
-            (touch.limit.current, touch.slide) = touch.respond(p, &around, &mut sum);
+            (touch.limit, touch.slide) = touch.respond(p, &around, &mut sum);
         }
         (point.clear_at, point.clear_within) = (p, if any { 0.0 } else { gap });
         scratch.near.push(NearPoint {
@@ -119,6 +116,7 @@ impl LineContact<'_> {
             tangent: any.then_some(Tangent {
                 gradient: sum.gradient,
                 hessian: sum.hessian,
+                slip_coupling: sum.slip_coupling,
             }),
             room: point.clear_within,
             looked_along: None,

@@ -3,6 +3,7 @@
 use super::model::LineModel;
 use super::point::{PointState, WIRE};
 use super::record::ContactRecord;
+use crate::contact::friction::LimitFrom;
 use crate::contact::law::ContactLoss;
 use crate::contact::self_contact::SelfContact;
 use crate::contact::stencil::ContactPoint;
@@ -28,9 +29,9 @@ pub struct LineState {
     /// places (m) and unstretched lengths from the clamp (m) of the live nodes into which the frozen wire's spline
     /// continues, the clamp's first
     pub(super) ahead: Option<[(V3, f64); 2]>,
-    /// take the friction limits of the iterate before. A guess may lie deep in what it lands on; friction from
-    /// such a normal force would throw the wire sideways.
-    pub hold_limits: bool,
+    /// which friction limits an evaluation takes
+    #[serde(skip)]
+    pub limit_from: LimitFrom,
     /// live wire on live wire, where it may touch
     pub self_contact: Option<SelfContact>,
 }
@@ -44,7 +45,7 @@ impl LineState {
             deepest: 0.0,
             height: 0.0,
             ahead: None,
-            hold_limits: false,
+            limit_from: LimitFrom::default(),
             self_contact: None,
         }
     }
@@ -57,7 +58,7 @@ impl LineState {
             deepest,
             height,
             ahead,
-            hold_limits,
+            limit_from,
             self_contact,
         } = other;
         self.points.truncate(points.len());
@@ -67,7 +68,7 @@ impl LineState {
         }
         self.points.extend(from.cloned());
         (self.loss, self.deepest, self.height) = (*loss, *deepest, *height);
-        (self.ahead, self.hold_limits) = (*ahead, *hold_limits);
+        (self.ahead, self.limit_from) = (*ahead, *limit_from);
         self.self_contact.clone_from(self_contact);
     }
 

@@ -53,14 +53,14 @@ impl TouchState {
     }
 
     /// Adds the response of this touch, with its depth and normal, to that of its point at `p`; returns its
-    /// friction limit, N, and the direction of its slide.
+    /// friction limits after it and the direction of its slide.
     #[inline(always)]
     pub(super) fn respond(
         &self,
         p: V3,
         around: &Conditions,
         sum: &mut ContactResponse,
-    ) -> (f64, V3) {
+    ) -> (FrictionLimit, V3) {
         let pressed = NormalLaw::at(self.depth, around.onset);
         sum.add_touch(&Touching {
             law: around.law,

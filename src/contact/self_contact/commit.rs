@@ -2,7 +2,7 @@
 
 use super::pairs::SelfContact;
 use crate::contact::accepted_touch::{AcceptedTouch, OUTSIDE, TouchOwner, friction_of};
-use crate::contact::friction::across;
+use crate::contact::friction::{FrictionLimit, across};
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE, work_beyond_stored};
 use crate::contact::stencil::{ContactPoint, NodeWeights};
 use crate::math::V3;
@@ -18,13 +18,13 @@ impl SelfContact {
     /// Makes the wire at `q` the accepted one: bristles follow, slip and landings are added to the losses. `last` is the
     /// wire at the last accepted instant. See [`LineContact::commit`](crate::contact::LineContact::commit).
     ///
-    /// `used` are the friction limits that the solve went by, pair by pair, N. Adds the touches to `accepted`.
+    /// `used` are the friction limits that the solve went by, pair by pair. Adds the touches to `accepted`.
     pub fn commit(
         &mut self,
         (law, onset): (&ContactLaw, f64),
         (q, last): (&[V3], &[V3]),
         length: impl Fn(usize) -> f64,
-        used: &[f64],
+        used: &[FrictionLimit],
         accepted: &mut Vec<AcceptedTouch>,
     ) {
         let curve = self.curve(q);
@@ -46,12 +46,14 @@ impl SelfContact {
             let deeper = -way.dot(&n);
             let lands = !pair.touched && pair.depth - deeper <= OUTSIDE * onset;
             let spring = NormalLaw::at(pair.depth, onset);
-            let (friction, surplus) = friction_of(&b, k_t, pair.limit.current, used[number]);
+            let force = stiffness * spring.force;
+            let (friction, surplus) =
+                friction_of(&b, k_t, pair.limit.current, used[number].used(force));
             accepted.push(AcceptedTouch {
                 point: ContactPoint::of_number(pair.point as usize),
                 old: Some(old.negative()),
                 normal: n,
-                force: n * (stiffness * spring.force) + friction,
+                force: n * force + friction,
                 surplus,
                 began: !pair.touched,
                 lands,
@@ -73,10 +75,10 @@ impl SelfContact {
         }
     }
 
-    /// The friction limits of the last evaluation, pair by pair, N, into `limits`.
-    pub fn limits(&self, limits: &mut Vec<f64>) {
+    /// The friction limits, pair by pair, into `limits`.
+    pub fn limits(&self, limits: &mut Vec<FrictionLimit>) {
         limits.clear();
-        limits.extend(self.pairs.iter().map(|p| p.limit.current));
+        limits.extend(self.pairs.iter().map(|p| p.limit));
     }
 
     /// Energy stored in the touches, J; `length` tells what the point of a number stands for, m.

@@ -3,7 +3,7 @@
 use super::coupling::Coupling;
 use super::pairs::{Pair, SelfContact};
 use super::scratch::{NearPair, PairScratch};
-use crate::contact::friction::{ContactResponse, LimitFrom, Touching, across};
+use crate::contact::friction::{ContactResponse, FrictionLimit, LimitFrom, Touching, across};
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE};
 use crate::contact::stencil::{ContactPoint, NodeWeights};
 use crate::math::{Block, V3, block_difference, block_times};
@@ -21,14 +21,13 @@ pub struct PairConditions<'a> {
     pub prediction: f64,
     /// time since the last accepted instant, s
     pub step: f64,
-    /// take the friction limits of the iterate before, see
-    /// [`LineState::hold_limits`](crate::contact::LineState::hold_limits)
-    pub hold_limits: bool,
+    /// which friction limits an evaluation takes
+    pub limit_from: LimitFrom,
 }
 
 impl Pair {
     /// Response of a touching pair that slid by `way` (m) since the last accepted instant, by the distance vector; its
-    /// friction limit, N, and the direction of its slide. `slide` is the one in the linear system.
+    /// friction limits after it and the direction of its slide. `slide` is the one in the linear system.
     #[inline]
     fn respond(
         &self,
@@ -37,7 +36,7 @@ impl Pair {
         stiffness: f64,
         way: V3,
         slide: V3,
-    ) -> (ContactResponse, f64, V3) {
+    ) -> (ContactResponse, FrictionLimit, V3) {
         let mut sum = ContactResponse::default();
         let (limit, slide) = sum.add_touch(&Touching {
             law: around.law,
@@ -77,11 +76,6 @@ impl SelfContact {
         } = scratch;
         couplings.clear();
         all_near.clear();
-        let limit_from = if around.hold_limits {
-            LimitFrom::Lagged
-        } else {
-            LimitFrom::NormalForce
-        };
         let curve = self.curve(q);
         for pair in &mut self.pairs {
             let young = ContactPoint::of_number(pair.point as usize).weights();
@@ -104,22 +98,24 @@ impl SelfContact {
                 stiffness,
                 gradient: V3::zeros(),
                 hessian: Block::default(),
+                slip_coupling: Block::default(),
                 room: (-pair.depth).max(0.0),
                 predicted: false,
                 slide: V3::zeros(),
                 coupling: None,
             };
             if pair.depth <= 0.0 {
-                pair.limit.current = 0.0;
+                pair.limit.lift();
                 all_near.push(near);
                 continue;
             }
             let way = (p - young.sum(last)) - (foot.point - old.sum(last));
             let (response, limit, slide) =
-                pair.respond(around, limit_from, stiffness, way, V3::zeros());
-            pair.limit.current = limit;
+                pair.respond(around, around.limit_from, stiffness, way, V3::zeros());
+            pair.limit = limit;
             near.coupling = Some(couplings.len() as u32);
             (near.gradient, near.hessian) = (response.gradient, response.hessian);
+            near.slip_coupling = response.slip_coupling;
             near.slide = slide;
             all_near.push(near);
             let coupling = Coupling {
@@ -136,7 +132,7 @@ impl SelfContact {
     /// at the iterate `q`, was at `last` at the last accepted instant, and the update leads to `there`. `correct` gets the
     /// point, its foot with negative weights, and the changes of Hessian and gradient.
     pub fn predict(
-        &self,
+        &mut self,
         scratch: &mut PairScratch,
         around: &PairConditions,
         (q, last, there): (&[V3], &[V3], &[V3]),
@@ -192,6 +188,8 @@ impl SelfContact {
             });
             couplings[at as usize].block = hessian;
             (near.gradient, near.hessian, near.room) = (gradient, hessian, 0.0);
+            near.slip_coupling = Block::default();
+            self.pairs[near.pair as usize].limit.follows = false;
             near.predicted = true;
         }
         any

@@ -3,6 +3,8 @@
 use super::by_place::Blocks;
 use super::coupling::Coupling;
 use super::pairs::Pair;
+use crate::contact::friction::FrictionLimit;
+use crate::contact::slip_coupling::SlipCoupling;
 use crate::contact::stencil::NodeWeights;
 use crate::math::{Block, V3};
 
@@ -21,6 +23,8 @@ pub(super) struct NearPair {
     pub(super) gradient: V3,
     /// Hessian, N/m
     pub(super) hessian: Block,
+    /// see [`ContactResponse::slip_coupling`](crate::contact::ContactResponse::slip_coupling)
+    pub(super) slip_coupling: Block,
     /// distance to touching, while the model has no touch, m
     pub(super) room: f64,
     /// the model is that of a place that an update led to
@@ -60,8 +64,8 @@ pub struct PairScratch {
     pub(super) unpaired: Vec<Unpaired>,
     /// by turns back along the wire, the node that the search has reached
     pub(super) reached: Vec<usize>,
-    /// friction limits by which the last solve went, pair by pair, N
-    pub used: Vec<f64>,
+    /// friction limits by which the last solve went, pair by pair
+    pub used: Vec<FrictionLimit>,
     /// room for the wire in the core frame
     pub wire: Vec<V3>,
     /// couplings of nodes on touching live wires, by the last evaluation
@@ -71,6 +75,19 @@ pub struct PairScratch {
 }
 
 impl PairScratch {
+    /// Adds the slip couplings of the pairs to `list`.
+    pub(crate) fn list_slip_couplings(&self, list: &mut Vec<SlipCoupling>) {
+        for near in &self.near {
+            if near.slip_coupling != Block::default() {
+                list.push(SlipCoupling {
+                    point: near.young,
+                    foot: Some(near.old),
+                    block: near.slip_coupling,
+                });
+            }
+        }
+    }
+
     /// Empties the work arrays.
     pub(crate) fn clear(&mut self) {
         let Self {

@@ -110,7 +110,7 @@ impl SelfContact {
                     limit: FrictionLimit {
                         lagged: limit,
                         accepted: limit,
-                        current: 0.0,
+                        ..FrictionLimit::ZERO
                     },
                     depth: before.map_or(0.0, |o| o.depth),
                     share: foot.share,
@@ -174,10 +174,11 @@ impl PairScratch {
 
     /// Whether wire may come near older live wire elsewhere than at whole turns back along it.
     ///
-    /// It may where it is no farther round the core than older wire by what two wires side by side take up. Its own neighbourhood does not
-    /// count. `measure_wire` has been called.
+    /// It may where it is neither farther round the core nor farther out than older wire by what two wires side by side take up.
+    /// Its own neighbourhood does not count. `measure_wire` has been called.
     fn is_folded(&self, q: &[V3], diameter: f64) -> bool {
-        let (mut behind, mut farthest) = (0, f64::NEG_INFINITY);
+        let apart = (1.0 + SKIN) * diameter;
+        let (mut behind, mut farthest, mut outermost) = (0, f64::NEG_INFINITY, 0.0f64);
         self.arc
             .iter()
             .zip(&self.angle)
@@ -186,9 +187,11 @@ impl PairScratch {
                 let own = own_wire(*arc, diameter);
                 while self.arc[behind] <= own {
                     farthest = farthest.max(self.angle[behind]);
+                    outermost = outermost.max(q[behind].x.hypot(q[behind].z));
                     behind += 1;
                 }
-                (angle - farthest) * p.x.hypot(p.z) < (1.0 + SKIN) * diameter
+                let out = p.x.hypot(p.z);
+                (angle - farthest) * out < apart && out - outermost < apart
             })
     }
 

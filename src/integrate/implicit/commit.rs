@@ -8,6 +8,7 @@ use super::scheme::{Scheme, StepFormula};
 use super::tensioner::advance;
 use super::unknowns::Unknowns;
 use super::work::Work;
+use crate::contact::LimitFrom;
 use crate::math::{Spin, V3};
 use crate::system::{Spindle, Support, System};
 
@@ -75,8 +76,8 @@ impl Implicit {
             sys.state.balance.inflow += 0.5 * inflow * sys.state.rod.v[last].norm_squared();
         }
         if let Some(line) = sys.state.contact.as_line_mut() {
-            // late Newton steps hold the friction limits of the iterate before; what is accepted goes by its own
-            line.hold_limits = false;
+            // late Newton steps hold the coefficients of friction; what is accepted goes by its own slide
+            line.limit_from = LimitFrom::Slide;
         }
         if self.scheme == Scheme::Bdf2 {
             sys.state.turning = Some(

@@ -3,7 +3,8 @@
 //! The banded part contains both partners' own shares of every pair, the couplings only what
 //! lies between them, so the sum is positive semidefinite and the preconditioner is its upper bound.
 
-use crate::contact::{Coupling, add_couplings};
+use super::beyond_band::BeyondBand;
+use crate::contact::add_couplings;
 use crate::linalg::Banded;
 
 /// Residual, in the norm of the preconditioner, at which an update is good enough: Newton's method needs no more.
@@ -26,8 +27,7 @@ pub(super) struct Scratch {
 #[inline(never)]
 pub(super) fn solve<const D: usize>(
     matrix: &Banded<D>,
-    couplings: &[Coupling],
-    held: [[bool; 3]; 2],
+    beyond: &BeyondBand,
     b: &mut [f64],
     s: &mut Scratch,
 ) {
@@ -45,10 +45,10 @@ pub(super) fn solve<const D: usize>(
     let stop = rz * CLOSE * CLOSE;
     for _ in 0..MOST_STEPS {
         s.y.copy_from_slice(&s.banded);
-        add_couplings::<D>(couplings, &s.p, &mut s.y);
+        add_couplings::<D>(&beyond.couplings, &s.p, &mut s.y);
         for (end, first) in [(0, 0), (1, n - D)] {
             for a in 0..3 {
-                if held[end][a] {
+                if beyond.held[end][a] {
                     s.y[first + a] = s.p[first + a];
                 }
             }

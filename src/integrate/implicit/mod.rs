@@ -5,6 +5,7 @@
 //! scratch arrays, so a rejected step leaves no trace.
 
 mod assembly;
+mod beyond_band;
 mod carried;
 mod commit;
 mod conjugate;
@@ -15,6 +16,7 @@ mod impulse;
 mod landings;
 mod largest;
 mod lengths;
+mod minimal_residual;
 mod model;
 mod newton;
 mod nozzle_edge;

@@ -335,7 +335,7 @@ impl Model<'_> {
         work: &mut Work<D, U>,
         value: &mut Value,
     ) {
-        let conditions = line.model.of_pairs(self.elapsed, line.state.hold_limits);
+        let conditions = line.model.of_pairs(self.elapsed, line.state.limit_from);
         let Some(pairs) = &mut line.state.self_contact else {
             return;
         };

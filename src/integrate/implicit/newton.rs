@@ -1,17 +1,19 @@
 //! Newton's method on the incremental potential, with line search.
 
-use super::conjugate;
 use super::largest::largest;
 use super::model::Model;
 use super::unknowns::{Unknowns, add_at};
 use super::work::{Axial, Work};
-use crate::contact::{ContactPoint, NodeWeights};
+use crate::contact::{ContactPoint, LimitFrom, NodeWeights};
 use crate::math::{V3, scaled};
 use crate::rod::{Block, Laws, add_outer};
 
-/// Newton steps that renew the friction limits; from then on the limits stay, so that the rest converges
-/// quadratically. The solution then lags behind its own limits by their last change.
-const LIMIT_STEPS: usize = 5;
+/// Newton steps after which the coefficients of friction stay what the slide of the first iterate makes them, see
+/// [`LimitFrom::NormalForce`].
+const SLIDES: usize = 1;
+/// Newton steps in which friction limits follow the normal force. Most solves are done after three; where slides still turn to and
+/// fro after so many, the limits stay, and the rest is the minimum of a potential. The solution then lags behind its own limits.
+const FOLLOWS: usize = 6;
 /// Times that an update is solved again for contact and yielding it meets on its way.
 const LOOKS_AHEAD: usize = 8;
 /// An update of more than so many times what is close is not the last but one.
@@ -128,9 +130,9 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
     limits: NewtonLimits,
 ) -> Result<usize, NewtonFailure> {
     expect_nothing(model, work);
-    hold_limits(model, true);
+    take_limits(model, LimitFrom::Lagged);
     let mut value = model.evaluate(work).now;
-    hold_limits(model, false);
+    take_limits(model, LimitFrom::Slide);
     // inertia bounds the update from above: a guess that is good enough costs no solve
     let weight = model.gamma * model.gamma;
     let radius = 0.5 * model.diameter;
@@ -147,6 +149,11 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
     let mut last_update = f64::INFINITY;
     let mut worst = (0, f64::INFINITY);
     for step in 1..=limits.steps {
+        if step > FOLLOWS {
+            take_limits(model, LimitFrom::Lagged);
+        } else if step > SLIDES {
+            take_limits(model, LimitFrom::NormalForce);
+        }
         work.solves += 1;
         let fits = solve_linear(model, work).map_err(|node| NewtonFailure {
             node,
@@ -154,8 +161,10 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             steps: step,
             far: None,
         })?;
-        if slope(work) >= 0.0 {
+        let mut slope = Slope::of(work);
+        if slope.curvature() <= 0.0 {
             work.update.clone_from(&work.plain);
+            slope = Slope::of(work);
         }
         let (update, node, rolls) = largest_update(model, work);
         let stuck = |far| NewtonFailure {
@@ -189,10 +198,15 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         }
         let mut line_search_halvings = 0;
         if share == 1.0 && fits && limits.chord > 0.0 {
-            match end_by_chords(model, work, value, (update, close), limits.chord * close) {
+            match end_by_chords(
+                model,
+                work,
+                value + slope.rise(1.0),
+                (update, close),
+                limits.chord * close,
+            ) {
                 Chord::Ends => return Ok(step + 1),
                 Chord::Nearer => {
-                    hold_limits(model, step > LIMIT_STEPS);
                     value = model.evaluate(work).now;
                     if let Some(line) = &mut model.line {
                         line.state.renew_limits();
@@ -204,11 +218,11 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             }
         }
         loop {
-            hold_limits(model, step > LIMIT_STEPS);
             work.take(share);
             expect_tension(work, share);
             let trial = model.evaluate(work);
-            if trial.merit <= value + NOISE * value.abs() || share * update < close {
+            let most = value + slope.rise(share);
+            if trial.merit <= most + NOISE * value.abs() || share * update < close {
                 value = trial.now;
                 if let Some(line) = &mut model.line {
                     line.state.renew_limits();
@@ -249,7 +263,7 @@ enum Chord {
     Vain,
 }
 
-/// Takes the whole update, of size `first`, and with the factors it came from up to [`CHORDS`] after it, until one leaves no
+/// Takes the whole update, of size `first`, which may lead to this `value` of the potential at most, J, and with the factors it came from up to [`CHORDS`] after it, until one leaves no
 /// more than `left` (m).
 ///
 /// An update is about a thirtieth of the one before, and old factors are good enough for it. What is then wrong is
@@ -262,19 +276,13 @@ fn end_by_chords<const D: usize, U: Unknowns<D>>(
     (first, close): (f64, f64),
     left: f64,
 ) -> Chord {
-    let coupled = |model: &Model| {
-        let line = model.line.as_ref();
-        line.is_some_and(|l| !l.scratch.pairs.couplings.is_empty())
-    };
-    // pairs of live wire have their share of the matrix outside the band, and that is always of the present
-    if first > CHORD * close || coupled(model) {
+    if first > CHORD * close {
         return Chord::Vain;
     }
-    hold_limits(model, false);
     work.take(1.0);
     expect_tension(work, 1.0);
     let trial = model.evaluate_forces(work);
-    if trial.merit > value + NOISE * value.abs() || coupled(model) {
+    if trial.merit > value + NOISE * value.abs() {
         return Chord::Vain;
     }
     work.plain.clone_from(&work.update);
@@ -283,7 +291,7 @@ fn end_by_chords<const D: usize, U: Unknowns<D>>(
         work.solves += 1;
         load_gradient(work);
         std::mem::swap(&mut work.update, &mut work.load);
-        work.matrix.solve(&mut work.update);
+        work.solve_factored(0.5 * model.diameter);
         let (next, ..) = largest_update(model, work);
         let ends = next < left || next * next <= before * left;
         if !ends && (next > SHRINKS * before || chord + 1 == CHORDS) {
@@ -321,9 +329,9 @@ fn largest_update<const D: usize, U: Unknowns<D>>(
     (update, at / D, at % D == 3)
 }
 
-fn hold_limits(model: &mut Model, hold: bool) {
+fn take_limits(model: &mut Model, from: LimitFrom) {
     if let Some(line) = &mut model.line {
-        line.state.hold_limits = hold;
+        line.state.limit_from = from;
     }
 }
 
@@ -338,16 +346,8 @@ fn solve_linear<const D: usize, U: Unknowns<D>>(
     for look in 0.. {
         work.matrix.factor().map_err(|loose| loose.node)?;
         work.update.clone_from(&work.load);
-        match (model.line.as_ref()).map_or(&[][..], |l| &l.scratch.pairs.couplings) {
-            [] => work.matrix.solve(&mut work.update),
-            couplings => conjugate::solve(
-                &work.matrix,
-                couplings,
-                model.held,
-                &mut work.update,
-                &mut work.conjugate,
-            ),
-        }
+        work.beyond.take(model.line.as_ref(), model.held);
+        work.solve_factored(0.5 * model.diameter);
         if look == 0 {
             work.plain.clone_from(&work.update);
         }
@@ -389,7 +389,7 @@ fn solve_linear<const D: usize, U: Unknowns<D>>(
                     correct(&place, stiffness, gradient);
                 },
             );
-            let conditions = line.model.of_pairs(model.elapsed, line.state.hold_limits);
+            let conditions = line.model.of_pairs(model.elapsed, line.state.limit_from);
             if let Some(pairs) = &mut line.state.self_contact {
                 there.clear();
                 for (i, p) in q.iter().enumerate() {
@@ -542,10 +542,36 @@ fn expect_tension<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U>, share: 
     }
 }
 
-/// Slope of the potential along the update.
-fn slope<const D: usize, U: Unknowns<D>>(work: &Work<D, U>) -> f64 {
-    work.gradients()
-        .zip(work.update.as_chunks::<D>().0)
-        .map(|(g, u)| g.iter().zip(u).map(|(g, u)| g * u).sum::<f64>())
-        .sum()
+/// Slope of the potential along an update, and what slip couplings have in it, J.
+#[derive(Clone, Copy, Debug)]
+struct Slope {
+    slope: f64,
+    slip: f64,
+}
+
+impl Slope {
+    fn of<const D: usize, U: Unknowns<D>>(work: &Work<D, U>) -> Self {
+        let update = work.update.as_chunks::<D>().0;
+        let along =
+            |(g, u): ([f64; D], &[f64; D])| g.iter().zip(u).map(|(g, u)| g * u).sum::<f64>();
+        Self {
+            slope: work.gradients().zip(update).map(along).sum(),
+            slip: work.beyond.slip_square::<D>(&work.update),
+        }
+    }
+
+    /// Product of the update with the Hessian from either side, J: it and the slip couplings take the update to minus the
+    /// gradient.
+    fn curvature(self) -> f64 {
+        -self.slope - self.slip
+    }
+
+    /// Rise of the potential that this share of the update may bring, J.
+    ///
+    /// Where friction limits change along with the update, the solution is no minimum of the potential that holds them. It may
+    /// rise by what gradient and Hessian promise, and as much again for what they leave out.
+    fn rise(self, share: f64) -> f64 {
+        let promised = share * self.slope + 0.5 * share * share * self.curvature();
+        (2.0 * promised).max(0.0)
+    }
 }

@@ -1,9 +1,10 @@
 //! Scratch arrays of a step, shared by its stages.
 
 use super::assembly::Assembly;
-use super::conjugate;
+use super::beyond_band::BeyondBand;
 use super::impact::Impacts;
 use super::unknowns::Unknowns;
+use super::{conjugate, minimal_residual};
 use crate::linalg::Banded;
 use crate::math::V3;
 use crate::rod::YieldBranches;
@@ -68,6 +69,10 @@ pub(super) struct Work<const D: usize, U> {
     pub(super) assembly: Assembly,
     /// impulses of landings
     pub(super) impacts: Impacts,
+    /// what the linear system holds beside the matrix
+    pub(super) beyond: BeyondBand,
+    /// vectors of the minimal residuals
+    pub(super) minimal_residual: minimal_residual::Scratch,
     /// vectors of the conjugate gradients
     pub(super) conjugate: conjugate::Scratch,
     /// forces at the last accepted instant, lab frame, N; while solving, places after the update, m
@@ -108,6 +113,24 @@ impl<const D: usize, U: Unknowns<D>> Work<D, U> {
     pub(super) fn difference(&self) -> f64 {
         let (sum, mass) = self.weighed(|i| self.q[i] - self.guess[i]);
         ((sum + self.unknowns.difference()) / mass).sqrt()
+    }
+
+    /// Solves the equations of which [`Self::update`] is the right-hand side, N, and N m of a roll, by the factors in hand and
+    /// what is beside their band; a roll counts at this `radius`, m.
+    pub(super) fn solve_factored(&mut self, radius: f64) {
+        let Self {
+            matrix,
+            beyond,
+            update,
+            ..
+        } = self;
+        if !beyond.slips.is_empty() {
+            minimal_residual::solve(matrix, beyond, update, &mut self.minimal_residual, radius);
+        } else if !beyond.couplings.is_empty() {
+            conjugate::solve(matrix, beyond, update, &mut self.conjugate);
+        } else {
+            matrix.solve(update);
+        }
     }
 
     /// Keeps places and rolls as those at the start of an update.
