@@ -9,7 +9,7 @@ use crate::math::{V3, scaled};
 use crate::rod::{Block, Laws, add_outer};
 
 /// Newton steps after which the coefficients of friction stay what the slide of the first iterate makes them, see
-/// [`LimitFrom::NormalForce`].
+/// [`LimitFrom::NormalForce`]. Of a prescribed step its caller wants the solution, with coefficients of its own.
 const SLIDES: usize = 1;
 /// Newton steps in which friction limits follow the normal force. Most solves are done after three; where slides still turn to and
 /// fro after so many, the limits stay, and the rest is the minimum of a potential. The solution then lags behind its own limits.
@@ -50,6 +50,8 @@ pub(super) struct NewtonLimits {
     pub(super) guess: f64,
     /// what a last update with the factors of the one before may leave, as a share of what is close; 0: there is none
     pub(super) chord: f64,
+    /// Newton steps that look the coefficients of friction up by the slide, at most [`FOLLOWS`]
+    pub(super) slides: usize,
 }
 
 impl NewtonLimits {
@@ -62,6 +64,7 @@ impl NewtonLimits {
         line_search_halvings: 12,
         guess: 0.0,
         chord: CHORD_KEPT,
+        slides: FOLLOWS,
     };
 
     /// That of a time step, a `short` one or one that may as well be shorter. Then that is cheaper than a long search
@@ -85,6 +88,7 @@ impl NewtonLimits {
             } else {
                 CHORD_KEPT
             },
+            slides: if damped { SLIDES } else { FOLLOWS },
             ..Self::STEP
         }
     }
@@ -151,7 +155,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
     for step in 1..=limits.steps {
         if step > FOLLOWS {
             take_limits(model, LimitFrom::Lagged);
-        } else if step > SLIDES {
+        } else if step > limits.slides {
             take_limits(model, LimitFrom::NormalForce);
         }
         work.solves += 1;
