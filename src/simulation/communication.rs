@@ -196,8 +196,10 @@ impl Simulation {
     /// Whether a step may reach beyond the communication point at all, when the inputs of a step of `dt`, s, change at `rates`.
     fn may_step_beyond(&self, inputs: &Inputs, rates: &Inputs, dt: f64) -> bool {
         let (now, end) = (self.inputs(), inputs.after(rates, dt));
-        let aside = (end.nozzle_offset_x - now.nozzle_offset_x)
-            .hypot(end.nozzle_offset_z - now.nozzle_offset_z);
+        let aside = libm::hypot(
+            end.nozzle_offset_x - now.nozzle_offset_x,
+            end.nozzle_offset_z - now.nozzle_offset_z,
+        );
         let damped =
             inputs.tensioner_damping == now.tensioner_damping && rates.tensioner_damping == 0.0;
         // (courses know of no way aside, of no law of the nozzle, and of one damper)

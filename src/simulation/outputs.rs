@@ -125,7 +125,7 @@ impl Winding {
     fn nozzle_angle(&self) -> f64 {
         let x = &self.sys.state.rod.x;
         let along = x[x.len() - 2] - x[x.len() - 1];
-        libm::atan2(along.y, along.x.hypot(along.z))
+        libm::atan2(along.y, libm::hypot(along.x, along.z))
     }
 
     pub(super) fn update_outputs(&mut self) {

@@ -187,10 +187,10 @@ impl PairScratch {
                 let own = own_wire(*arc, diameter);
                 while self.arc[behind] <= own {
                     farthest = farthest.max(self.angle[behind]);
-                    outermost = outermost.max(q[behind].x.hypot(q[behind].z));
+                    outermost = outermost.max(libm::hypot(q[behind].x, q[behind].z));
                     behind += 1;
                 }
-                let out = p.x.hypot(p.z);
+                let out = libm::hypot(p.x, p.z);
                 (angle - farthest) * out < apart && out - outermost < apart
             })
     }

@@ -67,7 +67,7 @@ impl Implicit {
             line_search_halvings: 12,
             guess: CLOSE * self.tolerance,
             chord: 0.0,
-            slides: usize::MAX,
+            slides: NewtonLimits::STEP.slides,
         };
         let mut taken = 0;
         for _ in 0..PASSES {

@@ -71,7 +71,7 @@ mod tests {
             let along = |q: &Quat| rotate(q, &V3::z());
             let t = [along(&p), along(&n)];
             let set = SetCurvature::new(mid_frame_vector(&p, &n, k), [&t[0], &t[1]]);
-            let size = k[0].hypot(k[1]);
+            let size = libm::hypot(k[0], k[1]);
             for (far, off) in [(1e-3, 3e-6), (1e-2, 3e-4)] {
                 let a = (t[0] + V3::new(turn[0], turn[1], turn[2]) * far).normalize();
                 let b = (t[1] + V3::new(turn[3], turn[4], turn[5]) * far).normalize();
