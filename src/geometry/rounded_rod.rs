@@ -37,14 +37,14 @@ impl RoundedRod {
 
     /// Exact signed distance of `p` (m) from the surface, negative inside. It grows by no more than the way.
     pub fn distance(&self, p: V3) -> f64 {
-        let beyond = (p - self.kernel(p).0).norm();
-        if beyond > 0.0 {
-            return beyond - self.edge_radius;
-        }
         let e = self.edge_radius;
         let side = self.radius - e - libm::hypot(p.y, p.z);
         let faces = (p.x - e).min(self.length - e - p.x);
-        -side.min(faces) - e
+        // (rounding sets the kernel's nearest point beside a point within the kernel)
+        match side.min(faces) {
+            within if within >= 0.0 => -within - e,
+            _ => (p - self.kernel(p).0).norm() - e,
+        }
     }
 
     /// The point of the rod nearest to `p`, m; `p` itself inside.
