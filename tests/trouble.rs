@@ -255,7 +255,8 @@ fn slack_wire_is_told_and_taken_up_again() {
     // the tensioner still comes with the speed it had, and little holds it back
     m.inputs.tension_setpoint = 0.5;
     m.ramp(0.0, 5e-4);
-    m.wait(40);
+    // the slack lasts for 40 ms, give or take one with the tolerance, and ends in a jerk
+    m.wait(30);
     assert!(m.count(EventKind::Slack) > 0 && m.lowest == 0.0);
     let o = m.out();
     assert!(
