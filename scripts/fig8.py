@@ -69,7 +69,7 @@ def settings_of(case):
 def wind(command, case):
     """One member: its second turn, at rest or not."""
     with tempfile.TemporaryDirectory() as folder:
-        words = [command, "run", "fig8", "--quiet", "--no-geometry", "--out", folder]
+        words = [command, "run", case.get("scene", "fig8"), "--quiet", "--no-geometry", "--out", folder]
         done = subprocess.run(words + settings_of(case), capture_output=True, text=True, check=False)
         path = Path(folder) / "summary.json"
         if not path.exists():

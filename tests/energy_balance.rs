@@ -155,10 +155,12 @@ fn bent_wire_without_twist_gets_no_energy_from_its_set() {
                 [solver]\ntwist = 'off'\n";
     let energy = wound(text).summary().energy;
     assert!(energy.plastic_J > 0.03, "{energy:?}");
-    assert!(
-        (0.0..0.005).contains(&energy.numerical_over_dissipated),
-        "{energy:?}"
-    );
+    assert!(energy.numerical_over_dissipated.abs() < 0.002, "{energy:?}");
+    let fine = wound(&format!("{text}tolerance_um = 0.5\n"))
+        .summary()
+        .energy;
+    // splits on the chord at the nozzle left a loss of 6e-4 that no tolerance took away
+    assert!(fine.numerical_over_dissipated.abs() < 3e-4, "{fine:?}");
 }
 
 /// The scene of this text, wound to its end in one communication step: only the error bounds the steps.

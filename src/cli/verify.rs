@@ -29,7 +29,7 @@ pub(super) struct VerifyArgs {
     /// Method: default (the implicit one that winding uses) or paper (explicit, RK4)
     #[arg(long, value_name = "paper|default", default_value = "default", value_parser = one_of(PRESETS))]
     preset: Preset,
-    /// Solver setting: solver.spacing_near (finest node spacing, m) or solver.integrator
+    /// Solver setting: solver.spacing_near (finest node spacing, m), solver.tolerance (m) or solver.integrator
     #[arg(long = "set", value_name = "NAME=VALUE")]
     set: Vec<String>,
     /// One line of JSON per number

@@ -20,6 +20,10 @@ const STRAIGHT: f64 = 0.99995;
 /// slack wire has. A look comes after the step in which an edge bends beyond it, so halved edges bend by more.
 const BENT: f64 = 0.05;
 
+/// Share of the spacing below which an edge of bent wire goes back into the nozzle whole. The chord then loses a 22nd of the spacing
+/// times the square of the angle; steps take a quarter of the edge each.
+const SHORTEST_BENT: f64 = 0.1;
+
 /// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
 /// turn back.
 const WHOLE: f64 = 0.85;
@@ -97,7 +101,29 @@ impl Winding {
     /// The last edge has grown to two spacings: time for a new node halfway.
     fn nozzle_edge_is_long(&self) -> bool {
         let last = self.sys.state.rod.edges() - 1;
-        self.sys.state.rod.rest[last] >= 2.0 * self.scene.solver.spacing_free
+        self.sys.state.rod.rest[last] >= 2.0 * self.spacing_at_nozzle(BENT)
+    }
+
+    /// Spacing at the nozzle, m: that of the free span, and where wire bends there by `bent` (rad) or more, that of the edge before.
+    ///
+    /// A long edge that comes out of the nozzle replaces an arc by its chord.
+    fn spacing_at_nozzle(&self, bent: f64) -> f64 {
+        let (rod, solver) = (&self.sys.state.rod, self.scene.solver);
+        let free = solver.spacing_free;
+        if self.is_bent_at_nozzle(bent) {
+            rod.rest[rod.edges() - 2].clamp(solver.spacing_near.min(free), free)
+        } else {
+            free
+        }
+    }
+
+    /// Whether the wire bends by more than `bent` (rad) at one of the two nodes before the nozzle.
+    fn is_bent_at_nozzle(&self, bent: f64) -> bool {
+        let rod = &self.sys.state.rod;
+        let last = rod.edges() - 1;
+        self.stepper.is_implicit()
+            && (last.saturating_sub(1).max(1)..=last)
+                .any(|node| rod.tangent(node - 1).dot(&rod.tangent(node)) < bent.cos())
     }
 
     /// Edges that are too long for where they came or how they bend, ascending.
@@ -279,10 +305,19 @@ impl Winding {
     }
 
     /// The edge at the nozzle has shrunk below half a spacing, and there is wire to join it to.
+    ///
+    /// Where wire bends, an edge may become shorter before it goes: the chord that replaces it and its neighbour is shorter than
+    /// they are by what it is long itself. A split takes a fifth off the bend, so half of it is bent still, or nodes would come and
+    /// go in turns.
     fn nozzle_edge_is_short(&self) -> bool {
         let rod = &self.sys.state.rod;
+        let share = if self.is_bent_at_nozzle(BENT) {
+            SHORTEST_BENT
+        } else {
+            0.5
+        };
         rod.nodes() > FEWEST_NODES
-            && rod.rest[rod.edges() - 1] < 0.5 * self.scene.solver.spacing_free
+            && rod.rest[rod.edges() - 1] < share * self.spacing_at_nozzle(0.5 * BENT)
     }
 
     /// Nodes of the free span that lie close together far from the core, no two of them neighbours.

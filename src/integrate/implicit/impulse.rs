@@ -237,7 +237,8 @@ impl Impulse {
     /// Friction of what is added along the normal; returns by how much the speed changes.
     ///
     /// It brakes a slide, and no more than stops it. What is taken back of the solve's push takes its friction along, as long as
-    /// the slide is no faster than the way of the step explains.
+    /// the slide is no faster than the way of the step explains. A touch that began in this step gives back all that the solve
+    /// rubbed too much: in a step that ends deep in the surface friction is large, and would throw the wire to where it came from.
     pub(super) fn rub(&mut self, part: usize, motion: &mut [V3]) -> f64 {
         let pressed = self.added[part];
         let most = (pressed * self.friction).abs();
@@ -246,6 +247,11 @@ impl Impulse {
         let allowed = match part {
             _ if pressed < 0.0 => until(self.slid).clamp(-most, 0.0),
             _ => until(0.0).clamp(-most, most),
+        };
+        let allowed = if part == 0 && self.touch.began {
+            allowed.min(until(0.0).max(-self.given * self.friction))
+        } else {
+            allowed
         };
         let change = allowed - self.rubbed[part];
         if change == 0.0 {

@@ -37,8 +37,8 @@ impl System {
     /// Splits edge `j` in two halves at the same stretch.
     ///
     /// The new node lies as far from both ends, where the bends there and its own have the least energy, and moves with
-    /// their mean velocity, which keeps the momentum. First and last edge: on the chord, since the wire leaves the nozzle
-    /// straight.
+    /// their mean velocity, which keeps the momentum. At the nozzle nothing bends the wire, so only two bends count there. First
+    /// edge: on the chord, since frozen wire holds it.
     ///
     /// The halves are longer than the chord was, and as much longer unstretched: wire that only looks straight because its
     /// edges are long does not yield by being looked at more closely. The difference counts as fed.
@@ -63,16 +63,21 @@ impl System {
         let last = rod.edges() - 1;
         let (a, b) = (rod.x[j], rod.x[j + 1]);
         let chord = b - a;
-        let mid = if j == last || j == 0 {
+        let mid = if j == 0 {
             (a + b) * 0.5
         } else {
-            let (before, after) = (a - rod.x[j - 1], b - rod.x[j + 2]);
             let l = chord.norm();
-            let own = [rod.rest[j - 1], rod.rest[j + 1]].map(|r| 0.5 * r + 0.25 * rod.rest[j]);
             let along = chord / l;
-            let turn = (before.normalize() - along) / own[0] + (after.normalize() + along) / own[1];
-            let aside = turn * (0.5 * l / (1.0 / own[0] + 8.0 / rod.rest[j] + 1.0 / own[1]));
-            (a + b) * 0.5 + aside - chord * (aside.dot(&chord) / chord.norm_squared())
+            // direction of the wire at an end against the chord's, over the wire's length that bends there
+            let own = |r: f64| 0.5 * r + 0.25 * rod.rest[j];
+            let before = (a - rod.x[j - 1]).normalize() - along;
+            let (mut turn, mut stiff) = (before / own(rod.rest[j - 1]), 1.0 / own(rod.rest[j - 1]));
+            if j < last {
+                turn += ((b - rod.x[j + 2]).normalize() + along) / own(rod.rest[j + 1]);
+                stiff += 1.0 / own(rod.rest[j + 1]);
+            }
+            let aside = turn * (0.5 * l / (stiff + 8.0 / rod.rest[j]));
+            (a + b) * 0.5 + aside - along * aside.dot(&along)
         };
         let velocity = if at_nozzle {
             // at the nozzle the material moves in along the wire at the feed rate
