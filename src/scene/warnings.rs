@@ -133,13 +133,21 @@ impl SceneSettings {
             }
         }
         let first = self.nozzle.y_start;
-        if self.winds_layers() && (self.start.clamp_y - first).abs() > wire.diameter {
-            let message = format!(
-                "the wire is clamped beside the first turn, which lies at {} m, and crosses the place of others on its way \
-                 there; set it to nozzle.y_start",
-                si(first)
-            );
-            warn("start.clamp_y", message);
+        if (self.start.clamp_y - first).abs() > wire.diameter {
+            let way = match self.traverse.mode.as_str() {
+                _ if self.winds_layers() => Some("crosses the place of others on its way there"),
+                "by-angle" if !beside(first) => {
+                    Some("comes there in steep turns with gaps between them")
+                }
+                _ => None,
+            };
+            if let Some(way) = way {
+                let message = format!(
+                    "the wire is clamped beside the first turn, which lies at {} m, and {way}; set it to nozzle.y_start",
+                    si(first)
+                );
+                warn("start.clamp_y", message);
+            }
         }
         let tension = self.tensioner.tension;
         if tension >= wire.n_y {
@@ -203,12 +211,18 @@ impl SceneSettings {
         })
     }
 
-    /// Keys that were given for another choice.
+    /// Keys that were given for another choice. The scene that a run keeps has the keys of every choice; there the default says
+    /// nothing.
     fn keys_without_effect(&self) -> Vec<Warning> {
+        let usual = Self::default();
+        let mut all = KEYS_OF_CHOICES.iter().flat_map(|of| of.keys);
+        let has_all = all.all(|key| self.origins.contains_key(key));
         let mut warnings: Vec<Warning> = Vec::new();
         let mut warn = |key: &'static str, message: String| {
-            if self.origins.contains_key(key) && !warnings.iter().any(|w| w.key == key) {
-                let (origin, value) = (self.told_origin(key), self.shown(key));
+            let (origin, value) = (self.told_origin(key), self.shown(key));
+            let is_given =
+                self.origins.contains_key(key) && !(has_all && value == usual.shown(key));
+            if is_given && !warnings.iter().any(|w| w.key == key) {
                 warnings.push(Warning {
                     origin,
                     key,
