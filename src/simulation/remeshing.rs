@@ -119,11 +119,15 @@ impl Winding {
 
     /// Whether the wire bends by more than `bent` (rad) at one of the two nodes before the nozzle.
     fn is_bent_at_nozzle(&self, bent: f64) -> bool {
-        let rod = &self.sys.state.rod;
-        let last = rod.edges() - 1;
+        let last = self.sys.state.rod.edges() - 1;
         self.stepper.is_implicit()
-            && (last.saturating_sub(1).max(1)..=last)
-                .any(|node| rod.tangent(node - 1).dot(&rod.tangent(node)) < bent.cos())
+            && (last.saturating_sub(1).max(1)..=last).any(|node| self.bends_by(node, bent))
+    }
+
+    /// Whether the edges at a node turn by more than `angle`, rad.
+    fn bends_by(&self, node: usize, angle: f64) -> bool {
+        let rod = &self.sys.state.rod;
+        rod.tangent(node - 1).dot(&rod.tangent(node)) < libm::cos(angle)
     }
 
     /// Edges that are too long for where they came or how they bend, ascending.
@@ -161,7 +165,7 @@ impl Winding {
                 node > 0
                     && node < rod.edges()
                     && rod.rest[j] >= rod.rest[next]
-                    && rod.tangent(node - 1).dot(&rod.tangent(node)) < BENT.cos()
+                    && self.bends_by(node, BENT)
             })
     }
 
