@@ -28,7 +28,7 @@ pub use friction::LimitFrom;
 #[cfg(feature = "lab")]
 pub use law::ContactLoss;
 pub use law::{ContactLaw, damping_for_restitution};
-pub use line::{ContactRecord, LineContact, LineModel, LineScratch, LineState};
+pub use line::{ContactRecord, LineContact, LineModel, LineScratch, LineState, MostTurn};
 #[cfg(feature = "lab")]
 pub use line::{HeldBy, HeldTouch, TouchMark};
 #[cfg(feature = "lab")]

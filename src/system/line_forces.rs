@@ -1,7 +1,7 @@
 //! Forces of the production method: joints of the whole wire at once, contact along its smooth centreline.
 
 use super::{Past, System, line_contact};
-use crate::contact::{ContactPoint, LimitFrom, LineContact, own_wire};
+use crate::contact::{ContactPoint, LimitFrom, LineContact, MostTurn, own_wire};
 use crate::math::{Spin, V3};
 use crate::rod::Rod;
 
@@ -67,9 +67,9 @@ impl System {
         }
     }
 
-    /// Share of the way to `guess` on which no touch turns its normal by more than `most` (rad) after it began; 1: all of it.
+    /// Share of the way to `guess` on which no touch turns its normal by more than `most` after it began; 1: all of it.
     /// Ways below `unseen`, m, are no matter.
-    pub(crate) fn share_to_turn(&mut self, guess: &[V3], most: f64, unseen: f64) -> f64 {
+    pub(crate) fn share_to_turn(&mut self, guess: &[V3], most: MostTurn, unseen: f64) -> f64 {
         let Some(mut line) = line_contact(
             &self.model.contact,
             &mut self.state.contact,
@@ -85,7 +85,7 @@ impl System {
             let point = ContactPoint::of_number(line.scratch.busy[at] as usize);
             let own = || own_wire(point.arc(self.state.arc0, rest), diameter);
             let to = point.place(guess);
-            share = share.min(line.share_to_turn(point.number(), to, own, [most, unseen]));
+            share = share.min(line.share_to_turn(point.number(), to, own, most, unseen));
         }
         share
     }

@@ -35,4 +35,5 @@ pub use model::LineModel;
 pub use probe::{HeldBy, HeldTouch, TouchMark};
 pub use record::ContactRecord;
 pub use scratch::LineScratch;
+pub use search::MostTurn;
 pub use state::LineState;

@@ -20,6 +20,21 @@ const ROOM: f64 = 0.03;
 /// Passages whose segments are nearer along the wire than this are one passage at successive searches.
 const SAME_PASSAGE: u32 = 6;
 
+/// How far the normal of a touch may turn in a step, rad.
+#[derive(Clone, Copy)]
+pub struct MostTurn {
+    /// Of a touch that begins in the step.
+    pub landing: f64,
+    /// Of one that was there before.
+    pub lasting: f64,
+}
+
+impl MostTurn {
+    fn least(&self) -> f64 {
+        self.landing.min(self.lasting)
+    }
+}
+
 /// Depth (m) of the wire at `p` (m) in what a slot is with, unit normal towards `p`, and where that was found. That is the
 /// segment of frozen wire or the triangle of a mesh, which is looked for from `start` on.
 #[inline(always)]
@@ -159,7 +174,7 @@ impl LineContact<'_> {
         point.has_surroundings()
     }
 
-    /// Share of the way of point `k` to `to`, m, on which none of its touches turns its normal by more than `most` (rad) after it
+    /// Share of the way of point `k` to `to`, m, on which none of its touches turns its normal by more than `most` after it
     /// began; 1: all of it. Ways below `unseen`, m, are no matter. `own` as in [`Self::push`].
     #[inline(always)]
     pub fn share_to_turn(
@@ -167,12 +182,13 @@ impl LineContact<'_> {
         k: usize,
         to: V3,
         own: impl FnOnce() -> f64,
-        [most, unseen]: [f64; 2],
+        most: MostTurn,
+        unseen: f64,
     ) -> f64 {
         let point = &self.state.points[k];
         let way = to - point.last;
         // no surface that the centreline lies on is bent more sharply than the wire
-        if !point.placed || way.norm() < unseen.max(most * self.model.radius) {
+        if !point.placed || way.norm() < unseen.max(most.least() * self.model.radius) {
             return 1.0;
         }
         if self.has_near(k, to, own) {
@@ -184,7 +200,7 @@ impl LineContact<'_> {
 
     /// [`Self::share_to_turn`] for a point with surfaces near it.
     #[inline(never)]
-    fn share_to_turn_near(&self, k: usize, to: V3, most: f64) -> f64 {
+    fn share_to_turn_near(&self, k: usize, to: V3, most: MostTurn) -> f64 {
         let point = &self.state.points[k];
         let from = point.last;
         let way = to - from;
@@ -208,11 +224,11 @@ impl LineContact<'_> {
                 continue;
             }
             let (before, first) = touch_at(slot, from);
-            let (began, first) = if before < 0.0 {
+            let (began, first, most) = if before < 0.0 {
                 let began = before / (before - depth);
-                (began, touch_at(slot, from + way * began).1)
+                (began, touch_at(slot, from + way * began).1, most.landing)
             } else {
-                (0.0, first)
+                (0.0, first, most.lasting)
             };
             let turn = (normal - first).norm();
             if turn > most {
