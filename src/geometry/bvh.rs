@@ -101,6 +101,11 @@ impl Bvh {
         }
     }
 
+    /// Whether a triangle is nearer to `p` than `radius`, m.
+    pub(crate) fn reaches(&self, mesh: &TriMesh, p: V3, radius: f64) -> bool {
+        radius > 0.0 && reaching_walk(&self.nodes, mesh, p, 0, radius * radius)
+    }
+
     /// Signed distance, closest point and normal of a point `p`, core frame, m.
     pub fn nearest(&self, mesh: &TriMesh, p: V3) -> Nearest {
         self.nearest_from(mesh, p, u32::MAX).0
@@ -164,6 +169,41 @@ impl Near<'_> {
     }
 }
 
+/// The boxes of a node's halves by their squared distance from `p`, m^2, the nearer first.
+#[inline(always)]
+fn nearer_first(node: &Node, p: V3) -> Option<[(f64, usize); 2]> {
+    let Node::Node {
+        child_l_index,
+        child_l_aabb,
+        child_r_index,
+        child_r_aabb,
+        ..
+    } = node
+    else {
+        return None;
+    };
+    let left = (box_distance_sq(child_l_aabb, p), *child_l_index);
+    let right = (box_distance_sq(child_r_aabb, p), *child_r_index);
+    Some(if right.0 < left.0 {
+        [right, left]
+    } else {
+        [left, right]
+    })
+}
+
+/// Whether a triangle below `node` is nearer to `p` than the root of `limit`, m^2.
+fn reaching_walk(nodes: &[Node], mesh: &TriMesh, p: V3, node: usize, limit: f64) -> bool {
+    match &nodes[node] {
+        Node::Leaf { shape_index, .. } => mesh.closest(*shape_index as u32, p).distance_sq < limit,
+        inner => nearer_first(inner, p)
+            .into_iter()
+            .flatten()
+            .any(|(distance_sq, child)| {
+                distance_sq < limit && reaching_walk(nodes, mesh, p, child, limit)
+            }),
+    }
+}
+
 /// Branch and bound, nearer child first; `best` is squared distance and triangle.
 fn nearest_walk(nodes: &[Node], mesh: &TriMesh, p: V3, node: usize, best: &mut (f64, u32)) {
     match &nodes[node] {
@@ -174,21 +214,8 @@ fn nearest_walk(nodes: &[Node], mesh: &TriMesh, p: V3, node: usize, best: &mut (
                 *best = (distance_sq, triangle);
             }
         }
-        Node::Node {
-            child_l_index,
-            child_l_aabb,
-            child_r_index,
-            child_r_aabb,
-            ..
-        } => {
-            let left = (box_distance_sq(child_l_aabb, p), *child_l_index);
-            let right = (box_distance_sq(child_r_aabb, p), *child_r_index);
-            let order = if right.0 < left.0 {
-                [right, left]
-            } else {
-                [left, right]
-            };
-            for (distance_sq, child) in order {
+        inner => {
+            for (distance_sq, child) in nearer_first(inner, p).into_iter().flatten() {
                 if distance_sq <= best.0 {
                     nearest_walk(nodes, mesh, p, child, best);
                 }

@@ -85,6 +85,15 @@ impl Shape {
         }
     }
 
+    /// Whether the signed distance of `p` (core frame, m) is below `reach`, m.
+    #[inline]
+    pub fn is_within(&self, p: V3, reach: f64) -> bool {
+        match self {
+            Self::Mesh(surface) => surface.is_within(p, reach),
+            Self::RoundedBox { .. } | Self::Cylinder { .. } => self.nearness(p).distance < reach,
+        }
+    }
+
     /// [`Self::nearness`] and, on a mesh, the triangle that is nearest; the search begins at the triangle `guess`.
     #[inline]
     pub(crate) fn nearness_from(&self, p: V3, guess: u32) -> (Nearness, u32) {
@@ -143,17 +152,20 @@ impl Shape {
                 ..
             } => p.abs() - V3::new(half_x, half_y, half_z),
             &Self::Cylinder { radius, half_y } => p.abs() - V3::new(radius, half_y, radius),
-            Self::Mesh(surface) => {
-                let (low, high) = surface.bounds();
-                (low - p).sup(&(p - high))
-            }
+            Self::Mesh(surface) => return surface.lower_bound(p),
         };
-        let deepest = beyond.x.max(beyond.y).max(beyond.z);
-        if deepest > 0.0 {
-            beyond.sup(&V3::zeros()).norm()
-        } else {
-            deepest
-        }
+        box_distance(beyond)
+    }
+}
+
+/// Signed distance from a box, m, by how far a point is beyond its faces, m; negative inside.
+#[inline]
+pub(super) fn box_distance(beyond: V3) -> f64 {
+    let deepest = beyond.x.max(beyond.y).max(beyond.z);
+    if deepest > 0.0 {
+        beyond.sup(&V3::zeros()).norm()
+    } else {
+        deepest
     }
 }
 

@@ -4,6 +4,7 @@ use super::bvh::Bvh;
 use super::feature::Nearest;
 use super::level::LevelNearest;
 use super::mesh::{self, TriMesh};
+use super::shape::box_distance;
 use super::touch::Touch;
 use super::wall::WallFoot;
 use crate::math::V3;
@@ -77,6 +78,21 @@ impl Surface {
     /// Signed distance, closest point and normal of a point `p`, core frame, m.
     pub fn nearest(&self, p: V3) -> Nearest {
         self.bvh.nearest(&self.mesh, p)
+    }
+
+    /// A lower bound of the signed distance of `p` (core frame, m), m: that of the bounding box. Negative inside the box.
+    pub(crate) fn lower_bound(&self, p: V3) -> f64 {
+        let (low, high) = self.bounds;
+        box_distance((low - p).sup(&(p - high)))
+    }
+
+    /// Whether the signed distance of `p` (core frame, m) is below `reach`, m.
+    pub(crate) fn is_within(&self, p: V3, reach: f64) -> bool {
+        let bound = self.lower_bound(p);
+        // any triangle will do; deep inside, where none is near, the sign decides
+        bound < reach
+            && (self.bvh.reaches(&self.mesh, p, reach)
+                || bound < 0.0 && self.nearest(p).distance < reach)
     }
 
     /// [`Self::nearest`] and its triangle, looked for from a triangle that may be it.

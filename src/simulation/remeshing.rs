@@ -151,7 +151,7 @@ impl Winding {
                     && (self.is_bent(j)
                         || [rod.x[j], self.sys.centre(j), rod.x[j + 1]]
                             .iter()
-                            .any(|x| self.sys.distance_to_core(spin.to_core(*x)) < reach))
+                            .any(|x| self.sys.is_near_core(spin.to_core(*x), reach)))
             })
             .collect()
     }
@@ -204,9 +204,8 @@ impl Winding {
         let reach = self.layers_below() + 2.0 * self.scene.wire.radius() + self.run.policy.margin;
         (0..count)
             .find(|&i| {
-                self.sys
-                    .distance_to_core(spin.to_core(self.sys.state.rod.x[i + 1]))
-                    > reach
+                let place = spin.to_core(self.sys.state.rod.x[i + 1]);
+                !self.sys.is_near_core(place, reach)
             })
             .unwrap_or(count)
     }
@@ -338,7 +337,7 @@ impl Winding {
             // a kink stays: the joined edge would hide it
             if both < 1.2 * solver.spacing_free
                 && rod.tangent(i - 1).dot(&rod.tangent(i)) > STRAIGHT
-                && self.sys.distance_to_core(spin.to_core(rod.x[i])) > reach
+                && !self.sys.is_near_core(spin.to_core(rod.x[i]), reach)
             {
                 nodes.push(i);
                 i += 1;

@@ -104,6 +104,15 @@ impl System {
         }
     }
 
+    /// Whether the core is nearer to a point, core frame, m, than `reach`: less work than [`Self::distance_to_core`].
+    pub(crate) fn is_near_core(&self, p: V3, reach: f64) -> bool {
+        match &self.model.contact {
+            ContactModel::Line(line) => line.is_within(p, reach),
+            ContactModel::Nodal(nodal) => nodal.surface.is_within(p, reach),
+            ContactModel::None => false,
+        }
+    }
+
     /// Signed distance of a point from the core with its gradient, core frame, m, and whether a flange by key is nearest; none
     /// without a core.
     pub(crate) fn nearness_to_core(&self, p: V3) -> Option<(Nearness, bool)> {

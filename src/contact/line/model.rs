@@ -57,6 +57,11 @@ impl LineModel {
             .map_or(core, |flange| flange.distance.min(core))
     }
 
+    /// Whether core or a flange is nearer to a point, core frame, m, than `reach`.
+    pub fn is_within(&self, p: V3, reach: f64) -> bool {
+        self.shape.is_within(p, reach) || self.flange(p).is_some_and(|f| f.distance < reach)
+    }
+
     /// What contact of live wire with live wire goes by, `step` (s) after the last accepted instant, and which friction limits
     /// it takes.
     pub(crate) fn of_pairs(&self, step: f64, limit_from: LimitFrom) -> PairConditions<'_> {
