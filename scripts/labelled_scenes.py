@@ -2,9 +2,10 @@
 
 import csv
 import math
-import struct
 from dataclasses import dataclass, field
 from pathlib import Path
+
+import solids
 
 D = 0.7
 """Diameter of the wire, mm."""
@@ -119,15 +120,7 @@ def outline(core, grown):
         count = 120
         radius = RADIUS + grown
         return [(radius * math.cos(math.tau * k / count), radius * math.sin(math.tau * k / count)) for k in range(count)]
-    width, height, corner = BOX
-    middle = (width / 2 - corner, height / 2 - corner)
-    points = []
-    for quarter, (sx, sz) in enumerate([(1, 1), (-1, 1), (-1, -1), (1, -1)]):
-        for k in range(25):
-            angle = math.tau / 4 * (quarter + k / 24)
-            points.append((sx * middle[0] + (corner + grown) * math.cos(angle),
-                           sz * middle[1] + (corner + grown) * math.sin(angle)))
-    return points
+    return solids.rounded_box(*BOX, grown, 24)
 
 
 def reach(core):
@@ -141,22 +134,8 @@ def write_mesh(core, inner, path, height=FLANGE[0]):
     """A core with flanges as a closed binary STL, in mm."""
     thickness = FLANGE[1]
     end, face = inner / 2 + thickness, inner / 2
-    rings = [[(x, y, z) for x, z in outline(core, grown)]
-             for y, grown in [(-end, height), (-face, height), (-face, 0), (face, 0), (face, height), (end, height)]]
-    triangles = []
-    count = len(rings[0])
-    for low, high in zip(rings, rings[1:]):
-        for k in range(count):
-            a, b, c, d = low[k], low[(k + 1) % count], high[(k + 1) % count], high[k]
-            triangles += [(a, c, b), (a, d, c)]
-    for k in range(count):
-        following = (k + 1) % count
-        triangles.append(((0, -end, 0), rings[0][k], rings[0][following]))
-        triangles.append(((0, end, 0), rings[-1][following], rings[-1][k]))
-    with open(path, "wb") as file:
-        file.write(b"\0" * 80 + struct.pack("<I", len(triangles)))
-        for triangle in triangles:
-            file.write(struct.pack("<12fH", 0, 0, 0, *(x for corner in triangle for x in corner), 0))
+    levels = [(-end, height), (-face, height), (-face, 0), (face, 0), (face, height), (end, height)]
+    solids.write_stl(path, [(y, outline(core, grown)) for y, grown in levels])
 
 
 def base(core, layers, speed, turns=TURNS, tension=15.0, near=False):
