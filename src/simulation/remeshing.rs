@@ -23,6 +23,9 @@ const BENT: f64 = 0.05;
 /// Share of the spacing below which an edge of bent wire goes back into the nozzle whole. The chord then loses a 22nd of the spacing
 /// times the square of the angle; steps take a quarter of the edge each.
 const SHORTEST_BENT: f64 = 0.1;
+/// Angle from which on that share goes down with its square, so that the chord loses no more, rad. Four times [`BENT`]: wire that
+/// turns by more from edge to edge is folded.
+const WELL_BENT: f64 = 4.0 * BENT;
 
 /// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
 /// turn back.
@@ -119,15 +122,26 @@ impl Winding {
 
     /// Whether the wire bends by more than `bent` (rad) at one of the two nodes before the nozzle.
     fn is_bent_at_nozzle(&self, bent: f64) -> bool {
+        self.stepper.is_implicit() && self.least_cosine_at_nozzle() < libm::cos(bent)
+    }
+
+    /// Cosine of the larger of the angles by which the wire bends at the two nodes before the nozzle.
+    fn least_cosine_at_nozzle(&self) -> f64 {
         let last = self.sys.state.rod.edges() - 1;
-        self.stepper.is_implicit()
-            && (last.saturating_sub(1).max(1)..=last).any(|node| self.bends_by(node, bent))
+        (last.saturating_sub(1).max(1)..=last)
+            .map(|node| self.cosine_at(node))
+            .fold(1.0, f64::min)
+    }
+
+    /// Cosine of the angle between the edges at a node.
+    fn cosine_at(&self, node: usize) -> f64 {
+        let rod = &self.sys.state.rod;
+        rod.tangent(node - 1).dot(&rod.tangent(node))
     }
 
     /// Whether the edges at a node turn by more than `angle`, rad.
     fn bends_by(&self, node: usize, angle: f64) -> bool {
-        let rod = &self.sys.state.rod;
-        rod.tangent(node - 1).dot(&rod.tangent(node)) < libm::cos(angle)
+        self.cosine_at(node) < libm::cos(angle)
     }
 
     /// Edges that are too long for where they came or how they bend, ascending.
@@ -315,7 +329,9 @@ impl Winding {
     fn nozzle_edge_is_short(&self) -> bool {
         let rod = &self.sys.state.rod;
         let share = if self.is_bent_at_nozzle(BENT) {
-            SHORTEST_BENT
+            // the square of the angle, in the small
+            let bend = 2.0 * (1.0 - self.least_cosine_at_nozzle());
+            SHORTEST_BENT * (WELL_BENT * WELL_BENT / bend).min(1.0)
         } else {
             0.5
         };

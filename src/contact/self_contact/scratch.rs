@@ -46,6 +46,15 @@ pub(super) struct Unpaired {
     pub(super) other: u32,
 }
 
+/// Where the search for older wire is, so many turns back along the wire.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Reached {
+    /// node by its angle
+    pub(super) near: usize,
+    /// segment with the foot of the point before, if that is there
+    pub(super) foot: Option<u32>,
+}
+
 /// Work arrays of the pairs. Nothing in here outlives a step.
 #[derive(Clone, Debug, Default)]
 pub struct PairScratch {
@@ -55,6 +64,8 @@ pub struct PairScratch {
     pub(super) angle: Vec<f64>,
     /// unstretched length from the clamp to each node, m
     pub(super) arc: Vec<f64>,
+    /// largest of the angles up to each node, as far as the wire was looked at, rad
+    pub(super) farthest: Vec<f64>,
     /// the wire by place, where it has loops
     pub(super) blocks: Blocks,
     /// nodes of older wire near the point that is looked at, and segments with which it was paired
@@ -62,8 +73,8 @@ pub struct PairScratch {
     pub(super) paired: Vec<u32>,
     /// points next to wire with which they make no pair
     pub(super) unpaired: Vec<Unpaired>,
-    /// by turns back along the wire, the node that the search has reached
-    pub(super) reached: Vec<usize>,
+    /// by turns back along the wire, how far the search has come
+    pub(super) reached: Vec<Reached>,
     /// friction limits by which the last solve went, pair by pair
     pub used: Vec<FrictionLimit>,
     /// room for the wire in the core frame
@@ -94,6 +105,7 @@ impl PairScratch {
             previous,
             angle,
             arc,
+            farthest,
             blocks,
             found,
             paired,
@@ -107,6 +119,7 @@ impl PairScratch {
         previous.clear();
         angle.clear();
         arc.clear();
+        farthest.clear();
         blocks.clear();
         found.clear();
         paired.clear();

@@ -1,7 +1,7 @@
 //! Which pairs of live wire a step has to look at.
 
 use super::pairs::{Pair, SelfContact};
-use super::scratch::{PairScratch, Unpaired};
+use super::scratch::{PairScratch, Reached, Unpaired};
 use crate::contact::friction::FrictionLimit;
 use crate::contact::own_wire::own_wire;
 use crate::contact::stencil::ContactPoint;
@@ -72,14 +72,14 @@ impl SelfContact {
                 known += 1;
             }
             paired.clear();
-            // pairs the point with the passage of the wire that node `near` belongs to
+            // pairs the point with the passage of the wire that node `near` belongs to; its foot there
             let mut look = |near: u32, back: Option<f64>| {
                 let foot = curve.foot(p, near);
                 let gap = -foot.depth(diameter);
                 let other = foot.segment as usize;
                 let elsewhere = back.is_some_and(|back| (angle[other] - back).abs() > WINDOW);
                 if arc[other] > own || elsewhere {
-                    return;
+                    return None;
                 }
                 let way = way + way_of(other);
                 if gap > SKIN * diameter + FOLLOW * way {
@@ -88,13 +88,13 @@ impl SelfContact {
                         room: gap,
                         other: foot.segment,
                     });
-                    return;
+                    return Some(foot.segment);
                 }
                 if paired
                     .iter()
                     .any(|s| s.abs_diff(foot.segment) < SAME_PASSAGE)
                 {
-                    return;
+                    return Some(foot.segment);
                 }
                 paired.push(foot.segment);
                 let before = previous[known..]
@@ -117,11 +117,14 @@ impl SelfContact {
                     normal: foot.normal,
                     rebound: before.map_or(0.0, |o| o.rebound),
                 });
+                Some(foot.segment)
             };
             if folded {
                 let room = SKIN * diameter + FOLLOW * (way + way_of(fastest));
                 blocks.passages(q, p, end, diameter + room, found);
-                found.iter().for_each(|near| look(*near, None));
+                for near in &*found {
+                    look(*near, None);
+                }
                 // what is farther off was not looked at
                 unpaired.push(Unpaired {
                     point,
@@ -137,16 +140,19 @@ impl SelfContact {
                     break;
                 }
                 if reached.len() < turns {
-                    reached.push(0);
+                    reached.push(Reached::default());
                 }
-                let near = &mut reached[turns - 1];
-                while *near + 1 < end - 1 && angle[*near] < back {
-                    *near += 1;
+                let Reached { near, foot } = &mut reached[turns - 1];
+                // on a long flat the angle hardly changes: the foot of the point before is nearer than a node by its angle
+                if foot.is_none() {
+                    while *near + 1 < end - 1 && angle[*near] < back {
+                        *near += 1;
+                    }
+                    while *near > 0 && angle[*near - 1] >= back {
+                        *near -= 1;
+                    }
                 }
-                while *near > 0 && angle[*near - 1] >= back {
-                    *near -= 1;
-                }
-                look(*near as u32, Some(back));
+                *foot = look(foot.unwrap_or(*near as u32), Some(back));
             }
         }
     }
@@ -174,25 +180,39 @@ impl PairScratch {
 
     /// Whether wire may come near older live wire elsewhere than at whole turns back along it.
     ///
-    /// It may where it is neither farther round the core nor farther out than older wire by what two wires side by side take up.
-    /// Its own neighbourhood does not count. `measure_wire` has been called.
-    fn is_folded(&self, q: &[V3], diameter: f64) -> bool {
+    /// It may where it is neither farther round the core nor farther out than older wire by what two wires side by side take up. On a long
+    /// flat, wire goes round the axis slowly; there it is near older wire only if a node of that is near. Its own neighbourhood does not
+    /// count. `measure_wire` has been called.
+    fn is_folded(&mut self, q: &[V3], diameter: f64) -> bool {
+        let Self {
+            angle,
+            arc,
+            farthest,
+            ..
+        } = self;
         let apart = (1.0 + SKIN) * diameter;
-        let (mut behind, mut farthest, mut outermost) = (0, f64::NEG_INFINITY, 0.0f64);
-        self.arc
-            .iter()
-            .zip(&self.angle)
-            .zip(q)
-            .any(|((arc, angle), p)| {
-                let own = own_wire(*arc, diameter);
-                while self.arc[behind] <= own {
-                    farthest = farthest.max(self.angle[behind]);
-                    outermost = outermost.max(libm::hypot(q[behind].x, q[behind].z));
-                    behind += 1;
-                }
-                let out = libm::hypot(p.x, p.z);
-                (angle - farthest) * out < apart && out - outermost < apart
-            })
+        let mut outermost = 0.0f64;
+        farthest.clear();
+        q.iter().enumerate().any(|(i, p)| {
+            let own = own_wire(arc[i], diameter);
+            while arc[farthest.len()] <= own {
+                let j = farthest.len();
+                farthest.push(angle[j].max(farthest.last().copied().unwrap_or(f64::NEG_INFINITY)));
+                outermost = outermost.max(libm::hypot(q[j].x, q[j].z));
+            }
+            let out = libm::hypot(p.x, p.z);
+            let ahead = |older: f64| (angle[i] - older) * out;
+            let Some(&before) = farthest.last() else {
+                return false;
+            };
+            if ahead(before) >= apart || out - outermost >= apart {
+                return false;
+            }
+            let older = (0..farthest.len()).rev();
+            let beside = older.take_while(|&j| ahead(farthest[j]) < apart);
+            let reach = |j: usize| apart + (q[j + 1] - q[j]).norm();
+            ahead(before) <= 0.0 || beside.into_iter().any(|j| (q[j] - p).norm() < reach(j))
+        })
     }
 
     /// The first node next to wire that may have moved, from `q` to `now`, past wire with which it is not paired.
@@ -242,6 +262,37 @@ mod tests {
             let back = f64::from(point) * 0.01 - f64::from(segment) * 0.02;
             assert!((back - TAU).abs() < 0.05, "{point} {segment}");
         }
+    }
+
+    /// Wire on a long flat goes round the axis slowly: it counted as folded, and was sought by place.
+    #[test]
+    fn wire_on_a_long_flat_is_not_folded() {
+        // round a slot of 50 by 4, then over itself
+        let (straight, bend) = (46.0, 2.0 * std::f64::consts::PI);
+        let at = |k: i32| {
+            let s = (f64::from(k) * 0.5 + 0.25 * straight) % (2.0 * (straight + bend));
+            let (side, s) = if s < straight + bend {
+                (1.0, s)
+            } else {
+                (-1.0, s - straight - bend)
+            };
+            let (x, z) = if s < straight {
+                (2.0, s - 0.5 * straight)
+            } else {
+                let turn = (s - straight) / 2.0;
+                (2.0 * turn.cos(), 0.5 * straight + 2.0 * turn.sin())
+            };
+            V3::new(side * x, 0.004 * f64::from(k), side * z)
+        };
+        let q: Vec<V3> = (0..330).map(at).collect();
+        let rest: Vec<f64> = q.windows(2).map(|e| (e[1] - e[0]).norm()).collect();
+        let mut scratch = PairScratch::default();
+        scratch.measure_wire(&q, &rest);
+        assert!(!scratch.is_folded(&q, DIAMETER));
+        assert!(scratch.is_folded(&q, 3.0 * DIAMETER), "wider than the slot");
+        let q = turn(0.6);
+        scratch.measure_wire(&q, &rest);
+        assert!(scratch.is_folded(&q, DIAMETER));
     }
 
     /// Live wire was sought a turn back only: loops under little tension went through each other.
