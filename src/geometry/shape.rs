@@ -7,7 +7,7 @@
 //! arcs made of facets and edges. The wire's centreline stays its radius away from the surface,
 //! where that holds; inside, the distance has a ridge on the medial axis and one side is taken.
 
-use super::surface::Surface;
+use super::surface::{Surface, box_distance};
 use crate::math::V3;
 use std::sync::Arc;
 
@@ -158,17 +158,6 @@ impl Shape {
     }
 }
 
-/// Signed distance from a box, m, by how far a point is beyond its faces, m; negative inside.
-#[inline]
-pub(super) fn box_distance(beyond: V3) -> f64 {
-    let deepest = beyond.x.max(beyond.y).max(beyond.z);
-    if deepest > 0.0 {
-        beyond.sup(&V3::zeros()).norm()
-    } else {
-        deepest
-    }
-}
-
 /// The rectangle shrunk by the corner radius, grown again as a disc would roll round it.
 #[inline]
 fn rounded_rectangle(half_x: f64, half_z: f64, corner_radius: f64, p: V3) -> Outline {
@@ -235,7 +224,7 @@ fn extrude(outline: Outline, half_y: f64, p: V3) -> Nearness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::generate;
+    use crate::geometry::{Flanges, generate};
     use proptest::prelude::*;
 
     const BOX: Shape = Shape::RoundedBox {
@@ -360,6 +349,18 @@ mod tests {
                     // half a chord, seen from the corner's axis
                     let turn = 0.25 * std::f64::consts::PI / CHORDS as f64;
                     prop_assert!((exact.normal - mesh.normal).norm() < 1.01 * turn + 1e-9);
+                }
+            }
+        }
+
+        #[test]
+        fn within_reach_means_a_distance_below_it(p in somewhere(), reach in -5e-3..25e-3f64) {
+            let bobbin = Flanges { core: BOX, half_inner: 5e-3, height: 4e-3, thickness: 2e-3, edge_radius: 0.5e-3 };
+            let bobbin = generate::flanged(&bobbin, 8, 4).unwrap();
+            for shape in [BOX, ROUND, mesh_of(&BOX), Shape::Mesh(Arc::new(Surface::new(bobbin)))] {
+                let distance = shape.nearness(p).distance;
+                if (distance - reach).abs() > 1e-12 {
+                    prop_assert_eq!(shape.is_within(p, reach), distance < reach);
                 }
             }
         }

@@ -4,7 +4,6 @@ use super::bvh::Bvh;
 use super::feature::Nearest;
 use super::level::LevelNearest;
 use super::mesh::{self, TriMesh};
-use super::shape::box_distance;
 use super::touch::Touch;
 use super::wall::WallFoot;
 use crate::math::V3;
@@ -139,5 +138,16 @@ impl Surface {
     /// The section at the level of `p` (core frame, m) that is nearest, and its triangle.
     pub(crate) fn nearest_at_level(&self, p: V3) -> Option<(LevelNearest, u32)> {
         self.bvh.nearest_at_level(&self.mesh, p)
+    }
+}
+
+/// Signed distance from a box, m, by how far a point is beyond its faces, m; negative inside.
+#[inline]
+pub(super) fn box_distance(beyond: V3) -> f64 {
+    let deepest = beyond.x.max(beyond.y).max(beyond.z);
+    if deepest > 0.0 {
+        beyond.sup(&V3::zeros()).norm()
+    } else {
+        deepest
     }
 }

@@ -267,8 +267,8 @@ enum Chord {
     Vain,
 }
 
-/// Takes the whole update, of size `first`, which may lead to this `value` of the potential at most, J, and with the factors it came from up to [`CHORDS`] after it, until one leaves no
-/// more than `left` (m).
+/// Takes the whole update, of size `first`, which may lead to this `value` of the potential at most, J, and with the factors it came
+/// from up to [`CHORDS`] after it, until one leaves no more than `left` (m).
 ///
 /// An update is about a thirtieth of the one before, and old factors are good enough for it. What is then wrong is
 /// about its square over the one before. It needs neither a new Hessian nor new factors with looks ahead, more than half
