@@ -11,7 +11,8 @@ const SAME_UPDATE: f64 = 0.2;
 
 impl LineContact<'_> {
     /// Evaluates the response where the update `move_of(point)` (m) leads every point, and replaces the models that promise
-    /// something else by the tangents there; returns whether there were any. No node goes farther than `farthest`, m.
+    /// something else by the tangents there; returns whether there were any. No node goes farther than `farthest`, m. A promise may
+    /// be off by `share` of what the model allows.
     ///
     /// `correct(point, change of the Hessian, change of the gradient at the iterate)` hands the replacement over, N/m and N.
     /// Without it a point on its way through a surface that the Hessian does not hold yet would be thrown back
@@ -21,12 +22,12 @@ impl LineContact<'_> {
     pub fn predict(
         &mut self,
         step: f64,
-        farthest: f64,
+        (farthest, share): (f64, f64),
         move_of: impl Fn(usize) -> V3,
         mut correct: impl FnMut(usize, &Block, &V3),
     ) -> bool {
         let mut any = false;
-        let tolerance = self.model.prediction;
+        let tolerance = share * self.model.prediction;
         let same = SAME_UPDATE * tolerance;
         let mut near = std::mem::take(&mut self.scratch.near);
         for n in &mut near {

@@ -52,6 +52,8 @@ pub(super) struct NewtonLimits {
     pub(super) chord: f64,
     /// Newton steps that look the coefficients of friction up by the slide, at most [`FOLLOWS`]
     pub(super) slides: usize,
+    /// share of the contact force that an update may promise wrongly, as what is close is a share of what it is in a long step
+    pub(super) promise: f64,
 }
 
 impl NewtonLimits {
@@ -65,6 +67,7 @@ impl NewtonLimits {
         guess: 0.0,
         chord: CHORD_KEPT,
         slides: FOLLOWS,
+        promise: 1.0,
     };
 
     /// That of a time step, a `short` one or one that may as well be shorter. Then that is cheaper than a long search
@@ -89,6 +92,7 @@ impl NewtonLimits {
                 CHORD_KEPT
             },
             slides: if damped { SLIDES } else { FOLLOWS },
+            promise: share,
             ..Self::STEP
         }
     }
@@ -159,7 +163,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             take_limits(model, LimitFrom::NormalForce);
         }
         work.solves += 1;
-        let fits = solve_linear(model, work).map_err(|node| NewtonFailure {
+        let fits = solve_linear(model, work, limits.promise).map_err(|node| NewtonFailure {
             node,
             update: f64::NAN,
             steps: step,
@@ -344,6 +348,7 @@ fn take_limits(model: &mut Model, from: LimitFrom) {
 fn solve_linear<const D: usize, U: Unknowns<D>>(
     model: &mut Model,
     work: &mut Work<D, U>,
+    promise: f64,
 ) -> Result<bool, usize> {
     let nodes = work.q.len();
     load_gradient(work);
@@ -386,14 +391,15 @@ fn solve_linear<const D: usize, U: Unknowns<D>>(
             let farthest = farthest_move::<D>(update);
             any |= line.predict(
                 model.elapsed,
-                farthest,
+                (farthest, promise),
                 move_of,
                 |point, stiffness, gradient| {
                     let place = ContactPoint::of_number(point).weights();
                     correct(&place, stiffness, gradient);
                 },
             );
-            let conditions = line.model.of_pairs(model.elapsed, line.state.limit_from);
+            let mut conditions = line.model.of_pairs(model.elapsed, line.state.limit_from);
+            conditions.prediction *= promise;
             if let Some(pairs) = &mut line.state.self_contact {
                 there.clear();
                 for (i, p) in q.iter().enumerate() {

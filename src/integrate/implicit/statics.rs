@@ -68,6 +68,7 @@ impl Implicit {
             guess: CLOSE * self.tolerance,
             chord: 0.0,
             slides: NewtonLimits::STEP.slides,
+            promise: NewtonLimits::STEP.promise,
         };
         let mut taken = 0;
         for _ in 0..PASSES {
