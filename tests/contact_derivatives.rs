@@ -276,7 +276,7 @@ fn a_look_ahead_comes_back() {
         let mut look = |way: V3| {
             line.contact().predict(
                 STEP,
-                way.norm(),
+                (way.norm(), 1.0),
                 |_| way,
                 |_, more, change| {
                     gradient += change;
