@@ -360,7 +360,8 @@ fn bad_input_is_refused_with_a_reason() {
 
 #[test]
 fn an_stl_core_winds_like_the_generated_one() {
-    let plain = fig8(&[("spindle.speed", "500")]);
+    // at the default tolerance the swing of wire that has just landed differs by 20 um from one run to the next
+    let plain = fig8(&[("spindle.speed", "500"), ("solver.tolerance", "1e-6")]);
     let surface = core_surface(&plain.core).expect("a box");
     let mesh = surface.mesh();
     let triangles: Vec<stl_io::Triangle> = (0..mesh.len())
@@ -384,7 +385,7 @@ fn an_stl_core_winds_like_the_generated_one() {
     };
     let load = |path: &std::path::Path| {
         let text = format!(
-            "[core]\nshape = \"mesh\"\nfile = {path:?}\nunit = \"mm\"\n[wire]\nmaterial = \"table1\"\n[spindle]\nspeed = 500\n"
+            "[core]\nshape = \"mesh\"\nfile = {path:?}\nunit = \"mm\"\n[wire]\nmaterial = \"table1\"\n[spindle]\nspeed = 500\n[solver]\ntolerance = 1e-6\n"
         );
         SceneSettings::from_toml_str(&text, "stl.toml", folder.path())
             .expect("parsed")
@@ -394,7 +395,7 @@ fn an_stl_core_winds_like_the_generated_one() {
     let (a, b) = (wind(&plain, 0.3), wind(&scene, 0.3));
     let (p, q) = (a.centreline(), b.centreline());
     for s in &p.arc {
-        assert!((at(&p, *s) - at(&q, *s)).norm() < 20e-6);
+        assert!((at(&p, *s) - at(&q, *s)).norm() < 10e-6);
     }
     let open = load(&write("open.stl", &triangles[1..])).map_err(|e| e.to_string());
     let refused = open.and_then(|s| Simulation::new(&s).map(|_| ()).map_err(|e| e.to_string()));
