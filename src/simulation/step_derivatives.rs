@@ -38,10 +38,12 @@ pub struct Derivative {
     pub least: Outputs,
     /// ... and the largest. Where they differ, wire lands, slips or yields otherwise for inputs close by.
     pub most: Outputs,
+    /// the middle change of the inputs, as a multiple of the direction
+    pub change: f64,
 }
 
 impl Derivative {
-    fn of(slopes: &[Smooth]) -> Self {
+    fn of(slopes: &[Smooth], change: f64) -> Self {
         let mut sorted: [Vec<f64>; Outputs::SMOOTH.len()] =
             std::array::from_fn(|k| slopes.iter().map(|slope| slope[k]).collect());
         for values in &mut sorted {
@@ -54,6 +56,7 @@ impl Derivative {
             slopes: outputs(&middle),
             least: outputs(&|values| values[0]),
             most: outputs(&|values| values[values.len() - 1]),
+            change,
         }
     }
 }
@@ -90,7 +93,7 @@ impl Simulation {
         }
         match refused {
             Some(error) if slopes.is_empty() => Err(error),
-            _ => Ok(Derivative::of(&slopes)),
+            _ => Ok(Derivative::of(&slopes, reach)),
         }
     }
 
@@ -114,8 +117,9 @@ impl Simulation {
             Ok(*Self::starting_with(scene, there)?.outputs())
         };
         let start = Self::starting_with(scene, inputs)?;
-        let slope = slope(&outcome, reach(&start, &inputs, &along, 1.0))?;
-        Ok(Derivative::of(&[slope]))
+        let reach = reach(&start, &inputs, &along, 1.0);
+        let slope = slope(&outcome, reach)?;
+        Ok(Derivative::of(&[slope], reach))
     }
 }
 

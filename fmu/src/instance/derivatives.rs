@@ -12,8 +12,9 @@ use coilwind::variables::{Access, Causality, Value};
 
 /// Share by which slopes over changes of different sizes may part before the importer is told. Chosen.
 const APART: f64 = 0.1;
-/// Slopes that are the same in the four decimals of the message are not told: of wire at rest they are what solves leave.
-const DIGITS: f64 = 1e4;
+/// Share of an output by which the change of the inputs has to move it for its slopes to be told. A solve leaves 2e-8 m of a free span
+/// of 60 mm, three hundred times as much.
+const UNSEEN: f64 = 1e-9;
 
 impl Instance {
     /// `fmi2SetRealInputDerivatives`: sets all of the derivatives or none, in the unit of each
@@ -151,6 +152,7 @@ impl Instance {
         };
         let slopes = slopes.map_err(Error::NoTangent)?;
         let time = start + simulation.time();
+        let now = simulation.outputs();
         let (mut values, mut apart) = (Vec::with_capacity(asked.len()), Vec::new());
         for (variable, get) in asked {
             let of = |outputs| match get(outputs) {
@@ -158,10 +160,11 @@ impl Instance {
                 _ => Err(wrong_type::<f64>(variable)),
             };
             let [value, least, most] = [of(&slopes.slopes)?, of(&slopes.least)?, of(&slopes.most)?];
-            let differs = most - least > APART * least.abs().max(most.abs());
-            if differs && (DIGITS * least).round() != (DIGITS * most).round() {
+            let steepest = least.abs().max(most.abs());
+            let moved = steepest * slopes.change.abs();
+            if most - least > APART * steepest && moved > UNSEEN * of(now)?.abs() {
                 let name = variable.name;
-                apart.push(format!("{name} {value:.4} ({least:.4} to {most:.4})"));
+                apart.push(format!("{name} {value:.3e} ({least:.3e} to {most:.3e})"));
             }
             values.push(value);
         }

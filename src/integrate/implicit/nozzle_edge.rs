@@ -57,9 +57,9 @@ enum Way {
 }
 
 impl NozzleEdge {
-    /// `rest` is the edge's unstretched length now, `pull` the tensioner's force, `grip` the ratio of
-    /// tension after to before the exit where wire comes out, `ea` the wire's modulus, `plastic` the plastic
-    /// stretch of the edge and of wire that comes out.
+    /// `rest` is the edge's unstretched length now, and `pull` the tensioner's force. `grip` is the ratio of tension after to
+    /// before the exit where wire comes out. `ea` is the wire's modulus, and `plastic` the plastic stretch of the edge and of
+    /// wire that comes out.
     pub(super) fn new(
         spec: &FeedSpec,
         feed: &Feed,
