@@ -5,7 +5,7 @@
 
 use super::camera::{Camera, Frame, Light};
 use super::raster::{NONE, Raster};
-use super::shade::{Lighting, Material, background, shade, to_srgb};
+use super::shade::{Encoding, Lighting, Material, background, shade};
 use super::tube::tube_mesh;
 use super::vtp::{check_mesh, turns_of_nodes};
 use super::{OutputError, write_whole};
@@ -130,6 +130,7 @@ pub fn render(picture: &Picture) -> RgbImage {
         disc: Disc::new(),
         reach,
     };
+    let encoding = Encoding::new();
     RgbImage::from_fn(width, height, |x, y| {
         let mut sum = V3::zeros();
         for sub in 0..SUPERSAMPLING * SUPERSAMPLING {
@@ -140,7 +141,7 @@ pub fn render(picture: &Picture) -> RgbImage {
             );
         }
         let mean = sum / f64::from(SUPERSAMPLING * SUPERSAMPLING);
-        Rgb([mean.x, mean.y, mean.z].map(to_srgb))
+        Rgb([mean.x, mean.y, mean.z].map(|light| encoding.byte(light)))
     })
 }
 
@@ -352,12 +353,13 @@ impl View<'_> {
         } else {
             normal
         };
+        let disc = self.disc.turned_for(column, row);
         let lighting = Lighting {
             key: self.light.towards(),
             up: self.camera.up(),
             viewer: -ray,
-            lit: self.lit(point, normal, (column, row)),
-            open: self.open(point, normal, (column, row)),
+            lit: self.lit(point, normal, &disc),
+            open: self.open(point, normal, (column, row), &disc),
         };
         shade(
             &self.scene.materials[triangle.material as usize],
@@ -367,11 +369,11 @@ impl View<'_> {
     }
 
     /// Share of the key light that reaches a point, over a small disc of the shadow map.
-    fn lit(&self, point: V3, normal: V3, pixel: (usize, usize)) -> f64 {
+    fn lit(&self, point: V3, normal: V3, disc: &Disc) -> f64 {
         let texel = self.light.texel();
         // Off the surface by the slope across the disc, so that it does not shade itself.
         let p = self.light.project(point + normal * (3.0 * texel));
-        let samples = self.disc.around(pixel, 5.0).filter(|&(dx, dy)| {
+        let samples = disc.scaled(5.0).filter(|&(dx, dy)| {
             let (x, y) = (p[0] + dx, p[1] + dy);
             let size = self.light.texels as f64;
             if !(0.0..size).contains(&x) || !(0.0..size).contains(&y) {
@@ -385,15 +387,12 @@ impl View<'_> {
 
     /// Share of the surroundings not hidden by what is near, judged from the depths around the
     /// pixel (screen-space ambient occlusion).
-    fn open(&self, point: V3, normal: V3, pixel: (usize, usize)) -> f64 {
+    fn open(&self, point: V3, normal: V3, pixel: (usize, usize), disc: &Disc) -> f64 {
         let Some([_, _, near]) = self.camera.project(point) else {
             return 1.0;
         };
         let mut hidden = 0.0;
-        for (dx, dy) in self
-            .disc
-            .around(pixel, self.reach * self.camera.scale(near))
-        {
+        for (dx, dy) in disc.scaled(self.reach * self.camera.scale(near)) {
             let (x, y) = (pixel.0 as f64 + 0.5 + dx, pixel.1 as f64 + 0.5 + dy);
             let inside = (0.0..self.seen.width as f64).contains(&x)
                 && (0.0..self.seen.height as f64).contains(&y);
@@ -429,20 +428,18 @@ impl Disc {
         }))
     }
 
-    /// The points at `radius` about a pixel, turned from pixel to pixel so that the error is fine
-    /// grain and not bands.
-    fn around(
-        &self,
-        (column, row): (usize, usize),
-        radius: f64,
-    ) -> impl Iterator<Item = (f64, f64)> + '_ {
+    /// The disc turned from pixel to pixel, so that the error is fine grain and not bands.
+    fn turned_for(&self, column: usize, row: usize) -> Self {
         // Interleaved gradient noise (Jimenez 2014): evenly spread over neighbouring pixels.
         let seed = 0.067_110_56 * column as f64 + 0.005_837_15 * row as f64;
         let turn = std::f64::consts::TAU * (52.982_918_9 * seed.fract()).fract();
-        let (c, s) = (radius * libm::cos(turn), radius * libm::sin(turn));
-        self.0
-            .iter()
-            .map(move |&(x, y)| (c * x - s * y, s * x + c * y))
+        let (c, s) = (libm::cos(turn), libm::sin(turn));
+        Self(self.0.map(|(x, y)| (c * x - s * y, s * x + c * y)))
+    }
+
+    /// The points of a disc of this radius.
+    fn scaled(&self, radius: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.0.iter().map(move |&(x, y)| (radius * x, radius * y))
     }
 }
 

@@ -1,5 +1,7 @@
 //! Triangles to pixels: which triangle is nearest at each.
 
+use std::ops::Range;
+
 /// No triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
@@ -35,14 +37,12 @@ impl Raster {
             return;
         }
         let columns = span([a[0], b[0], c[0]], self.width);
+        let sides = [(b, c), (c, a), (a, b)];
         for row in span([a[1], b[1], c[1]], self.height) {
-            for column in columns.clone() {
-                let p = [column as f64 + 0.5, row as f64 + 0.5, 0.0];
-                let weights = [
-                    cross(b, c, p) / area,
-                    cross(c, a, p) / area,
-                    cross(a, b, p) / area,
-                ];
+            let y = row as f64 + 0.5;
+            for column in between(sides, area, y, columns.clone()) {
+                let p = [column as f64 + 0.5, y, 0.0];
+                let weights = sides.map(|(from, to)| cross(from, to, p) / area);
                 // Edges belong to both neighbours: a pixel more is unseen, a hole is not.
                 if weights.iter().any(|&weight| weight < 0.0) {
                     continue;
@@ -63,8 +63,35 @@ fn cross(a: [f64; 3], b: [f64; 3], c: [f64; 3]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
+/// Of these columns those that a triangle may cover in the row of centres at `y`, and up to one more at either end.
+///
+/// A long triangle that lies askew covers few of the pixels between its least and largest coordinates.
+fn between(
+    sides: [([f64; 3], [f64; 3]); 3],
+    area: f64,
+    y: f64,
+    columns: Range<usize>,
+) -> Range<usize> {
+    let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+    for (from, to) in sides {
+        // what the weight of a pixel grows by from one column to the next
+        let slope = (from[1] - to[1]) / area;
+        let crossing = from[0] + (to[0] - from[0]) * (y - from[1]) / (to[1] - from[1]);
+        // (a side along the row crosses it nowhere, or where rounding says)
+        if slope > 0.0 && crossing.is_finite() {
+            low = low.max(crossing);
+        } else if slope < 0.0 && crossing.is_finite() {
+            high = high.min(crossing);
+        }
+    }
+    // casts saturate
+    let first = ((low - 1.5).ceil() as usize).max(columns.start);
+    let end = ((high + 0.5).floor() as usize).saturating_add(1);
+    first..end.min(columns.end)
+}
+
 /// Pixels whose centres lie between the least and largest coordinate, within the picture.
-fn span(coordinates: [f64; 3], size: usize) -> std::ops::Range<usize> {
+fn span(coordinates: [f64; 3], size: usize) -> Range<usize> {
     let low = coordinates.iter().copied().fold(f64::INFINITY, f64::min);
     let high = coordinates
         .iter()
@@ -113,6 +140,40 @@ mod tests {
                 raster.draw(big(1.0 + f64::from(id)), id);
             }
             assert_eq!(covered(&raster, 1), 64);
+        }
+    }
+
+    /// Every pixel of the picture is asked, where [`Raster::draw`] asks those of a row that may be covered.
+    #[test]
+    fn rows_leave_no_pixel_out() {
+        let (width, height) = (40, 30);
+        let place = |k: u32, seed: f64| (f64::from(k) * seed).fract();
+        for k in 0..3000 {
+            // on and off the picture, slivers, and corners at pixel centres
+            let corner = |x: f64, y: f64| {
+                let p = [80.0 * place(k, x) - 20.0, 60.0 * place(k, y) - 15.0, 1.0];
+                if k % 3 == 0 {
+                    p.map(|c| c.floor() + 0.5)
+                } else {
+                    p
+                }
+            };
+            let [a, b] = [corner(0.618, 0.271), corner(0.377, 0.733)];
+            let mut c = corner(0.149, 0.857);
+            if k % 5 == 0 {
+                c = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]) + 0.02, 1.0];
+            }
+            let mut raster = Raster::new(width, height);
+            raster.draw([a, b, c], 0);
+            let area = cross(a, b, c);
+            for (pixel, drawn) in raster.triangle.iter().enumerate() {
+                let (column, row) = (pixel % width, pixel / width);
+                let p = [column as f64 + 0.5, row as f64 + 0.5, 0.0];
+                let covers = [(b, c), (c, a), (a, b)]
+                    .iter()
+                    .all(|&(from, to)| cross(from, to, p) / area >= 0.0);
+                assert_eq!(*drawn != NONE, covers, "{k}: {a:?} {b:?} {c:?} at {p:?}");
+            }
         }
     }
 

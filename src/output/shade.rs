@@ -96,8 +96,39 @@ pub(crate) fn background(height: f64, aside: f64) -> V3 {
     (top + (bottom - top) * height * height) * vignette
 }
 
+/// [`to_srgb`] from a table: a picture has millions of numbers to encode, and a byte has 256.
+pub(crate) struct Encoding {
+    /// the least light of each byte but the first
+    least: [f64; 255],
+}
+
+impl Encoding {
+    pub(crate) fn new() -> Self {
+        let least = std::array::from_fn(|byte| {
+            // positive numbers have the order of their bits
+            let (mut below, mut from) = (0.0_f64.to_bits(), f64::MAX.to_bits());
+            while from - below > 1 {
+                let middle = below.midpoint(from);
+                if usize::from(to_srgb(f64::from_bits(middle))) > byte {
+                    from = middle;
+                } else {
+                    below = middle;
+                }
+            }
+            f64::from_bits(from)
+        });
+        Self { least }
+    }
+
+    /// The byte of linear light.
+    pub(crate) fn byte(&self, linear: f64) -> u8 {
+        // (at most 255)
+        self.least.partition_point(|least| *least <= linear) as u8
+    }
+}
+
 /// Linear light to an sRGB byte (IEC 61966-2-1), with bright light rolled off instead of cut.
-pub(crate) fn to_srgb(linear: f64) -> u8 {
+fn to_srgb(linear: f64) -> u8 {
     const KNEE: f64 = 0.75;
     let linear = if linear <= KNEE {
         linear.max(0.0)
@@ -144,5 +175,22 @@ mod tests {
         assert_eq!(to_srgb(0.2140), 127);
         let bytes: Vec<u8> = (0..400).map(|k| to_srgb(f64::from(k) * 0.01)).collect();
         assert!(bytes.windows(2).all(|pair| pair[0] <= pair[1]));
+    }
+
+    #[test]
+    fn the_table_encodes_as_the_formula() {
+        let table = Encoding::new();
+        for k in 0..40_000 {
+            let linear = f64::from(k) * 1e-4 - 0.1;
+            assert_eq!(table.byte(linear), to_srgb(linear), "{linear}");
+        }
+        for least in table.least {
+            let (below, at) = (to_srgb(least.next_down()), to_srgb(least));
+            assert!(below < at, "{least}");
+            assert_eq!(
+                (table.byte(least.next_down()), table.byte(least)),
+                (below, at)
+            );
+        }
     }
 }

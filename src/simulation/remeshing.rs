@@ -102,9 +102,18 @@ impl Winding {
     }
 
     /// The last edge has grown to two spacings: time for a new node halfway.
+    ///
+    /// Where wire bends twice as much as is bent, one spacing will do, as far as the halves are no finer than the finest. The edge before
+    /// is halved once it is no shorter than this one, and must not wait for it.
     fn nozzle_edge_is_long(&self) -> bool {
         let last = self.sys.state.rod.edges() - 1;
-        self.sys.state.rod.rest[last] >= 2.0 * self.spacing_at_nozzle(BENT)
+        let spacing = self.spacing_at_nozzle(BENT);
+        let long = if self.is_bent_at_nozzle(2.0 * BENT) {
+            spacing.max(2.0 * self.scene.solver.spacing_near)
+        } else {
+            2.0 * spacing
+        };
+        self.sys.state.rod.rest[last] >= long.min(2.0 * spacing)
     }
 
     /// Spacing at the nozzle, m: that of the free span, and where wire bends there by `bent` (rad) or more, that of the edge before.
@@ -350,10 +359,14 @@ impl Winding {
         let mut i = self.lift_off() + 2;
         while i + 2 < rod.nodes() && rod.nodes() - nodes.len() > FEWEST_NODES {
             let both = rod.rest[i - 1] + rod.rest[i];
-            // a kink stays: the joined edge would hide it
+            // a kink stays: the joined edge would hide it, or be halved at once
+            let straight = rod.tangent(i - 1).dot(&rod.tangent(i)) > STRAIGHT
+                && [i - 1, i + 1].iter().all(|&end| !self.bends_by(end, 0.5 * BENT));
             if both < 1.2 * solver.spacing_free
-                && rod.tangent(i - 1).dot(&rod.tangent(i)) > STRAIGHT
-                && !self.sys.is_near_core(spin.to_core(rod.x[i]), reach)
+                && straight
+                && rod.x[i - 1..=i + 1]
+                    .iter()
+                    .all(|x| !self.sys.is_near_core(spin.to_core(*x), reach))
             {
                 nodes.push(i);
                 i += 1;
