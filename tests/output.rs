@@ -136,6 +136,7 @@ fn coil(wire: &Centreline) -> Coil {
         profile: None,
         tension: 15.0,
         jumps: [].into(),
+        crossover: None,
         start_angle: 0.0,
         direction: 1.0,
         traverse: 1.0,

@@ -4,7 +4,7 @@ use super::surface::Surface;
 use crate::math::V3;
 
 /// Share of a facet's unit normal along y from which on it is a flange and no flank: steeper than 45 degrees.
-const FLANGE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+pub(crate) const FLANGE_FACE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 impl Surface {
     /// Signed distance of `p` (core frame, m) from the flank of the core, m: from the tangent plane of what lies nearest
@@ -17,7 +17,7 @@ impl Surface {
             return self.nearest(p).distance;
         };
         let normal = self.mesh().normal(triangle);
-        if normal.y.abs() > FLANGE {
+        if normal.y.abs() > FLANGE_FACE {
             return self.nearest(p).distance;
         }
         // A conical flank leans: its distance is less than that in the plane of the section.
@@ -31,7 +31,7 @@ impl Surface {
     /// that is no flange.
     pub fn flange_beside(&self, p: V3) -> Option<f64> {
         let nearest = self.nearest(p);
-        (nearest.normal.y.abs() > FLANGE).then(|| -nearest.distance / nearest.normal.y)
+        (nearest.normal.y.abs() > FLANGE_FACE).then(|| -nearest.distance / nearest.normal.y)
     }
 }
 

@@ -43,6 +43,7 @@ pub use error::MeshError;
 #[cfg(feature = "lab")]
 pub use feature::Nearest;
 pub use flange::Flanges;
+pub(crate) use flank::FLANGE_FACE;
 pub use mesh::TriMesh;
 pub use rounded_rod::RoundedRod;
 pub use shape::{Nearness, Shape};

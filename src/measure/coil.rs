@@ -1,6 +1,7 @@
 //! The settled wire, node by node, and what is measured on it.
 
 use super::buckets::Buckets;
+use super::crossover::Crossover;
 use super::defect::{BulgeLimit, DefectLimits, FALLBACK_BULGE, MEASURED};
 use super::passes::Passes;
 use super::profile::Profile;
@@ -40,6 +41,8 @@ pub struct CoilSpec {
     /// winding angles between which wire is meant to climb to the next layer, rad, one pair a layer; none: not known, and
     /// no jump is early or late
     pub jumps: Arc<[[f64; 2]]>,
+    /// crossover of each turn; none: wire is not meant to cross in steps, or it is not known where
+    pub crossover: Option<Crossover>,
     /// polar angle of the clamp, rad
     pub start_angle: f64,
     /// +1 where wire runs towards growing polar angle (positive spindle speed), else -1; see
@@ -85,7 +88,7 @@ pub(crate) struct Node {
     pub(crate) y_max: f64,
     pub(crate) height_max: f64,
     /// square of the distance from the axis, summed over the wire up to here, m3
-    second_moment: f64,
+    pub(crate) second_moment: f64,
     /// what plastic stretch adds to the wire's resistance up to here, see [`Coil::added_by_stretch`], m
     added_by_stretch: f64,
     stations_before: usize,
@@ -134,6 +137,8 @@ pub(crate) struct Record {
     pub(crate) beneath: Option<usize>,
     /// for how many stations what lies below has said another layer than the station's
     pub(crate) other_layer: u32,
+    /// last station up to here at which wire crosses to its next place
+    pub(crate) last_crossing: Option<usize>,
 }
 
 /// Measures of the settled wire, kept up to date node by node.
@@ -340,11 +345,6 @@ impl Coil {
         }
     }
 
-    /// Square of the distance from the axis over the length of the settled wire, m3.
-    pub fn second_moment(&self) -> f64 {
-        self.nodes.last().map_or(0.0, |node| node.second_moment)
-    }
-
     /// Length of unstretched wire, m, that would add as much to the resistance as plastic stretch does between the clamp and
     /// the place `arc`, m of unstretched wire from there. See [`added_by_stretch`]. Wire behind the last node counts as
     /// stretched like the wire before it.
@@ -431,15 +431,6 @@ impl Coil {
         coil
     }
 
-    /// Heights over the core of a complete turn (from 1), for use as a [`Profile`] of other runs.
-    pub fn height_profile(&self, turn: usize) -> Option<Profile> {
-        let records = self.records.chunks().nth(turn.checked_sub(1)?)?;
-        if records.len() < STATIONS_PER_TURN {
-            return None;
-        }
-        Profile::new(records.iter().map(|record| record.station.height).collect())
-    }
-
     /// Measures the next station, which lies on the last segment.
     fn add_station(&mut self) {
         let index = self.records.len();
@@ -482,6 +473,7 @@ impl Coil {
         };
         let (layer, other_layer) = self.layer_after(support.layer);
         let (neighbour, window) = self.neighbour(angle, position, row);
+        let last_crossing = self.last_crossing(position.y);
         // Beside a double turn, in the place after it, lies the turn below that one.
         let after_double = || {
             let before = index.checked_sub(STATIONS_PER_TURN);
@@ -508,6 +500,7 @@ impl Coil {
             overlap_depth: 0.0,
             layer,
             pass: number,
+            crosses: self.is_in_crossover(last_crossing),
             measured: self.is_free_of_clamp(angle) && !steps_up,
         };
         station.overlap_depth = self.overlap_depth(&station);
@@ -533,6 +526,7 @@ impl Coil {
             bucket,
             beneath,
             other_layer,
+            last_crossing,
         }));
     }
 

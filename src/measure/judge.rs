@@ -82,7 +82,12 @@ impl Coil {
                 SHORT_RUN,
             ),
             DefectKind::Gap => (
-                measured(station.neighbour.map(|n| n.gap)),
+                measured(
+                    station
+                        .neighbour
+                        .filter(|_| !station.crosses)
+                        .map(|n| n.gap),
+                ),
                 limits.gap * d,
                 limits.gap_fraction,
             ),

@@ -12,6 +12,7 @@
 mod buckets;
 mod coil;
 mod contour;
+mod crossover;
 mod defect;
 mod judge;
 mod marks;
@@ -29,6 +30,7 @@ mod words;
 pub(crate) use coil::SavedCoil;
 pub use coil::{Coil, CoilSpec, SettledNode, added_by_stretch};
 pub use contour::LayerContour;
+pub use crossover::Crossover;
 pub use defect::{BulgeLimit, Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
 pub use profile::Profile;
 pub use state::Worst;

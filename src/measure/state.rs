@@ -2,6 +2,7 @@
 
 use super::coil::{Coil, Record};
 use super::defect::{Defect, DefectFlags, DefectKind, DefectPlace, MEASURED};
+use super::profile::Profile;
 use super::runs::Run;
 use super::station::Station;
 use super::{STATION_STEP, STATIONS_PER_TURN, Verdict};
@@ -13,7 +14,7 @@ use std::f64::consts::{PI, TAU};
 pub struct Worst {
     /// absolute height over the core or the layer below
     pub bulge_height: f64,
-    /// clear distance to the neighbour one turn back
+    /// clear distance to the neighbour one turn back, without crossovers
     pub gap_width: f64,
     /// diameter minus axial distance where wire overlaps
     pub overlap_depth: f64,
@@ -174,6 +175,7 @@ impl Coil {
                 bulge_height: worst.bulge_height.max(station.bulge),
                 gap_width: station
                     .neighbour
+                    .filter(|_| !station.crosses)
                     .map_or(worst.gap_width, |n| worst.gap_width.max(n.gap)),
                 overlap_depth: worst.overlap_depth.max(station.overlap_depth),
             })
@@ -222,6 +224,20 @@ impl Coil {
             let rectangle = self.coil_width() * (node.height_max.max(0.0) + d);
             self.turns_settled() * PI / 4.0 * d * d / rectangle
         })
+    }
+
+    /// Heights over the core of a complete turn (from 1), for use as a [`Profile`] of other runs.
+    pub fn height_profile(&self, turn: usize) -> Option<Profile> {
+        let records = self.records.chunks().nth(turn.checked_sub(1)?)?;
+        if records.len() < STATIONS_PER_TURN {
+            return None;
+        }
+        Profile::new(records.iter().map(|record| record.station.height).collect())
+    }
+
+    /// Square of the distance from the axis over the length of the settled wire, m3.
+    pub fn second_moment(&self) -> f64 {
+        self.nodes.last().map_or(0.0, |node| node.second_moment)
     }
 
     /// Largest plastic stretch of the last settled turn.

@@ -43,6 +43,8 @@ pub struct Station {
     pub layer: u32,
     /// pass of the traverse, from 1; grows when the traverse turns back
     pub pass: u32,
+    /// true in a planned crossover, its own or that of the turn before, and beside it: its gap is no gap of the winding
+    pub crosses: bool,
     /// false where the clamp still shapes this wire or its neighbour, and in the step to the next layer
     pub measured: bool,
 }

@@ -4,6 +4,7 @@ use super::STATIONS_PER_TURN;
 use super::coil::{Coil, Record, STEP_UP};
 use super::passes::Pass;
 use super::row::{Row, RowPlace};
+use super::station::Station;
 
 /// Axial distance up to which wire of an earlier row lies below a wire, diameters: cos 30 degrees, the largest at
 /// which wire that rests on it stands half a diameter above it.
@@ -36,29 +37,22 @@ pub(crate) struct Support {
 impl Coil {
     /// Row of the next station in this pass, and what lies below it.
     pub(crate) fn row_and_support(&self, pass: Pass, at: &RowPlace) -> (Row, Support) {
-        let RowPlace {
-            angle,
-            bucket,
-            y,
-            height,
-            ..
-        } = *at;
+        let RowPlace { angle, y, .. } = *at;
         let last = self.records.last();
         let row = last.map_or_else(|| Row::first(pass, y), |last| last.row);
         // Once the nozzle has turned, wire of the row itself may be what the next one lies on.
         let least = row.number + u32::from(row.is_over_in(pass));
         let climbed = row.is_over_in(pass)
-            && self.support(least, bucket, y, height).layer
-                > last.map_or(1, |last| last.station.layer);
+            && self.support(least, at).layer > last.map_or(1, |last| last.station.layer);
         let climbs_at_flange = !row.is_over_in(pass)
             && row.sense == pass.sense
             && at.has_no_room_in(row, self.spec.diameter)
-            && self.support(row.number + 1, bucket, y, height).layer > self.layer_of(row);
+            && self.support(row.number + 1, at).layer > self.layer_of(row);
         let row = match climbs_at_flange {
             true => row.beside_flange(pass, angle, y),
             false => row.next(pass, angle, y, climbed, self.spec.diameter),
         };
-        (row, self.support(row.number, bucket, y, height))
+        (row, self.support(row.number, at))
     }
 
     /// Layer that wire of this row, the row of the last station, leaves where it climbs: that of the station, or of the turn
@@ -77,9 +71,21 @@ impl Coil {
     /// rows before number `row` carry it, and the first part of this row where it climbed, which the turn after crosses. On other
     /// wire it has climbed.
     ///
-    /// Down is the direction of the wire's height: what lies beside the wire does not carry it.
-    fn support(&self, row: u32, bucket: (usize, i64), y: f64, height: f64) -> Support {
+    /// Down is the direction of the wire's height: what lies beside the wire does not carry it, unless a flange leaves no room for the
+    /// wire to fall between the two.
+    fn support(&self, row: u32, at: &RowPlace) -> Support {
+        let RowPlace {
+            bucket, y, height, ..
+        } = *at;
         let d = self.spec.diameter;
+        // where the wire would lie if it fell along the flange as far as other wire lets it
+        let wedged = |lower: &Station| {
+            let way = at.flange?;
+            let farthest = y + way - (0.5 * d).copysign(way);
+            let room = (farthest - lower.position.y) * way.signum() / d;
+            let holds = height > lower.height && (BELOW..1.0).contains(&room);
+            holds.then(|| lower.height + d * (1.0 - room * room).sqrt())
+        };
         let mut support = Support {
             level: 0.0,
             is_wire: false,
@@ -114,7 +120,13 @@ impl Coil {
                 if below && rise >= NEXT_LAYER * d {
                     support.layer = support.layer.max(lower.layer + 1);
                 }
-                if carries && aside <= BELOW && level > support.level {
+                let level = match aside <= BELOW {
+                    true => Some(level),
+                    false => wedged(lower),
+                };
+                if let Some(level) = level.filter(|_| carries)
+                    && level > support.level
+                {
                     support.level = level;
                     support.is_wire = true;
                     support.row = Some(of.number);

@@ -211,7 +211,8 @@ impl Coil {
                 continue;
             }
             result.stations += 1;
-            if let Some(neighbour) = station.neighbour {
+            gaps.beside += u32::from(station.neighbour.is_some());
+            if let Some(neighbour) = station.neighbour.filter(|_| !station.crosses) {
                 gaps.add(neighbour.gap, neighbour.axial, ALIGNED_GAP * d);
             }
             let face = &mut result.bulge_faces[self.face(station.angle)];
@@ -252,9 +253,12 @@ fn most_common(layers: impl Iterator<Item = u32>) -> u32 {
     most.map_or(1, |(layer, _)| *layer)
 }
 
-/// Sums over the stations that have a neighbour.
+/// Sums over the stations that have a neighbour, without crossovers.
 #[derive(Default)]
 struct GapSums {
+    /// stations beside a neighbour, in crossovers too
+    beside: u32,
+    /// the others of them, which everything else is of
     count: u32,
     sum: f64,
     squares: f64,
@@ -301,7 +305,7 @@ impl GapSums {
             worst
         } else if turn.stations == 0 {
             Verdict::Unsettled
-        } else if 2 * self.count < turn.stations {
+        } else if 2 * self.beside < turn.stations || self.count == 0 {
             Verdict::Single
         } else if aligned {
             Verdict::Aligned

@@ -15,7 +15,7 @@ impl Defect {
                 format!("the wire broke {place}; nothing was wound after that")
             }
             (DefectKind::Collision, ..) => {
-                format!("the coil met the nozzle {place}; nothing was wound after that")
+                format!("the nozzle collided {place}; nothing was wound after that")
             }
             (DefectKind::Runaway, ..) => {
                 format!("the wire ran away from the nozzle {place}; nothing was wound after that")
@@ -54,13 +54,24 @@ pub fn reasons(
     if reasons.is_empty() {
         reasons.push(without_defect(verdict, turns, diameter));
     }
-    if let BulgeLimit::Fallback { limit_m } = judged {
-        reasons.push(format!(
+    reasons.extend(about_bulges(judged, diameter));
+    reasons
+}
+
+/// What a reader has to know of the limit by which bulges are judged, if anything.
+fn about_bulges(judged: BulgeLimit, diameter: f64) -> Option<String> {
+    match judged {
+        BulgeLimit::Fallback { limit_m } => Some(format!(
             "The height of this wire at rest on this core is not known: a bulge is judged by {:.3} mm",
             1e3 * limit_m
-        ));
+        )),
+        BulgeLimit::OverRest { highest_m, .. } if highest_m > diameter => Some(format!(
+            "Even drawn tight at rest, this wire stands up to {:.3} mm ({:.1} d) off the core: that much is not judged a bulge; more tension or thinner wire lies closer",
+            1e3 * highest_m,
+            highest_m / diameter
+        )),
+        _ => None,
     }
-    reasons
 }
 
 /// Why a run that failed is [`UNJUDGED`]: what it failed with, then the defects found until then, the gravest first.
@@ -221,6 +232,22 @@ mod tests {
             "{said:?}"
         );
         assert!(said[1].contains("judged by 0.700 mm"), "{said:?}");
+    }
+
+    /// Wire of 1 N stood 3.7 diameters off the core at rest, and its verdict said "No defect" and no more.
+    #[test]
+    fn wire_that_stands_off_at_rest_is_told() {
+        let judged = |highest_m| BulgeLimit::OverRest {
+            limit_m: 0.35e-3,
+            highest_m,
+        };
+        let said = reasons(Verdict::Aligned, &[], &[], judged(2.6e-3), 0.7e-3);
+        assert!(
+            said[1].contains("stands up to 2.600 mm (3.7 d) off the core"),
+            "{said:?}"
+        );
+        let said = reasons(Verdict::Aligned, &[], &[], judged(0.6e-3), 0.7e-3);
+        assert_eq!(said.len(), 1, "{said:?}");
     }
 
     /// The turn with the widest gaps was named although too little of it had a neighbour, so that it was no reason.

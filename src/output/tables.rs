@@ -86,6 +86,7 @@ struct StationRow {
     layer: u32,
     pass: u32,
     measured: u8,
+    crosses: u8,
 }
 
 /// Writes `stations.csv`: one row per station, in the order of
@@ -154,6 +155,7 @@ impl From<(usize, &Station)> for StationRow {
             layer: station.layer,
             pass: station.pass,
             measured: station.measured.into(),
+            crosses: station.crosses.into(),
         }
     }
 }
@@ -164,7 +166,7 @@ const TURN_HEADER: &str = "turn,layer,turn_in_layer,verdict,settled,stations,gap
     bulge_face_nz,overlap_max,layer_max";
 const DEFECT_HEADER: &str = "kind,turn,layer,angle_deg,time_s,size_m,size_d";
 const STATION_HEADER: &str = "turn,station,angle,polar,x,y,z,radius,arc,time,height,bulge,\
-    bulge_excess,gap,axial,overlap,layer,pass,measured";
+    bulge_excess,gap,axial,overlap,layer,pass,measured,crosses";
 
 fn write_rows(
     path: &Path,
@@ -230,6 +232,7 @@ mod tests {
             layer: 1,
             pass: 1,
             measured: true,
+            crosses: false,
         };
         let station = StationRow::from((0, &station));
         assert_eq!(

@@ -76,9 +76,6 @@ impl SceneSettings {
         if let Some(wire) = &wire {
             self.check_strength(wire, &mut problems);
         }
-        let Some(((mut wire, (core, extent)), nozzle_law)) = wire.zip(core).zip(law) else {
-            return problems.finish_with(None);
-        };
         let preset = match self.preset.as_str() {
             "paper" => Preset::Paper,
             _ => Preset::Default,
@@ -89,7 +86,12 @@ impl SceneSettings {
             _ => Integrator::Implicit,
         };
         self.check_line(integrator, &mut problems);
-        self.check_nozzle_body(&wire, integrator, &mut problems);
+        if let Some(wire) = &wire {
+            self.check_nozzle_body(wire, integrator, &mut problems);
+        }
+        let Some(((mut wire, (core, extent)), nozzle_law)) = wire.zip(core).zip(law) else {
+            return problems.finish_with(None);
+        };
         let mut decisions = Decisions::default();
         self.plasticity(&mut wire, &mut decisions);
         let twist = problems.note(self.twist(integrator, &wire, &mut decisions));

@@ -23,6 +23,10 @@ pub struct NozzleLaw {
     turns: f64,
     /// angles between which wire is meant to climb to the next layer, rad, one pair a layer
     jumps: Arc<[[f64; 2]]>,
+    /// step (m) and angle (rad) of the crossover of each turn
+    crossover: Option<[f64; 2]>,
+    /// way from turn to turn of a layer, m, where layers are planned
+    pitch: Option<f64>,
 }
 
 impl NozzleLaw {
@@ -37,6 +41,8 @@ impl NozzleLaw {
             pieces: Arc::new([piece]),
             turns,
             jumps: Arc::new([]),
+            crossover: None,
+            pitch: None,
         }
     }
 
@@ -62,6 +68,8 @@ impl NozzleLaw {
             pieces: pieces.into(),
             turns: last[0],
             jumps: Arc::new([]),
+            crossover: None,
+            pitch: None,
         }
     }
 
@@ -84,6 +92,8 @@ impl NozzleLaw {
             pieces: std::iter::once(start).chain(later).collect(),
             turns: self.turns,
             jumps: self.jumps,
+            crossover: self.crossover,
+            pitch: self.pitch,
         }
     }
 
@@ -94,6 +104,32 @@ impl NozzleLaw {
             .map(|pair| pair.map(|turn| turn * TAU))
             .collect();
         Self { jumps, ..self }
+    }
+
+    /// The same law, which lays the turns of a layer so far (m) from each other.
+    pub(super) fn with_pitch(self, pitch: f64) -> Self {
+        Self {
+            pitch: Some(pitch),
+            ..self
+        }
+    }
+
+    /// The same law, in which each turn steps by a pitch (m) to its next place within so much of the core's angle (rad).
+    pub(super) fn with_crossovers(self, pitch: f64, angle: f64) -> Self {
+        Self {
+            crossover: Some([pitch, angle]),
+            ..self.with_pitch(pitch)
+        }
+    }
+
+    /// Way from turn to turn of a layer, m; none where layers are not planned, or by the points of a table.
+    pub fn pitch(&self) -> Option<f64> {
+        self.pitch
+    }
+
+    /// Step (m) and angle (rad) of the crossover of each turn; none where turns do not cross in steps.
+    pub fn crossover(&self) -> Option<[f64; 2]> {
+        self.crossover
     }
 
     /// Angles between which wire is meant to climb to the next layer, rad; none where layers are not planned.

@@ -203,6 +203,11 @@ impl SceneSettings {
                 );
                 let allowed = format!("at most {most}, or a larger core.flange.inner_distance");
                 problems.add(self.impossible("winding.turns_per_layer", reason, allowed));
+                // what fits must not meet the nozzle either
+                if most >= 1.0 {
+                    let fits = self.stacked(most as u32, least, true);
+                    self.check_coil(&fits, d, extent, problems);
+                }
                 return None;
             }
             (turns, _) => turns,
@@ -282,7 +287,9 @@ impl SceneSettings {
             points.push([end, pair[1].1]);
         }
         points.push([places.len() as f64, places[places.len() - 1].1]);
-        NozzleLaw::through(&points).with_jumps(&stacked.jumps(step, delay))
+        NozzleLaw::through(&points)
+            .with_jumps(&stacked.jumps(step, delay))
+            .with_crossovers(stacked.pitch, self.traverse.crossover)
     }
 
     /// The nozzle's way that lays this `wire` where the orthocyclic law of these layers says: it stands where that stands, and
@@ -307,7 +314,9 @@ impl SceneSettings {
             }
         }
         points.push([places.len() as f64, places[places.len() - 1].1]);
-        Ok(NozzleLaw::through(&points).with_jumps(&stacked.jumps(step, delay)))
+        Ok(NozzleLaw::through(&points)
+            .with_jumps(&stacked.jumps(step, delay))
+            .with_crossovers(stacked.pitch, crossover))
     }
 
     /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there.
@@ -338,7 +347,9 @@ impl SceneSettings {
                 None => drop(go_to(layer.last + lead, 1.0)),
             }
         }
-        NozzleLaw::through(&points).with_jumps(&jumps)
+        NozzleLaw::through(&points)
+            .with_jumps(&jumps)
+            .with_pitch(*pitch)
     }
 
     /// The coil has to stay clear of the nozzle in every layer.

@@ -78,6 +78,41 @@ const KEYS_OF_CHOICES: [KeysOf; 11] = [
 ];
 
 impl SceneSettings {
+    /// A nozzle so far past a flange that wire from the last place beside it lies against the rim, and the key that sends it there.
+    fn nozzle_past_a_flange(
+        &self,
+        wire: &Section,
+        core: &Core,
+        extent: &Extent,
+        law: &NozzleLaw,
+    ) -> Option<(&'static str, String)> {
+        let (flange, width) = (core.flange()?, extent.window?);
+        let [low, high] = law.range();
+        let farthest = if -low > high { low } else { high };
+        let past = farthest.abs() - 0.5 * width;
+        if past <= 0.0 {
+            return None;
+        }
+        let laid = extent.winding_radius + wire.radius();
+        let at_face = laid + (self.nozzle.distance - laid) * wire.radius() / (past + wire.radius());
+        if at_face >= extent.winding_radius + flange.height {
+            return None;
+        }
+        let key = match self.traverse.mode.as_str() {
+            "table" => "traverse.file",
+            _ if self.traverse.lead != 0.0 => "traverse.lead",
+            "by-angle" if self.nozzle.y_start != farthest => "traverse.per_turn",
+            _ => "nozzle.y_start",
+        };
+        let message = format!(
+            "the nozzle goes to {} m, {} m past the inner face of a flange: wire beside that flange lies against its rim or is wound over it; keep the nozzle within {} m of the middle, or farther from the core",
+            si(farthest),
+            si(past),
+            si(0.5 * width)
+        );
+        Some((key, message))
+    }
+
     pub(super) fn warnings(
         &self,
         solver: &Solver,
@@ -131,6 +166,24 @@ impl SceneSettings {
                 );
                 warn("core.window_height", message);
             }
+        }
+        if let Some(pitch) = law.pitch()
+            && pitch - wire.diameter > self.defects.gap * wire.diameter
+        {
+            let key = match self.winding.pitch {
+                0.0 => "winding.turns_per_layer",
+                _ => "winding.pitch",
+            };
+            let message = format!(
+                "turns {} m apart leave gaps of {} m, which are judged as defects; set defects.gap to more than {:.2} if they are meant",
+                si(pitch),
+                si(pitch - wire.diameter),
+                pitch / wire.diameter - 1.0
+            );
+            warn(key, message);
+        }
+        if let Some((key, message)) = self.nozzle_past_a_flange(wire, core, extent, law) {
+            warn(key, message);
         }
         let first = self.nozzle.y_start;
         if (self.start.clamp_y - first).abs() > wire.diameter {

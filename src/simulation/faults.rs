@@ -143,13 +143,22 @@ impl Winding {
         all
     }
 
-    /// Measures of every turn, with the verdict of what the wire met while it was wound there.
+    /// Measures of every turn, with the verdict of what the wire met while it was wound there. Where that befell wire of which
+    /// none has come to rest, its turn and those before it have no measures.
     pub fn turns(&self) -> Vec<TurnMeasures> {
         let mut turns = self.coil.turns();
         for fault in &self.run.faults {
-            if let Some(turn) = turns.get_mut(fault.turn as usize - 1) {
-                turn.verdict = turn.verdict.max(fault.kind.into());
+            while turns.len() < fault.turn as usize {
+                let before = turns.last().filter(|turn| turn.layer == fault.layer);
+                turns.push(TurnMeasures {
+                    turn: turns.len() as u32 + 1,
+                    layer: fault.layer,
+                    turn_in_layer: before.map_or(1, |turn| turn.turn_in_layer + 1),
+                    ..TurnMeasures::default()
+                });
             }
+            let turn = &mut turns[fault.turn as usize - 1];
+            turn.verdict = turn.verdict.max(fault.kind.into());
         }
         turns
     }

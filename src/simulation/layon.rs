@@ -1,4 +1,4 @@
-//! Where the wire meets the coil, as a place that moves evenly along the wire.
+//! Where the wire meets the coil, as a place that moves evenly along the wire. A flange that it passes on its way is not the coil.
 
 use super::Winding;
 use crate::math::{Spin, V3, polar_angle, scaled, wrap_to_pi};
@@ -32,15 +32,20 @@ impl Winding {
         let x = &self.sys.state.rod.x;
         let lies = scaled(LIES, self.scene.wire.diameter);
         let radius = self.scene.wire.radius();
+        let beside_flange = self.sys.may_meet_flange();
         let height = |i: usize| {
             let place = spin.to_core(self.sys.centre(i));
-            self.sys.distance_to_core(place) - radius
+            let distance = match beside_flange {
+                true => self.distance_to_wound(place),
+                false => self.sys.distance_to_core(place),
+            };
+            distance - radius
         };
         let last = x.len() - 1;
         // a node and its height: wire so far off reaches the core no sooner than after that way
         let (mut seen, mut off) = (last - 1, 0.0);
         let mut lies_at = |i: usize| {
-            if self.sys.touches(i) {
+            if self.sys.touches_wound(i) {
                 return true;
             }
             let way = (self.sys.centre(i) - self.sys.centre(seen)).norm();
@@ -58,7 +63,7 @@ impl Winding {
         let clearance = |i: usize| {
             if i >= last {
                 f64::INFINITY
-            } else if self.sys.touches(i) {
+            } else if self.sys.touches_wound(i) {
                 0.0
             } else {
                 height(i).max(0.0)

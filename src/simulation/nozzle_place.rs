@@ -31,8 +31,11 @@ impl Winding {
         libm::hypot(nozzle.x, nozzle.z)
     }
 
-    /// Refuses inputs that send the nozzle into the circle that the core sweeps.
+    /// Refuses inputs that send the nozzle into the circle that the core sweeps, as long as there is wire to wind.
     pub(super) fn check_nozzle(&self, end: &Inputs) -> Result<(), SimError> {
+        if self.run.over {
+            return Ok(());
+        }
         let nozzle = nozzle_of(&self.scene, end);
         let sweeps = self
             .sys

@@ -74,6 +74,17 @@ impl Winding {
         self.coil.what_if(&extra)
     }
 
+    /// Signed distance of a point from what wire is wound on, without flanges, core frame, m.
+    pub(super) fn distance_to_wound(&self, p: V3) -> f64 {
+        match (&self.scene.core, &self.sys.model.core) {
+            (core, Some(surface)) if core.may_have_flanges() => self
+                .sys
+                .distance_to_wound(p)
+                .unwrap_or_else(|| surface.height_over_flank(p)),
+            _ => self.sys.distance_to_core(p),
+        }
+    }
+
     pub(super) fn settled(
         &self,
         position: V3,
@@ -81,13 +92,7 @@ impl Winding {
         plastic_strain: f64,
         tension: f64,
     ) -> SettledNode {
-        let height = match (&self.scene.core, &self.sys.model.core) {
-            (core, Some(surface)) if core.may_have_flanges() => self
-                .sys
-                .distance_to_wound(position)
-                .unwrap_or_else(|| surface.height_over_flank(position)),
-            _ => self.sys.distance_to_core(position),
-        };
+        let height = self.distance_to_wound(position);
         let height = if height.is_finite() {
             height - self.scene.wire.radius()
         } else {

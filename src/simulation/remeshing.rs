@@ -361,7 +361,9 @@ impl Winding {
             let both = rod.rest[i - 1] + rod.rest[i];
             // a kink stays: the joined edge would hide it, or be halved at once
             let straight = rod.tangent(i - 1).dot(&rod.tangent(i)) > STRAIGHT
-                && [i - 1, i + 1].iter().all(|&end| !self.bends_by(end, 0.5 * BENT));
+                && [i - 1, i + 1]
+                    .iter()
+                    .all(|&end| !self.bends_by(end, 0.5 * BENT));
             if both < 1.2 * solver.spacing_free
                 && straight
                 && rod.x[i - 1..=i + 1]

@@ -17,7 +17,7 @@ use crate::math::frame_along;
 use crate::math::polar_angle;
 use crate::math::turn_about_y;
 use crate::math::{Spin, V3, scaled};
-use crate::measure::{Coil, CoilSpec};
+use crate::measure::{Coil, CoilSpec, Crossover};
 use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene, si};
 use crate::signals::{Inputs, Outputs};
@@ -230,6 +230,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         profile: super::quasi_static::profile(scene, &surface, yardstick_tension(scene, inputs)),
         tension: yardstick_tension(scene, inputs),
         jumps: scene.nozzle_law.jumps().into(),
+        crossover: (scene.nozzle_law.crossover()).map(|[step, angle]| Crossover { step, angle }),
         start_angle: polar_angle(clamp_core),
         direction,
         traverse: scene.nozzle_law.sense() * direction,

@@ -86,6 +86,22 @@ impl System {
         }
     }
 
+    /// Whether node `i` touches core or frozen wire, a flange not counted.
+    pub fn touches_wound(&self, i: usize) -> bool {
+        match (&self.state.contact, &self.model.contact) {
+            (ContactState::Line(line), ContactModel::Line(model)) => line.touches_wound(model, i),
+            _ => self.touches(i),
+        }
+    }
+
+    /// Whether wire may meet flanges beside what it is wound on: plates by key, or walls of a concave mesh.
+    pub(crate) fn may_meet_flange(&self) -> bool {
+        match &self.model.contact {
+            ContactModel::Line(line) => line.flanges.is_some() || line.shape.with_walls().is_some(),
+            ContactModel::Nodal(_) | ContactModel::None => false,
+        }
+    }
+
     /// Depth of node `i` in what it touches, m.
     pub fn depth(&self, i: usize) -> f64 {
         match &self.state.contact {

@@ -35,6 +35,7 @@ pub(crate) fn spec() -> CoilSpec {
         profile: Profile::new(vec![0.0]),
         tension: PULL,
         jumps: [].into(),
+        crossover: None,
         start_angle: 0.0,
         direction: 1.0,
         traverse: 1.0,

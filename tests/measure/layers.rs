@@ -240,3 +240,34 @@ fn wire_that_comes_up_from_a_hole_beside_the_flange_goes_on_in_its_row() {
     let kinds: Vec<_> = defects.iter().map(|d| (d.kind, d.turn)).collect();
     assert_eq!(kinds, [(DefectKind::Gap, 9)], "{defects:?}");
 }
+
+/// Wire on its way to the next layer lay between a flange and the last turn, more than 30 degrees beside it, and was told to bulge.
+#[test]
+fn wire_between_a_flange_and_a_turn_lies_on_both() {
+    let aside = 0.93;
+    let rise = |aside: f64| (1.0 - aside * aside).sqrt();
+    let wedged = rise(aside);
+    let nodes = |room: f64| -> Vec<SettledNode> {
+        let place = |angle: f64| match (angle / TAU).floor() {
+            // it climbs, and slips on towards the flange
+            last if last >= 2.0 && angle < 2.1 * TAU => (D * 1.8, D * rise(0.8)),
+            last if last >= 2.0 => (D * (1.0 + aside), D * wedged),
+            turn => (D * turn, 0.0),
+        };
+        let mut nodes = on_cylinder(3.0, 1.0, place);
+        for node in &mut nodes {
+            node.flange = Some(D * (1.0 + aside + room + 0.5) - node.position.y);
+        }
+        nodes
+    };
+    for (room, drop) in [(0.0, 0.0), (0.03, wedged - rise(0.96)), (0.2, wedged)] {
+        let mut coil = wound(spec(), &nodes(room));
+        coil.begin_pass(2.0 * TAU, -1.0);
+        let bulge = coil
+            .stations()
+            .nth(2 * 360 + 200)
+            .expect("a third turn")
+            .bulge;
+        assert!((bulge - drop * D).abs() < 1e-3 * D, "{room}: {bulge}");
+    }
+}

@@ -2,6 +2,7 @@
 
 mod changes;
 mod coils;
+mod crossovers;
 mod defects;
 mod layers;
 mod pitch;

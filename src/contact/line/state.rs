@@ -1,12 +1,13 @@
 //! What contact along the wire remembers, and how it follows changes of the wire.
 
 use super::model::LineModel;
-use super::point::{PointState, WIRE};
+use super::point::{CORE, FLANGE, PointState, WIRE};
 use super::record::ContactRecord;
 use crate::contact::friction::LimitFrom;
 use crate::contact::law::ContactLoss;
 use crate::contact::self_contact::SelfContact;
 use crate::contact::stencil::ContactPoint;
+use crate::geometry::FLANGE_FACE;
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
 
@@ -170,6 +171,26 @@ impl LineState {
         self.points[from..=2 * i + 1]
             .iter()
             .any(|p| p.has_surroundings() && p.touches().iter().any(|t| t.depth > 0.0))
+    }
+
+    /// The same without flanges: those of the `model`, or walls of its mesh that face along y.
+    pub fn touches_wound(&self, model: &LineModel, i: usize) -> bool {
+        let by_key = model.shape.with_walls().is_none();
+        let from = (2 * i).saturating_sub(1);
+        self.points[from..=2 * i + 1]
+            .iter()
+            .filter(|p| p.has_surroundings())
+            .any(|p| {
+                let mut touches = p.touches().iter().enumerate();
+                touches.any(|(slot, t)| {
+                    let flange = match slot {
+                        FLANGE if by_key => true,
+                        CORE | FLANGE if !by_key => t.normal.y.abs() > FLANGE_FACE,
+                        _ => false,
+                    };
+                    t.depth > 0.0 && !flange
+                })
+            })
     }
 
     /// Makes the friction limits of the iterate in hand the lagged ones; call when an iterate is accepted.
