@@ -237,6 +237,13 @@ fn a_folder_with_another_run_is_not_overwritten() {
         command
     };
     assert!(quick(&["--frames", "2"]).status().unwrap().success());
+    let mut report = coilwind();
+    report
+        .arg("report")
+        .args([&out, &out])
+        .stdout(Stdio::null());
+    assert!(report.status().unwrap().success());
+    assert!(out.join("compare.html").exists());
     let before = files(&out);
     let output = quick(&[]).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
@@ -270,6 +277,7 @@ fn a_folder_with_another_run_is_not_overwritten() {
         ],
         "nothing of the run before is left"
     );
+    assert!(!out.join("frames").exists());
     // A scene of one's own in the folder is no run, but it would be lost.
     let own = folder.path().join("own");
     std::fs::create_dir(&own).unwrap();
@@ -363,4 +371,100 @@ fn a_folder_without_a_whole_run_says_what_to_do() {
     std::fs::write(&checkpoint, &whole).unwrap();
     std::fs::write(out.join("history.csv"), "time\n0\n").unwrap();
     refused(&mut resume(&out), "history.csv is not the one");
+}
+
+/// Members that had not begun were named, and no command wound them.
+#[test]
+fn an_ensemble_that_is_stopped_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |out: &Path| {
+        let mut command = short(out);
+        command
+            .args(["--ensemble", "3", "--set", "spindle.turns=6"])
+            .env("RAYON_NUM_THREADS", "1");
+        command
+    };
+    let whole = folder.path().join("whole");
+    assert!(run(&whole).status().unwrap().success());
+    let out = folder.path().join("two words");
+    let child = run(&out).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for_checkpoint(&out.join("1"));
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    let command = format!(
+        "0 of 3 members are done; go on with: coilwind run --resume '{}'",
+        out.display()
+    );
+    assert!(said(&output).contains(&command), "{}", said(&output));
+    assert!(!out.join("3").exists());
+    let mut again = coilwind();
+    again.args(["run", "--resume"]).arg(&out);
+    let output = again.output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("3 of 3 (100 %)"), "{told}");
+    for member in ["1", "2", "3"] {
+        assert_same(&whole.join(member), &out.join(member), member);
+    }
+    for directory in [&whole, &out] {
+        assert_eq!(std::fs::read_dir(directory).unwrap().count(), 3);
+    }
+}
+
+/// A full disk was bad input, and nothing said that the run could go on.
+#[test]
+fn a_run_that_a_full_disk_ends_says_how_it_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    std::fs::create_dir(&out).unwrap();
+    let full = out.join("turns.csv");
+    std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+    let output = short(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", said(&output));
+    let command = format!(
+        "make room, then go on with: coilwind run --resume {}",
+        out.display()
+    );
+    for part in ["No space left", "turns.csv", &command] {
+        assert!(said(&output).contains(part), "{part}: {}", said(&output));
+    }
+    std::fs::remove_file(&full).unwrap();
+    let output = resume(&out).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+}
+
+/// A page could not be made from damaged files, and the command that was to mend it refused.
+#[test]
+fn a_damaged_run_that_has_ended_is_to_begin_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let mut command = coilwind();
+        command.args(["run", "fig8", "--no-report", "--set", "spindle.turns=0.02"]);
+        command.args(["--set", "spindle.ramp_turns=0.02", "--out"]);
+        command.arg(&out).args(more).output().unwrap()
+    };
+    // One frame at each row of the history at most: more were left out without a word.
+    let output = run(&["--frames", "1000000"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let kept = std::fs::read_dir(out.join("frames")).unwrap().count();
+    let line = format!("warning: {kept} of 1000000 frames are kept, one at each row");
+    assert!(said(&output).contains(&line), "{kept}: {}", said(&output));
+
+    let history = std::fs::read_to_string(out.join("history.csv")).unwrap();
+    let damaged = history.replace("\n0,", "\nzero,");
+    assert_ne!(damaged, history);
+    std::fs::write(out.join("history.csv"), damaged).unwrap();
+    let output = coilwind().arg("report").arg(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    let command = format!(
+        "begin again with: coilwind run {}/scene.toml",
+        out.display()
+    );
+    assert!(said(&output).contains(&command), "{}", said(&output));
+    assert!(!said(&output).contains("--resume"), "{}", said(&output));
 }

@@ -431,3 +431,40 @@ fn an_ensemble_of_a_run_leaves_a_folder_a_member() {
     assert!(!out.join("1").exists(), "nothing is wound");
     finished(run(&["--force"]), 0);
 }
+
+/// A run in the folder of a sweep and a sweep in that of a run left files of both, and each was gone on with.
+#[test]
+fn runs_and_sweeps_do_not_share_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let (swept, run) = (folder.path().join("swept"), folder.path().join("run"));
+    let over = ["--over", "spindle.speed=60:60:1"];
+    let files = |folder: &Path| {
+        let entries = std::fs::read_dir(folder).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    };
+    finished(coilwind("sweep", &swept, &over), 0);
+    finished(coilwind("run", &run, &["--no-geometry"]), 0);
+    let (of_sweep, of_run) = (files(&swept), files(&run));
+    for (command, out, more, holds) in [
+        ("run", &swept, &["--no-geometry"][..], "holds a sweep"),
+        ("run", &swept, &["--ensemble", "2"], "holds a sweep"),
+        ("sweep", &run, &over, "holds another run"),
+    ] {
+        let before = files(out);
+        let said = complaint(coilwind(command, out, more), 2);
+        assert!(said.contains(holds) && said.contains("--force"), "{said}");
+        assert_eq!(files(out), before);
+    }
+    let force = ["--force", "--no-geometry"];
+    finished(coilwind("run", &swept, &force), 0);
+    assert_eq!(files(&swept), of_run);
+    finished(
+        coilwind("sweep", &run, &[&over[..], &["--force"]].concat()),
+        0,
+    );
+    assert_eq!(files(&run), of_sweep);
+}

@@ -5,8 +5,10 @@
 
 use super::drive::{Motion, Place};
 use super::failure::Failure;
+use super::shell::{begin_again, quoted, resume_command};
 use coilwind::output::{Mark, write_whole_bytes};
 use coilwind::settings::SceneSettings;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -26,19 +28,13 @@ pub(super) fn refuse_stopped(directory: &Path) -> Result<(), Failure> {
     }
     let place = directory.display();
     let next = match has(FILE) {
-        true => format!("go on with: coilwind run --resume {place}"),
+        true => format!("go on with: {}", resume_command(&place)),
         false => begin_again(directory),
     };
     Err(Failure::Resume {
         directory: place.to_string(),
         reason: format!("the run was stopped before it wrote its results; {next}"),
     })
-}
-
-/// The command that winds the scene of a folder again, from its start.
-fn begin_again(directory: &Path) -> String {
-    let place = directory.display();
-    format!("begin again with: coilwind run {place}/scene.toml --out {place} --force")
 }
 
 /// What does not change during a run.
@@ -80,10 +76,10 @@ impl Plan {
     ) -> Result<Self, Failure> {
         let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let mut settings = settings.clone();
-        if !settings.core.file.is_empty() {
-            settings.core.file = absolute(Path::new(&settings.core.file))
-                .display()
-                .to_string();
+        for file in [&mut settings.core.file, &mut settings.traverse.file] {
+            if !file.is_empty() {
+                *file = absolute(Path::new(file)).display().to_string();
+            }
         }
         let mut motion = motion.clone();
         let mut inputs_checksum = 0;
@@ -127,13 +123,7 @@ fn checksum(path: &Path) -> Result<u32, Failure> {
 impl Checkpoint {
     /// Writes the file in the place of the one that is there.
     pub(super) fn write(&self, directory: &Path) -> Result<(), Failure> {
-        let path = directory.join(FILE);
-        let mut bytes = postcard::to_extend(self, vec![0; HEAD])
-            .map_err(|error| Failure::write(&path, std::io::Error::other(error)))?;
-        let checksum = crc32fast::hash(&bytes[HEAD..]).to_le_bytes();
-        bytes[..MAGIC.len()].copy_from_slice(MAGIC);
-        bytes[MAGIC.len()..HEAD].copy_from_slice(&checksum);
-        Ok(write_whole_bytes(&path, bytes)?)
+        write_checked(&directory.join(FILE), MAGIC, self)
     }
 
     /// Reads the file of a folder.
@@ -153,21 +143,13 @@ impl Checkpoint {
                 (true, _) => "the run has ended; wind it again with --force, or look at it with coilwind report".to_owned(),
                 (_, true) => format!("{FILE} is missing; {}", begin_again(directory)),
                 _ => format!(
-                    "there is no run that could go on ({FILE} is missing); begin one with: coilwind run SCENE --out {place}"
+                    "there is no run that could go on ({FILE} is missing); begin one with: coilwind run SCENE --out {}",
+                    quoted(&place)
                 ),
             })
         })?;
-        let again = |what: &str| resume(format!("{FILE} {what}; {}", begin_again(directory)));
-        let body = bytes
-            .strip_prefix(MAGIC)
-            .ok_or_else(|| again("is of another version of coilwind, or not whole"))?;
-        let (sum, body) = body
-            .split_first_chunk::<4>()
-            .ok_or_else(|| again("is not whole"))?;
-        if crc32fast::hash(body) != u32::from_le_bytes(*sum) {
-            return Err(again("is not whole"));
-        }
-        postcard::from_bytes(body).map_err(|error| again(&format!("cannot be read ({error})")))
+        read_checked(&bytes, MAGIC)
+            .map_err(|what| resume(format!("{FILE} {what}; {}", begin_again(directory))))
     }
 
     /// Removes the file: the run has ended.
@@ -180,4 +162,36 @@ impl Checkpoint {
             _ => Ok(()),
         }
     }
+}
+
+/// Writes a value with a checksum in the place of the file that is there.
+pub(super) fn write_checked(
+    path: &Path,
+    magic: &[u8; 8],
+    value: &impl Serialize,
+) -> Result<(), Failure> {
+    let mut bytes = postcard::to_extend(value, vec![0; HEAD])
+        .map_err(|error| Failure::write(path, std::io::Error::other(error)))?;
+    let checksum = crc32fast::hash(&bytes[HEAD..]).to_le_bytes();
+    bytes[..magic.len()].copy_from_slice(magic);
+    bytes[magic.len()..HEAD].copy_from_slice(&checksum);
+    Ok(write_whole_bytes(path, bytes)?)
+}
+
+/// The value of such a file.
+///
+/// # Errors
+/// What is wrong with the file, in words that follow its name.
+pub(super) fn read_checked<T: DeserializeOwned>(
+    bytes: &[u8],
+    magic: &[u8; 8],
+) -> Result<T, String> {
+    let body = bytes
+        .strip_prefix(magic)
+        .ok_or("is of another version of coilwind, or not whole")?;
+    let (sum, body) = body.split_first_chunk::<4>().ok_or("is not whole")?;
+    if crc32fast::hash(body) != u32::from_le_bytes(*sum) {
+        return Err("is not whole".to_owned());
+    }
+    postcard::from_bytes(body).map_err(|error| format!("cannot be read ({error})"))
 }

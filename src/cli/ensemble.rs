@@ -1,15 +1,43 @@
 //! `coilwind run --ensemble K`: K members side by side, a folder each, and how often each verdict was given.
 
+use super::checkpoint::{self, Plan};
 use super::failure::Failure;
 use super::folder;
 use super::members;
 use super::run::{Judged, RunArgs, wind_one};
+use super::shell::begin_again;
 use super::terminal::{print, stop_flag};
+use coilwind::measure::{DefectKind, Verdict};
 use coilwind::settings::SceneSettings;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::sync::atomic::Ordering;
+
+/// What an ensemble is, in its folder until all members have ended.
+const FILE: &str = "ensemble.bin";
+/// Changes whenever the layout does.
+const MAGIC: &[u8; 8] = b"coilwen1";
+
+/// What the members of an ensemble have in common.
+#[derive(Serialize, Deserialize)]
+struct Ensemble {
+    /// scene of the middle, motion and options
+    plan: Plan,
+    members: u32,
+    no_report: bool,
+}
+
+/// A member as it stands.
+enum Member {
+    /// to be wound, or to go on
+    Open(Box<RunArgs>),
+    /// it has ended before
+    Ended(Result<Judged, Failure>),
+}
 
 /// Winds every member on all cores.
 ///
@@ -23,32 +51,151 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
         warnings.iter().for_each(|w| eprintln!("warning: {w}"));
     }
     let directory = args.directory(&settings);
+    folder::refuse_occupied(&directory, args.force)?;
     let mut all = Vec::new();
     for member in 1..=count {
-        let mut one = args.clone();
+        let mut one = quiet(args);
         one.set.extend(members::setting(&settings, member, count));
         SceneSettings::load_and_build(name, &one.set)?;
         let out = directory.join(member.to_string());
         folder::refuse_occupied(&out, args.force)?;
         one.out = Some(out);
-        // What a member has to say stands in its folder.
-        (one.quiet, one.verbose, one.fail_on_defect) = (true, false, false);
-        all.push(one);
+        all.push(Member::Open(Box::new(one)));
     }
-    let bar = bar(args.quiet, count);
+    let geometry = !args.no_geometry;
+    let ensemble = Ensemble {
+        plan: Plan::new(&settings, &args.motion(), args.frames, geometry)?,
+        members: count,
+        no_report: args.no_report,
+    };
+    folder::prepare(&directory, args.force)?;
+    folder::clear_all(&directory)?;
+    checkpoint::write_checked(&directory.join(FILE), MAGIC, &ensemble)?;
+    wind(args, &directory, all)
+}
+
+/// Whether a folder holds an ensemble that could go on.
+pub(super) fn is_in(directory: &Path) -> bool {
+    directory.join(FILE).is_file()
+}
+
+/// Goes on with the members of a folder that were stopped, and winds those that have not begun.
+///
+/// # Errors
+/// Those of [`run`], and a plan that cannot be read.
+pub(super) fn resume(args: &RunArgs, directory: &Path) -> Result<(), Failure> {
+    let path = directory.join(FILE);
+    let bytes = std::fs::read(&path).map_err(|e| Failure::write(&path, e))?;
+    let ensemble: Ensemble =
+        checkpoint::read_checked(&bytes, MAGIC).map_err(|what| Failure::Resume {
+            directory: directory.display().to_string(),
+            reason: format!("{FILE} {what}; go on with each member, or begin again with --force"),
+        })?;
+    ensemble.plan.check_inputs()?;
+    let all: Result<Vec<Member>, Failure> = (1..=ensemble.members)
+        .map(|member| ensemble.member(args, directory, member))
+        .collect();
+    wind(args, directory, all?)
+}
+
+impl Ensemble {
+    /// A member as its folder has it.
+    fn member(&self, args: &RunArgs, directory: &Path, member: u32) -> Result<Member, Failure> {
+        let out = directory.join(member.to_string());
+        let mut one = quiet(args);
+        one.no_report |= self.no_report;
+        one.resume = None;
+        if out.join(checkpoint::FILE).is_file() {
+            one.resume = Some(out);
+        } else if out.join("summary.json").is_file() {
+            return Ok(Member::Ended(judged(&out)));
+        } else {
+            let mut settings = self.plan.settings.clone();
+            members::vary(&mut settings, member, self.members)?;
+            one.settings = Some(settings);
+            (one.inputs, one.step) = self.plan.motion.inputs.clone().unzip();
+            one.stop_time = self.plan.motion.stop_time;
+            one.frames = self.plan.frames;
+            one.no_geometry = !self.plan.geometry;
+            // A kill may have left it without a checkpoint.
+            one.force = true;
+            one.out = Some(out);
+        }
+        Ok(Member::Open(Box::new(one)))
+    }
+}
+
+/// The same run without words: what a member has to say stands in its folder.
+fn quiet(args: &RunArgs) -> RunArgs {
+    let mut one = args.clone();
+    (one.quiet, one.verbose, one.fail_on_defect) = (true, false, false);
+    one
+}
+
+/// What a member that has ended came to, from its folder.
+fn judged(directory: &Path) -> Result<Judged, Failure> {
+    let text = std::fs::read_to_string(directory.join("summary.json")).unwrap_or_default();
+    let summary: Value = serde_json::from_str(&text).unwrap_or_default();
+    let word = |key: &str| summary[key].as_str().unwrap_or_default();
+    let mild = [
+        Verdict::Unsettled,
+        Verdict::Single,
+        Verdict::Aligned,
+        Verdict::Marginal,
+    ];
+    let mut verdicts = mild.into_iter().chain(DefectKind::ALL.map(Verdict::from));
+    let verdict = verdicts.find(|verdict| verdict.as_str() == word("verdict"));
+    let place = directory.display().to_string();
+    match (word("status"), verdict) {
+        ("done", Some(verdict)) => {
+            let defects = summary["defects"].as_array();
+            let any = defects.is_some_and(|defects| !defects.is_empty());
+            let defect = any || verdict.is_defect();
+            Ok(Judged { verdict, defect })
+        }
+        ("failed", _) => Err(Failure::MemberFailed {
+            reason: word("reason").to_owned(),
+            directory: place,
+        }),
+        _ => Err(Failure::Resume {
+            directory: place,
+            reason: format!("summary.json is not whole; {}", begin_again(directory)),
+        }),
+    }
+}
+
+/// Winds the members that are open, and tells what came of all.
+fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failure> {
+    let count = all.len();
+    let bar = bar(args.quiet, count as u64);
     let stop = stop_flag();
-    let wind = |one: &RunArgs| {
-        // Members that have not begun when Ctrl-C comes leave no folder.
-        let ended = (!stop.load(Ordering::SeqCst)).then(|| wind_one(one, &stop));
+    let wind = |member: Member| {
+        let ended = match member {
+            Member::Ended(judged) => Some(judged),
+            // Members that have not begun when Ctrl-C comes leave no folder.
+            Member::Open(one) => (!stop.load(Ordering::SeqCst)).then(|| wind_one(&one, &stop)),
+        };
         bar.inc(1);
         ended
     };
-    let ended: Vec<Option<Result<Judged, Failure>>> = all.par_iter().map(wind).collect();
+    let ended: Vec<Option<Result<Judged, Failure>>> = all.into_par_iter().map(wind).collect();
     bar.finish_and_clear();
-    if stop.load(Ordering::SeqCst) {
-        return Err(interrupted(&all, &ended));
+    let goes_on = |one: &Option<Result<Judged, Failure>>| {
+        matches!(one, None | Some(Err(Failure::Interrupted { .. })))
+    };
+    if ended.iter().any(goes_on) {
+        return Err(Failure::EnsembleInterrupted {
+            done: ended.iter().filter(|one| !goes_on(one)).count(),
+            all: count,
+            directory: directory.display().to_string(),
+        });
     }
     let ended: Vec<Result<Judged, Failure>> = ended.into_iter().flatten().collect();
+    let stuck = |one: &Result<Judged, Failure>| matches!(one, Err(Failure::Stuck { .. }));
+    if !ended.iter().any(stuck) {
+        let path = directory.join(FILE);
+        std::fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
+    }
     let words = words(&ended);
     let defective = ended.iter().flatten().any(|judged| judged.defect);
     if !args.quiet {
@@ -74,42 +221,17 @@ fn words(ended: &[Result<Judged, Failure>]) -> String {
     }
     let all = ended.len();
     let share = |((_, verdict), count): (_, usize)| {
-        let word = Option::map_or(verdict, "failed", coilwind::measure::Verdict::as_str);
+        let word = Option::map_or(verdict, "failed", Verdict::as_str);
         let percent = 100.0 * count as f64 / all as f64;
         format!("{word} {count} of {all} ({percent:.0} %)")
     };
     counts.into_iter().map(share).collect::<Vec<_>>().join(", ")
 }
 
-/// What Ctrl-C left, and the commands that go on.
-fn interrupted(all: &[RunArgs], ended: &[Option<Result<Judged, Failure>>]) -> Failure {
-    let folder = |one: &RunArgs| one.out.clone().unwrap_or_default();
-    let mut done = 0;
-    let mut commands = Vec::new();
-    let mut missing = Vec::new();
-    for (one, ended) in all.iter().zip(ended) {
-        let place = folder(one).display().to_string();
-        match ended {
-            Some(Ok(_)) => done += 1,
-            Some(Err(Failure::Interrupted { .. })) => {
-                commands.push(format!("coilwind run --resume {place}"));
-            }
-            Some(Err(_)) => {}
-            None => missing.push(place),
-        }
-    }
-    Failure::EnsembleInterrupted {
-        done,
-        all: all.len(),
-        commands,
-        missing,
-    }
-}
-
-fn bar(quiet: bool, count: u32) -> ProgressBar {
+fn bar(quiet: bool, count: u64) -> ProgressBar {
     let bar = match quiet {
         true => ProgressBar::hidden(),
-        false => ProgressBar::new(u64::from(count)),
+        false => ProgressBar::new(count),
     };
     // The template is constant; a mistake in it would show as the default style.
     if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} runs  {eta} left") {

@@ -1,5 +1,6 @@
 //! How a command fails, and the exit code that says so.
 
+use super::shell::{begin_again, resume_command};
 use coilwind::output::OutputError;
 use coilwind::scene::SceneError;
 use coilwind::simulation::SimError;
@@ -57,10 +58,12 @@ pub(super) enum Failure {
     #[error(transparent)]
     Output(#[from] OutputError),
     /// The folder of the results holds a run.
-    #[error("{directory} holds another run; add --force to overwrite it, or --out for another folder{}", if *can_go_on { format!(", or go on with: coilwind run --resume {directory}") } else { String::new() })]
+    #[error("{directory} holds {holds}; add --force to overwrite it, or --out for another folder{}", if *can_go_on { format!(", or go on with: {}", resume_command(directory)) } else { String::new() })]
     Occupied {
         /// the folder
         directory: String,
+        /// another run, or a sweep
+        holds: &'static str,
         /// the run was stopped before its end
         can_go_on: bool,
     },
@@ -85,13 +88,25 @@ pub(super) enum Failure {
     },
     /// Ctrl-C.
     #[error(
-        "interrupted at t = {time} s; what was computed so far is in {directory}; go on with: coilwind run --resume {directory}"
+        "interrupted at t = {} s; what was computed so far is in {directory}; {}",
+        seconds(*time),
+        goes_on(*time, *kept, directory)
     )]
     Interrupted {
         /// simulated time, s
         time: f64,
+        /// simulated time of the last checkpoint, s, if there is one
+        kept: Option<f64>,
         /// where the results are
         directory: String,
+    },
+    /// A file could not be written while a run was going on: the disk is full.
+    #[error("{failure}; {next}")]
+    Stuck {
+        /// which file, and what the system said
+        failure: Box<Failure>,
+        /// what to do
+        next: String,
     },
     /// The ranges or the folder of `sweep` are wrong.
     #[error("sweep: {reason}")]
@@ -109,19 +124,24 @@ pub(super) enum Failure {
     },
     /// Ctrl-C during a run of an ensemble.
     #[error(
-        "interrupted; {done} of {all} members are done{}{}",
-        commands.iter().map(|command| format!("; go on with: {command}")).collect::<String>(),
-        if missing.is_empty() { String::new() } else { format!("; not begun: {}", missing.join(", ")) }
+        "interrupted; {done} of {all} members are done; go on with: {}",
+        resume_command(directory)
     )]
     EnsembleInterrupted {
         /// members that ended
         done: usize,
         /// members
         all: usize,
-        /// what goes on with those on their way
-        commands: Vec<String>,
-        /// folders of members that have not begun
-        missing: Vec<String>,
+        /// where their folders are
+        directory: String,
+    },
+    /// A member of an ensemble that goes on has failed before.
+    #[error("{reason}; what was computed so far is in {directory}")]
+    MemberFailed {
+        /// why, as its summary says
+        reason: String,
+        /// its folder
+        directory: String,
     },
     /// Case files or settings of `verify` are wrong.
     #[error(transparent)]
@@ -180,7 +200,7 @@ impl Failure {
         Self::Sweep { reason }
     }
 
-    /// 1 defect or wrong number, 2 bad input, 3 solver, 130 interrupted (128 + SIGINT, as shells have it).
+    /// 1 defect or wrong number, 2 bad input, 3 solver or a full disk on the way, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
             Self::Defect { .. } | Self::Verify | Self::Invariant { .. } => 1,
@@ -197,7 +217,10 @@ impl Failure {
             | Self::Bench(_)
             | Self::Sweep { .. }
             | Self::Draw { .. } => 2,
-            Self::Solver { .. } | Self::BenchStopped { .. } => 3,
+            Self::Solver { .. }
+            | Self::Stuck { .. }
+            | Self::MemberFailed { .. }
+            | Self::BenchStopped { .. } => 3,
             Self::Interrupted { .. }
             | Self::SweepInterrupted { .. }
             | Self::EnsembleInterrupted { .. }
@@ -208,6 +231,25 @@ impl Failure {
     /// The same for the operating system.
     pub(super) fn exit_code(&self) -> ExitCode {
         ExitCode::from(self.code())
+    }
+}
+
+/// A time to the microsecond, without zeros at its end.
+fn seconds(time: f64) -> String {
+    let text = format!("{time:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Where a run that was stopped at `time` goes on, and how.
+fn goes_on(time: f64, kept: Option<f64>, directory: &str) -> String {
+    let next = || format!("go on with: {}", resume_command(directory));
+    match kept.map(seconds) {
+        None => begin_again(Path::new(directory)),
+        Some(kept) if kept == seconds(time) => next(),
+        Some(kept) => format!(
+            "its last checkpoint is of t = {kept} s, and what came after it is computed again; {}",
+            next()
+        ),
     }
 }
 
@@ -231,5 +273,40 @@ mod tests {
         for part in ["0.25", "node 17", "not finite", "so far is in out"] {
             assert!(text.contains(part), "{text}");
         }
+    }
+
+    /// The message told the time that was reached, and the run went on from another one; a folder of two words was two.
+    #[test]
+    fn an_interrupted_run_says_from_when_it_goes_on_and_how() {
+        let told = |kept| {
+            let failure = Failure::Interrupted {
+                time: 0.183_000_000_1,
+                kept,
+                directory: "my runs/a".to_owned(),
+            };
+            assert_eq!(failure.code(), 130);
+            failure.to_string()
+        };
+        let command = "; go on with: coilwind run --resume 'my runs/a'";
+        let begins = "interrupted at t = 0.183 s; what was computed so far is in my runs/a; ";
+        let again = told(Some(0.0));
+        assert!(
+            again.starts_with(begins) && again.ends_with(command),
+            "{again}"
+        );
+        assert!(
+            again.contains("its last checkpoint is of t = 0 s"),
+            "{again}"
+        );
+        let same = told(Some(0.183));
+        assert!(
+            !same.contains("checkpoint") && same.ends_with(command),
+            "{same}"
+        );
+        let none = told(None);
+        assert!(
+            none.contains("begin again with: coilwind run 'my runs/a/scene.toml'"),
+            "{none}"
+        );
     }
 }

@@ -3,6 +3,7 @@
 use super::checkpoint;
 use super::failure::Failure;
 use super::frames;
+use super::sweep_files;
 use coilwind::output::PARTIAL;
 use coilwind::settings::SceneSettings;
 use std::fs;
@@ -17,7 +18,7 @@ const SIGNS: [&str; 4] = [
 ];
 
 /// Files that a run leaves when it ends. Those of an earlier run would mix with a later one that is stopped.
-const RESULTS: [&str; 10] = [
+const RESULTS: [&str; 11] = [
     "summary.json",
     "turns.csv",
     "stations.csv",
@@ -26,6 +27,7 @@ const RESULTS: [&str; 10] = [
     "coil.png",
     "core.vtp",
     "report.html",
+    "compare.html",
     frames::SERIES,
     checkpoint::FILE,
 ];
@@ -38,43 +40,89 @@ pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
 
 /// An error where the folder holds a run, unless `force` says otherwise.
 pub(super) fn refuse_occupied(directory: &Path, force: bool) -> Result<(), Failure> {
-    let is_file = |name: &&str| {
-        let data = fs::metadata(directory.join(name));
-        data.is_ok_and(|data| data.is_file() && data.len() > 0)
+    let holds = match held(directory) {
+        Some(holds) if !force => holds,
+        _ => return Ok(()),
     };
-    if !force && SIGNS.iter().any(is_file) {
-        return Err(Failure::Occupied {
-            directory: directory.display().to_string(),
-            can_go_on: is_file(&checkpoint::FILE),
-        });
-    }
-    Ok(())
+    Err(Failure::Occupied {
+        directory: directory.display().to_string(),
+        holds,
+        can_go_on: has(directory, checkpoint::FILE),
+    })
 }
 
-/// Removes what an earlier run left, and leaves the scene as it is about to be run. The history must be open by then:
+/// What a folder holds, in words; `None` where that is neither a run nor a sweep.
+pub(super) fn held(directory: &Path) -> Option<&'static str> {
+    let any = |names: &[&str]| names.iter().any(|name| has(directory, name));
+    match (any(&SIGNS), any(&sweep_files::SIGNS)) {
+        (true, _) => Some("another run"),
+        (_, true) => Some("a sweep"),
+        _ => None,
+    }
+}
+
+/// Whether a folder has this file, with something in it.
+fn has(directory: &Path, name: &str) -> bool {
+    let data = fs::metadata(directory.join(name));
+    data.is_ok_and(|data| data.is_file() && data.len() > 0)
+}
+
+/// Removes what an earlier run or sweep left, and leaves the scene as it is about to be run. The history must be open by then:
 /// it is what tells that no other run writes here.
 pub(super) fn begin(directory: &Path, settings: &SceneSettings) -> Result<(), Failure> {
-    let frames = fs::read_dir(directory.join("frames")).into_iter().flatten();
+    clear(directory)?;
+    remove(directory, &sweep_files::ALL)?;
+    let path = directory.join("scene.toml");
+    fs::write(&path, settings.to_toml()).map_err(|e| Failure::write(&path, e))
+}
+
+/// Removes the results of a run, but for its history and its scene.
+fn clear(directory: &Path) -> Result<(), Failure> {
+    let folder = directory.join("frames");
+    let frames = fs::read_dir(&folder).into_iter().flatten();
     let frames = frames.filter_map(|entry| Some(entry.ok()?.path()));
     let is_frame = |path: &std::path::PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        name.starts_with("frame_") && (name.ends_with(".vtp") || name.ends_with(".png"))
+        let ends = name.ends_with(".vtp") || name.ends_with(".png");
+        name.starts_with("frame_") && ends && path.is_file()
     };
-    let results = RESULTS.iter().map(|name| directory.join(name));
-    for path in results.chain(frames.filter(is_frame)) {
+    for path in frames.filter(is_frame) {
+        fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
+    }
+    remove(directory, &RESULTS)?;
+    clear_partial(directory);
+    // With files of somebody else in it, it stays.
+    let _ = fs::remove_dir(folder);
+    Ok(())
+}
+
+/// Removes all that a run left, for a sweep or an ensemble in its place.
+pub(super) fn clear_run(directory: &Path) -> Result<(), Failure> {
+    drop(hold(directory)?);
+    clear(directory)?;
+    remove(directory, &SIGNS)
+}
+
+/// Removes all that a run or a sweep left.
+pub(super) fn clear_all(directory: &Path) -> Result<(), Failure> {
+    clear_run(directory)?;
+    remove(directory, &sweep_files::ALL)
+}
+
+/// Removes files of these names.
+fn remove(directory: &Path, names: &[&str]) -> Result<(), Failure> {
+    for path in names.iter().map(|name| directory.join(name)) {
         // A device in place of a file is what tests put there.
         if path.is_file() {
             fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
         }
     }
-    clear_partial(directory);
-    let path = directory.join("scene.toml");
-    fs::write(&path, settings.to_toml()).map_err(|e| Failure::write(&path, e))
+    Ok(())
 }
 
 /// Removes what a run that was killed left of files on their way; only those that a run writes, and of no run that goes on.
 pub(super) fn clear_partial(directory: &Path) {
-    let names = SIGNS.iter().chain(&RESULTS).chain(&["compare.html"]);
+    let names = SIGNS.iter().chain(&RESULTS);
     let frames = fs::read_dir(directory.join("frames")).into_iter().flatten();
     let frames = frames.filter_map(|entry| Some(entry.ok()?.path()));
     let is_frame = |path: &std::path::PathBuf| {

@@ -42,6 +42,16 @@ impl Frames {
         self.written = written;
     }
 
+    /// What to say where there are fewer frames than were asked for.
+    pub(super) fn fewer(&self) -> Option<String> {
+        let (kept, asked) = (self.written.len(), self.count);
+        (kept < asked as usize).then(|| {
+            format!(
+                "{kept} of {asked} frames are kept, one at each row of history.csv; for more, lower output.history_interval, or --step with --inputs"
+            )
+        })
+    }
+
     /// Writes the frame that is due, if one is; the last one at the end of the run.
     pub(super) fn update(
         &mut self,

@@ -15,9 +15,11 @@ mod progress;
 mod report;
 mod run;
 mod scene;
+mod shell;
 mod signals;
 mod stress;
 mod sweep;
+mod sweep_files;
 mod sweep_find_max;
 mod sweep_grid;
 mod sweep_ledger;
@@ -38,7 +40,7 @@ use std::process::ExitCode;
 /// Simulation of wire winding: an elastic-plastic rod on a turning core.
 ///
 /// Exit codes: 0 done, 1 a defect or check failed where asked for, 2 bad input, 3 the solver gave
-/// up (what was computed is on disk), 130 interrupted (likewise).
+/// up or the disk is full (what was computed is on disk), 130 interrupted (likewise).
 #[derive(Debug, Parser)]
 #[command(name = "coilwind", version)]
 struct Cli {
@@ -78,9 +80,12 @@ pub(crate) fn main() -> ExitCode {
         Err(error) => return not_understood(&error),
     };
     let result = match cli.command {
-        Command::Run(args) => match args.ensemble {
-            Some(count) => ensemble::run(&args, count),
-            None => run::run(&args),
+        Command::Run(args) => match (args.ensemble, &args.resume) {
+            (Some(count), _) => ensemble::run(&args, count),
+            (None, Some(directory)) if ensemble::is_in(directory) => {
+                ensemble::resume(&args, directory)
+            }
+            _ => run::run(&args),
         },
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Report(args) => report::report(&args),

@@ -3,9 +3,10 @@
 use super::checkpoint;
 use super::failure::Failure;
 use super::folder;
+use super::shell::begin_again;
 use super::terminal::print;
 use clap::Args;
-use coilwind::output::write_report;
+use coilwind::output::{ReportError, write_report};
 use std::path::PathBuf;
 
 /// Arguments of `report`.
@@ -36,6 +37,26 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
             folder::clear_partial(directory);
         }
     }
-    write_report(&directories, &page)?;
+    write_report(&directories, &page).map_err(what_would_do)?;
     print(&format!("report: {}\n", page.display()))
+}
+
+/// The failure with what would mend it: a run that has ended cannot go on, so its scene is wound again.
+fn what_would_do(error: ReportError) -> Failure {
+    let ReportError::Broken { path, reason } = &error else {
+        return error.into();
+    };
+    let directory = path.parent().unwrap_or(path);
+    if directory.join(checkpoint::FILE).exists() {
+        return error.into();
+    }
+    let next = match directory.join("scene.toml").exists() {
+        true => begin_again(directory),
+        false => "wind the scene again".to_owned(),
+    };
+    let file = path.file_name().unwrap_or_default().to_string_lossy();
+    Failure::Resume {
+        directory: directory.display().to_string(),
+        reason: format!("{file} is not whole ({reason}); {next}"),
+    }
 }

@@ -1,11 +1,12 @@
 //! `coilwind run`: one scene from start to end, natively or on an FMU's communication grid.
 
-use super::checkpoint::{Checkpoint, Plan};
+use super::checkpoint::{self, Checkpoint, Plan};
 use super::drive::{Drive, Motion};
 use super::failure::Failure;
 use super::folder;
 use super::frames::Frames;
 use super::progress::Progress;
+use super::shell::{begin_again, resume_command};
 use super::terminal::{print, stop_flag};
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
@@ -43,35 +44,35 @@ pub(super) struct RunArgs {
     /// Overwrite the run that the folder of the results holds
     #[arg(long)]
     pub(super) force: bool,
-    /// Go on with the run in this folder, which was stopped before its end
+    /// Go on with the run or the ensemble in this folder, which was stopped before its end
     #[arg(
         long,
         value_name = "DIR",
         conflicts_with_all = ["scene", "set", "out", "force", "ensemble", "frames", "no_geometry", "inputs", "step", "stop_time"]
     )]
-    resume: Option<PathBuf>,
+    pub(super) resume: Option<PathBuf>,
     /// Wall time between two checkpoints from which a stopped run could go on, s
     #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = positive)]
     checkpoint_every: f64,
     /// Keep this many frames of the wire on the way, in DIR/frames; ParaView opens them as DIR/frames.pvd
     #[arg(long, value_name = "N", default_value_t = 0)]
-    frames: u32,
+    pub(super) frames: u32,
     /// Leave coil.vtp, core.vtp, coil.png and report.html out: many short runs spend most of their time on them
     #[arg(long, conflicts_with = "frames")]
-    no_geometry: bool,
+    pub(super) no_geometry: bool,
     /// Leave report.html out
     #[arg(long)]
-    no_report: bool,
+    pub(super) no_report: bool,
     /// Sampled inputs (CSV with time, spindle_speed, nozzle_position, tension_setpoint) instead of
     /// the scene's spindle and traverse, as the FMU would see them
     #[arg(long, value_name = "FILE", requires = "step")]
-    inputs: Option<PathBuf>,
+    pub(super) inputs: Option<PathBuf>,
     /// Communication step for --inputs, s
     #[arg(long, value_name = "H", requires = "inputs", value_parser = positive)]
-    step: Option<f64>,
+    pub(super) step: Option<f64>,
     /// Simulated time at which to stop, s; default: end of the programme or of the inputs
     #[arg(long, value_name = "T", value_parser = positive)]
-    stop_time: Option<f64>,
+    pub(super) stop_time: Option<f64>,
     /// Exit with 1 if a defect was found
     #[arg(long)]
     pub(super) fail_on_defect: bool,
@@ -81,9 +82,20 @@ pub(super) struct RunArgs {
     /// Tell also what the solver does and what the program has decided for this scene
     #[arg(long, conflicts_with = "quiet")]
     pub(super) verbose: bool,
+    /// The scene itself, in place of one to load
+    #[arg(skip)]
+    pub(super) settings: Option<SceneSettings>,
 }
 
 impl RunArgs {
+    /// The motion that was asked for.
+    pub(super) fn motion(&self) -> Motion {
+        Motion {
+            inputs: self.inputs.clone().zip(self.step),
+            stop_time: self.stop_time,
+        }
+    }
+
     /// Folder of the results of a new run of these settings.
     pub(super) fn directory(&self, settings: &SceneSettings) -> PathBuf {
         match (&self.out, settings.output.directory.as_str()) {
@@ -157,6 +169,7 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
             due: clock,
             clock,
             wall_s,
+            kept: args.resume.is_some().then(|| simulation.time()),
             failed: false,
         },
     };
@@ -196,9 +209,10 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
         None => Ok(()),
     });
     let place = directory.display().to_string();
+    // The checkpoint stays where a file could not be written: with room on the disk the run goes on.
+    let stuck = |failure| stuck(failure, &directory);
     match ended {
-        // The checkpoint stays: with room on the disk the run goes on.
-        Err(Stop::Files(failure)) => return Err(failure),
+        Err(Stop::Files(failure)) => return Err(stuck(failure)),
         Err(Stop::Solver(reason)) => {
             Checkpoint::remove(&directory)?;
             // Lines that say where to look, only where there is something to look at.
@@ -211,22 +225,47 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
             });
         }
         Ok(Ending::Interrupted) => {
-            written?;
+            written.map_err(stuck)?;
             return Err(Failure::Interrupted {
                 time: simulation.time(),
+                kept: record.checkpoints.kept,
                 directory: place,
             });
         }
-        Ok(_) => written?,
+        Ok(_) => written.map_err(stuck)?,
     }
     Checkpoint::remove(&directory)?;
+    if let Some(text) = record.frames.fewer().filter(|_| !args.quiet) {
+        eprintln!("warning: {text}");
+    }
     conclude(args, &simulation, page.as_deref(), &directory)
+}
+
+/// The failure of a run that could not write a file, with what to do then.
+fn stuck(failure: Failure, directory: &Path) -> Failure {
+    let next = match directory.join(checkpoint::FILE).is_file() {
+        true => format!(
+            "make room, then go on with: {}",
+            resume_command(directory.display())
+        ),
+        false => format!("make room, then {}", begin_again(directory)),
+    };
+    Failure::Stuck {
+        failure: Box::new(failure),
+        next,
+    }
 }
 
 /// A new run.
 fn begin(args: &RunArgs) -> Result<Start, Failure> {
     let name = args.scene.as_deref().unwrap_or_default();
-    let (settings, scene, warnings) = SceneSettings::load_and_build(name, &args.set)?;
+    let (settings, scene, warnings) = match args.settings.clone() {
+        Some(settings) => {
+            let (scene, warnings) = settings.build_with_warnings()?;
+            (settings, scene, warnings)
+        }
+        None => SceneSettings::load_and_build(name, &args.set)?,
+    };
     if !args.quiet {
         warnings
             .iter()
@@ -236,10 +275,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
         scene: name.to_owned(),
         reason,
     };
-    let motion = Motion {
-        inputs: args.inputs.clone().zip(args.step),
-        stop_time: args.stop_time,
-    };
+    let motion = args.motion();
     let by_law = motion.inputs.is_some() && settings.nozzle_follows_law();
     let simulation = match by_law {
         true => Simulation::starting_by_law(&scene, settings.start_inputs()),
@@ -465,6 +501,8 @@ struct Checkpoints {
     clock: Instant,
     /// of the run before it was stopped, s
     wall_s: f64,
+    /// simulated time of the last one, s
+    kept: Option<f64>,
     /// one could not be written, which has been told
     failed: bool,
 }
@@ -487,10 +525,18 @@ impl Checkpoints {
                 };
                 checkpoint.write(&self.directory).map_err(|e| e.to_string())
             });
-        if let (Err(error), false) = (written, self.failed) {
-            // The results matter more; a full disk will end the run by itself.
-            self.failed = true;
-            eprintln!("warning: {error}; the run could not go on after a stop");
+        match written {
+            Ok(()) => self.kept = Some(simulation.time()),
+            Err(error) if !self.failed => {
+                // The results matter more; a full disk will end the run by itself.
+                self.failed = true;
+                let after = match self.kept {
+                    Some(_) => "after a stop the run would go on from the checkpoint before",
+                    None => "the run could not go on after a stop",
+                };
+                eprintln!("warning: {error}; {after}");
+            }
+            Err(_) => {}
         }
         let now = Instant::now();
         self.due = now + self.every.max(CHECKPOINT_SHARE * (now - began));

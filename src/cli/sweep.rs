@@ -2,13 +2,15 @@
 
 use super::failure::Failure;
 use super::scene::SceneArgs;
+use super::shell::quoted;
+use super::sweep_files as files;
 use super::sweep_grid::Grid;
-use super::sweep_ledger::{self as ledger, Ledger};
+use super::sweep_ledger::Ledger;
 use super::sweep_range::Range;
 use super::terminal::{print, stop_flag};
 use super::{
-    sweep_find_max as find_max, sweep_map as map, sweep_page as page,
-    sweep_statistics as statistics, sweep_wind as wind,
+    sweep_find_max as find_max, sweep_map as map, sweep_statistics as statistics,
+    sweep_wind as wind,
 };
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
@@ -117,16 +119,16 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     let map = match mapped {
         true => format!(
             "map: {}, {}\n",
-            args.out.join(page::FILE).display(),
-            args.out.join(map::FILE).display()
+            args.out.join(files::PAGE).display(),
+            args.out.join(files::MAP).display()
         ),
         false => String::new(),
     };
     print(&format!(
         "{told}{total} runs, {} of them new; {defects} with a defect, {failed} that the solver gave up\ntables: {} (a row a run), {} (a row a point)\n{map}",
         total - work.before,
-        args.out.join(ledger::ROWS).display(),
-        args.out.join(ledger::STATISTICS).display(),
+        args.out.join(files::ROWS).display(),
+        args.out.join(files::STATISTICS).display(),
     ))
 }
 
@@ -237,12 +239,8 @@ fn bar(quiet: bool) -> ProgressBar {
 
 /// The command that goes on, as a shell takes it.
 fn again() -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_=:./,+".contains(c);
     let words = std::env::args().skip(1).filter(|word| word != "--force");
-    let words = words.map(|word| match !word.is_empty() && word.chars().all(plain) {
-        true => word,
-        false => format!("'{}'", word.replace('\'', r"'\''")),
-    });
+    let words = words.map(quoted);
     let words: Vec<String> = words.collect();
     format!("coilwind {}", words.join(" "))
 }

@@ -1,9 +1,11 @@
 //! The folder of a sweep: what it is, and the rows of the runs that ended, so that a stopped sweep goes on.
 
 use super::failure::Failure;
+use super::folder;
+use super::sweep_files::{MAP, PAGE, PLAN, ROWS, STATISTICS};
 use super::sweep_grid::Grid;
 use super::sweep_row::{COLUMNS, Row, Rows};
-use super::{sweep_map as map, sweep_page as page, sweep_statistics as statistics};
+use super::sweep_statistics as statistics;
 use coilwind::output::{write_summary, write_whole_bytes};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -11,12 +13,6 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// What the sweep is: scene, ranges, members.
-const PLAN: &str = "sweep.json";
-/// A row a run.
-pub(super) const ROWS: &str = "sweep.csv";
-/// A row a point of the grid.
-pub(super) const STATISTICS: &str = "ensemble.csv";
 /// Time between two writes of the rows while runs end one after the other.
 const EVERY: Duration = Duration::from_millis(500);
 
@@ -51,6 +47,12 @@ impl Ledger {
                 directory.display()
             )));
         }
+        if found.is_none() && !begun {
+            folder::refuse_occupied(directory, force)?;
+        }
+        if force {
+            folder::clear_run(directory)?;
+        }
         fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))?;
         let goes_on = found.as_ref() == Some(&plan) && !force;
         if found.is_none() {
@@ -58,7 +60,7 @@ impl Ledger {
         }
         let hold = hold(directory, &path)?;
         if !goes_on {
-            for name in [ROWS, STATISTICS, map::FILE, page::FILE] {
+            for name in [ROWS, STATISTICS, MAP, PAGE] {
                 let path = directory.join(name);
                 if path.is_file() {
                     fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;

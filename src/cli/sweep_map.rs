@@ -1,6 +1,7 @@
 //! `map.svg`: the process map of a sweep over two variables, a cell a point of the grid.
 
 use super::failure::Failure;
+use super::sweep_files::MAP;
 use super::sweep_grid::Grid;
 use super::sweep_page as page;
 use super::sweep_row::Rows;
@@ -10,8 +11,6 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::path::Path;
 
-/// Name of the picture.
-pub(super) const FILE: &str = "map.svg";
 /// Size of a cell, pixels: two short lines of text fit.
 const CELL: (u32, u32) = (92, 52);
 /// Room for axes and caption, pixels.
@@ -34,7 +33,7 @@ pub(super) fn write(directory: &Path, grid: &Grid, rows: &Rows) -> Result<bool, 
     if x.count > MOST || y.count > MOST {
         return Ok(false);
     }
-    let path = directory.join(FILE);
+    let path = directory.join(MAP);
     let text = draw(grid, rows).map_err(|reason| {
         Failure::sweep(format!("{} cannot be drawn: {reason}", path.display()))
     })?;

@@ -1,6 +1,7 @@
 //! `map.html`: the process map of a sweep over two variables as a page, with the runs behind every cell.
 
 use super::failure::Failure;
+use super::sweep_files;
 use super::sweep_grid::Grid;
 use super::sweep_row::{Row, Rows};
 use super::sweep_statistics as statistics;
@@ -8,8 +9,6 @@ use coilwind::output::write_whole_bytes;
 use serde_json::{Value, json};
 use std::path::Path;
 
-/// Name of the page.
-pub(super) const FILE: &str = "map.html";
 const PAGE: &str = include_str!("sweep_page.html");
 
 /// Writes the page of a grid of two ranges.
@@ -17,7 +16,7 @@ const PAGE: &str = include_str!("sweep_page.html");
 /// # Errors
 /// Where it cannot be written.
 pub(super) fn write(directory: &Path, grid: &Grid, rows: &Rows) -> Result<(), Failure> {
-    let path = directory.join(FILE);
+    let path = directory.join(sweep_files::PAGE);
     // Text of a script ends at the first `</script`, wherever it stands.
     let data = data(grid, rows).to_string().replace('<', "\\u003c");
     Ok(write_whole_bytes(
