@@ -316,6 +316,25 @@ fn what_no_sweep_can_do_is_told_before_anything_is_wound() {
             ],
             &["has a range already"],
         ),
+        // Two spellings of one variable made rows that named a value and were wound at another.
+        (
+            &[
+                "--over",
+                "spindle.speed=100:200:2",
+                "--over",
+                "spindle.speed_rpm=1000:2000:2",
+            ],
+            &["spindle.speed has a range already, --over spindle.speed=100:200:2"],
+        ),
+        (
+            &[
+                "--set",
+                "spindle.speed_rpm=900",
+                "--over",
+                "spindle.speed=100:200:2",
+            ],
+            &["--set spindle.speed_rpm=900", "leave out one of them"],
+        ),
         (
             &["--over", "spindle.speed=1:2:100000", "--ensemble", "1000"],
             &["more than 1000000 runs"],
@@ -341,13 +360,14 @@ fn what_no_sweep_can_do_is_told_before_anything_is_wound() {
     assert!(!out.exists());
 }
 
-/// The highest tension below that at which wire breaks, found by bisection and by winding all.
+/// The highest tension below that which draws wire too long, found by bisection and by winding all.
 #[test]
 fn the_maximum_is_that_of_a_sweep_through_everything() {
     let folder = tempfile::tempdir().unwrap();
     let (all, some) = (folder.path().join("all"), folder.path().join("some"));
     let wound = |out: &Path, more: &[&str]| {
-        let set = ["--set", "spindle.speed=900"];
+        // Long enough for wire at rest, without which nothing is judged.
+        let set = ["--set", "spindle.speed=300", "--set", "spindle.turns=1.4"];
         let ensemble = ["--ensemble", "2"];
         finished(
             coilwind("sweep", out, &[&set[..], &ensemble, more].concat()),
@@ -356,10 +376,10 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
         rows(&out.join("sweep.csv"))
     };
     let name = "tensioner.tension";
-    let every = wound(&all, &["--over", "tensioner.tension=48:83:8"]);
+    let every = wound(&all, &["--over", "tensioner.tension=33:68:8"]);
     let looked = wound(
         &some,
-        &["--over", "tensioner.tension=48:83:7", "--find-max", name],
+        &["--over", "tensioner.tension=33:68:7", "--find-max", name],
     );
     let highest = |rows: &[BTreeMap<String, String>]| {
         let value = |row: &BTreeMap<String, String>| row[name].parse::<f64>().unwrap();
@@ -372,8 +392,48 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
     };
     assert_eq!(highest(&every), highest(&looked));
     let (free, not_free) = highest(&every);
-    assert!(48.0 < free && not_free == free + 5.0, "{free} {not_free}");
+    assert!(33.0 < free && not_free == free + 5.0, "{free} {not_free}");
     assert_eq!((every.len(), looked.len()), (16, 6));
+}
+
+/// Runs that nothing was known of counted as free of defects, and runs that failed as defective: both were told as an answer.
+#[test]
+fn a_maximum_among_values_that_are_not_judged_or_failed_is_no_answer() {
+    let folder = tempfile::tempdir().unwrap();
+    let find_max = |out: &str, over: &str, sets: &[&str], code: i32| {
+        let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+        sweep.args(["sweep", "fig8", "--find-max", "spindle.speed"]);
+        sweep.args(["--over", over, "--out"]);
+        sweep.arg(folder.path().join(out));
+        sets.iter().for_each(|set| {
+            sweep.args(["--set", set]);
+        });
+        let output = finished(sweep, code);
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        let (told, said) = (text(output.stdout), text(output.stderr));
+        for answer in ["is free of defects", "try a", "highest value without"] {
+            assert!(!told.contains(answer), "{told}");
+        }
+        (told, said)
+    };
+    let (told, said) = find_max(
+        "unjudged",
+        "spindle.speed=300:302:2",
+        &["spindle.turns=0.5"],
+        1,
+    );
+    assert!(told.contains("unsettled 1"), "{told}");
+    for part in [
+        "no highest value of spindle.speed was found: 302 is not judged",
+        "--set spindle.turns=N; nothing is known of other values",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    let sets = ["solver.step_us=400", "spindle.turns=1.2"];
+    let (told, said) = find_max("failed", "spindle.speed=300:400:2", &sets, 3);
+    assert!(told.contains("failed 1"), "{told}");
+    assert!(said.contains("failed: the solver gave up 1 of 1"), "{said}");
+    assert_eq!(rows(&folder.path().join("failed/sweep.csv")).len(), 1);
 }
 
 #[cfg(unix)]

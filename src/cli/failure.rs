@@ -114,6 +114,14 @@ pub(super) enum Failure {
         /// what is wrong, and what would do
         reason: String,
     },
+    /// `--find-max` came to a value that says nothing.
+    #[error("sweep: {reason}")]
+    SweepOpen {
+        /// which value, why, and what would do
+        reason: String,
+        /// the solver gave up there
+        failed: bool,
+    },
     /// Ctrl-C during `sweep`.
     #[error("interrupted; {done} runs are kept; go on with: {command}")]
     SweepInterrupted {
@@ -200,10 +208,13 @@ impl Failure {
         Self::Sweep { reason }
     }
 
-    /// 1 defect or wrong number, 2 bad input, 3 solver or a full disk on the way, 130 interrupted (128 + SIGINT, as shells have it).
+    /// 1 defect, wrong number or no answer, 2 bad input, 3 solver or a full disk on the way, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
-            Self::Defect { .. } | Self::Verify | Self::Invariant { .. } => 1,
+            Self::Defect { .. }
+            | Self::Verify
+            | Self::Invariant { .. }
+            | Self::SweepOpen { failed: false, .. } => 1,
             Self::Scene(_)
             | Self::Start { .. }
             | Self::Cell { .. }
@@ -220,7 +231,8 @@ impl Failure {
             Self::Solver { .. }
             | Self::Stuck { .. }
             | Self::MemberFailed { .. }
-            | Self::BenchStopped { .. } => 3,
+            | Self::BenchStopped { .. }
+            | Self::SweepOpen { failed: true, .. } => 3,
             Self::Interrupted { .. }
             | Self::SweepInterrupted { .. }
             | Self::EnsembleInterrupted { .. }

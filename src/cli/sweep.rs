@@ -4,9 +4,11 @@ use super::failure::Failure;
 use super::scene::SceneArgs;
 use super::shell::quoted;
 use super::sweep_files as files;
+use super::sweep_find_max::{Known, Look, open_question};
 use super::sweep_grid::Grid;
 use super::sweep_ledger::Ledger;
-use super::sweep_range::Range;
+use super::sweep_range::{Range, variable_of};
+use super::sweep_row::Row;
 use super::terminal::{print, stop_flag};
 use super::{
     sweep_find_max as find_max, sweep_map as map, sweep_statistics as statistics,
@@ -61,6 +63,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         Some(name) => vec![find_max::candidates(name, &args.over)?],
         None => args.over.clone(),
     };
+    refuse_set_and_swept(&args.scene.set, &ranges)?;
     let grid = Grid::new(base, ranges, args.ensemble)?;
     if !args.quiet {
         // Runs over a key without effect would all be the same.
@@ -74,6 +77,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         .map_err(|e| Failure::sweep(format!("--threads {}: {e}", args.threads)))?;
     let mut work = Work {
         before: ledger.count(),
+        open: None,
         ledger,
         bar: bar(args.quiet),
         stop: stop_flag(),
@@ -94,8 +98,9 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             command: again(),
         });
     }
+    let open = work.open.take().map_or(Ok(()), Err);
     if args.quiet {
-        return Ok(());
+        return open;
     }
     let total = work.ledger.count();
     let failed = work
@@ -129,7 +134,21 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         total - work.before,
         args.out.join(files::ROWS).display(),
         args.out.join(files::STATISTICS).display(),
-    ))
+    ))?;
+    open
+}
+
+/// An error where `--set` gives a value to what `--over` varies: it would not count.
+fn refuse_set_and_swept(set: &[(String, String)], ranges: &[Range]) -> Result<(), Failure> {
+    for (name, value) in set {
+        let variable = variable_of(name);
+        if let Some(range) = ranges.iter().find(|range| range.variable() == variable) {
+            return Err(Failure::sweep(format!(
+                "--set {name}={value}: --over {range} gives {variable} its values; leave out one of them"
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// A sweep that is going on.
@@ -141,6 +160,8 @@ struct Work {
     stop: Arc<AtomicBool>,
     /// runs that were there
     before: usize,
+    /// why `--find-max` has no answer
+    open: Option<Failure>,
 }
 
 impl Work {
@@ -164,16 +185,35 @@ impl Work {
         self.bar
             .set_length(u64::from(looks) * u64::from(self.grid.members));
         let mut told = String::new();
-        let free = find_max::bisect(points, |point| {
+        let limit = find_max::bisect(points, |point| {
             self.wind(self.grid.runs_at(point))?;
             told += &self.line(point).unwrap_or_default();
-            let mut rows = self.grid.runs_at(point).map(|run| self.ledger.row(run));
-            // Of an interrupted look, and of those after it, nothing is told.
-            Ok::<bool, Failure>(rows.all(|row| row.is_some_and(|row| row.is_free())))
+            let runs = self.grid.runs_at(point);
+            let rows: Vec<&Row> = runs
+                .clone()
+                .filter_map(|run| self.ledger.row(run))
+                .collect();
+            // An interrupted look says nothing, and the sweep tells of its stop.
+            Ok::<Look, Failure>(match rows.len() < runs.len() {
+                true => Look::Unknown {
+                    unjudged: 0,
+                    failed: 0,
+                    of: runs.len(),
+                },
+                false => Look::at(&rows),
+            })
         })?;
         let range = &self.grid.ranges[0];
         let (name, value) = (&range.name, |index: usize| range.value(index as u32));
-        told += &match free {
+        if let Some((index, look)) = limit.unknown {
+            let known = Known {
+                free: limit.free.checked_sub(1).map(value),
+                defect: (limit.end < points).then(|| value(limit.end)),
+            };
+            self.open = open_question(name, value(index), look, &known);
+            return Ok(told);
+        }
+        told += &match limit.free {
             0 => format!(
                 "no value of {name} is free of defects: {} is not; try a lower bracket\n",
                 value(0)

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::sweep_range::Range;
+use super::sweep_row::Row;
 
 /// Steps in which values of these variables are told: the spindle's is what a drive can be set to.
 const STEPS: [(&str, f64); 2] = [
@@ -33,24 +34,108 @@ pub(super) fn candidates(name: &str, ranges: &[Range]) -> Result<Range, Failure>
     Ok(range.in_steps_of(step))
 }
 
-/// How many of the first `count` candidates are free of defects, where those above a limit have one and those below have none.
-/// Each look winds an ensemble, so it takes as few as possible.
-///
-/// # Errors
-/// Those of `is_free`.
-pub(super) fn bisect<E>(
-    count: usize,
-    mut is_free: impl FnMut(usize) -> Result<bool, E>,
-) -> Result<usize, E> {
-    let (mut free, mut end) = (0, count);
-    while free < end {
-        let middle = free + (end - free) / 2;
-        match is_free(middle)? {
-            true => free = middle + 1,
-            false => end = middle,
+/// What a look at a value says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Look {
+    /// every run ended, was judged, and has no defect
+    Free,
+    /// a run has a defect
+    Defect,
+    /// no run has a defect, and so many cannot be judged or were given up by the solver
+    Unknown {
+        unjudged: usize,
+        failed: usize,
+        of: usize,
+    },
+}
+
+impl Look {
+    /// What the rows at a value say together. A defect that was found counts, whatever came after it.
+    pub(super) fn at(rows: &[&Row]) -> Self {
+        let count = |is: fn(&Row) -> bool| rows.iter().filter(|row| is(row)).count();
+        let (unjudged, failed) = (count(Row::is_unsettled), count(Row::failed));
+        match (count(|row| row.defect), unjudged + failed) {
+            (0, 0) => Self::Free,
+            (0, _) => Self::Unknown {
+                unjudged,
+                failed,
+                of: rows.len(),
+            },
+            _ => Self::Defect,
         }
     }
-    Ok(free)
+}
+
+/// What bisection came to.
+#[derive(Debug, PartialEq)]
+pub(super) struct Limit {
+    /// candidates from the first that are free of defects
+    pub(super) free: usize,
+    /// first candidate that is known to have a defect; as many as there are where none is
+    pub(super) end: usize,
+    /// the candidate between them that says neither, which ended the search
+    pub(super) unknown: Option<(usize, Look)>,
+}
+
+/// How many of the first `count` candidates are free of defects, where those above a limit have one and those below have none.
+/// Each look winds an ensemble, so it takes as few as possible. A look that says neither ends the search.
+///
+/// # Errors
+/// Those of `look`.
+pub(super) fn bisect<E>(
+    count: usize,
+    mut look: impl FnMut(usize) -> Result<Look, E>,
+) -> Result<Limit, E> {
+    let (mut free, mut end) = (0, count);
+    let mut unknown = None;
+    while free < end && unknown.is_none() {
+        let middle = free + (end - free) / 2;
+        match look(middle)? {
+            Look::Free => free = middle + 1,
+            Look::Defect => end = middle,
+            neither => unknown = Some((middle, neither)),
+        }
+    }
+    Ok(Limit { free, end, unknown })
+}
+
+/// Values of which bisection knows something.
+pub(super) struct Known {
+    /// the highest that is free of defects
+    pub(super) free: Option<f64>,
+    /// the lowest with a defect
+    pub(super) defect: Option<f64>,
+}
+
+/// Why there is no highest value, and what to do; `None` where the look says enough.
+pub(super) fn open_question(name: &str, value: f64, look: Look, known: &Known) -> Option<Failure> {
+    let Look::Unknown {
+        unjudged,
+        failed,
+        of,
+    } = look
+    else {
+        return None;
+    };
+    let what = match failed {
+        0 => format!(
+            "is not judged: in {unjudged} of {of} runs no wire came to rest; wind more turns with --set spindle.turns=N"
+        ),
+        _ => format!(
+            "failed: the solver gave up {failed} of {of} runs, and column reason of sweep.csv says why; leave the value out with another bracket, or wind with a smaller solver.tolerance"
+        ),
+    };
+    let up_to = known.free.map(|free| format!("{free} is free of defects"));
+    let from = known.defect.map(|defect| format!("{defect} has some"));
+    let known: Vec<String> = up_to.into_iter().chain(from).collect();
+    let known = match known.is_empty() {
+        true => "nothing is known of other values".to_owned(),
+        false => known.join(" and "),
+    };
+    Some(Failure::SweepOpen {
+        reason: format!("no highest value of {name} was found: {value} {what}; {known}"),
+        failed: failed > 0,
+    })
 }
 
 #[cfg(test)]
@@ -63,14 +148,45 @@ mod tests {
             let mut looks = Vec::new();
             let found = bisect(81, |index| {
                 looks.push(index);
-                Ok::<bool, ()>(index < limit)
+                Ok::<Look, ()>(match index < limit {
+                    true => Look::Free,
+                    false => Look::Defect,
+                })
             });
-            assert_eq!(found, Ok(limit));
+            let exact = Limit {
+                free: limit,
+                end: limit,
+                unknown: None,
+            };
+            assert_eq!(found, Ok(exact));
             assert!(looks.len() <= 7, "{limit}: {looks:?}");
             // What is told was wound: the last that is free and the first that is not.
             assert!(limit == 0 || looks.contains(&(limit - 1)));
             assert!(limit == 81 || looks.contains(&limit));
         }
+    }
+
+    /// A value of which nothing is known was taken for one that is free of defects, or for one that has some.
+    #[test]
+    fn a_look_that_says_neither_ends_the_search_between_what_is_known() {
+        let neither = Look::Unknown {
+            unjudged: 1,
+            failed: 0,
+            of: 1,
+        };
+        let found = bisect(81, |index| {
+            Ok::<Look, ()>(match index {
+                0..=25 => Look::Free,
+                26..=39 => neither,
+                _ => Look::Defect,
+            })
+        });
+        let between = Limit {
+            free: 21,
+            end: 40,
+            unknown: Some((30, neither)),
+        };
+        assert_eq!(found, Ok(between));
     }
 
     #[test]

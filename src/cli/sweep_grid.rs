@@ -35,9 +35,11 @@ impl Grid {
                     "--over {range}: {name} is no number; allowed: variables that are numbers"
                 )));
             }
-            if ranges[..index].iter().any(|other| other.name == *name) {
+            let variable = range.variable();
+            let same = |other: &&Range| other.variable() == variable;
+            if let Some(other) = ranges[..index].iter().find(same) {
                 return Err(Failure::sweep(format!(
-                    "--over {range}: {name} has a range already; allowed: one range for each variable"
+                    "--over {range}: {variable} has a range already, --over {other}; allowed: one range for each variable"
                 )));
             }
         }

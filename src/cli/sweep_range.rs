@@ -1,7 +1,8 @@
 //! What `--over NAME=A:B:N` says: N values of a variable, evenly from A to B.
 
 use super::members::rounded;
-use coilwind::variables::by_name;
+use coilwind::scene::unit_suffixes;
+use coilwind::variables::{Variable, by_name, table};
 use std::fmt;
 
 /// Most values of a range: more is a slip of the keyboard.
@@ -68,6 +69,11 @@ impl Range {
         })
     }
 
+    /// The variable that the name means, in whatever unit: `spindle.speed` of `spindle.speed_rpm`.
+    pub(super) fn variable(&self) -> &str {
+        variable_of(&self.name)
+    }
+
     /// What its axis is called: the name, with the unit where the name does not carry it.
     pub(super) fn title(&self) -> String {
         let unit = by_name(&self.name).map_or("1", |variable| variable.unit);
@@ -98,6 +104,17 @@ impl Range {
         let share = f64::from(index) / f64::from(self.count - 1);
         rounded(self.from + share * (self.to - self.from), DIGITS)
     }
+}
+
+/// The variable that a name with or without a unit means; the name itself where there is none.
+pub(super) fn variable_of(name: &str) -> &str {
+    let means = |v: &&Variable| {
+        let unit = name
+            .strip_prefix(v.name)
+            .and_then(|rest| rest.strip_prefix('_'));
+        v.name == name || unit.is_some_and(|unit| unit_suffixes(v).contains(&unit))
+    };
+    table().iter().find(means).map_or(name, |v| v.name)
 }
 
 impl fmt::Display for Range {

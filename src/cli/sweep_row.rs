@@ -1,6 +1,6 @@
 //! What a run of a sweep leaves in `sweep.csv`: the values that were swept, then this.
 
-use coilwind::measure::UNJUDGED;
+use coilwind::measure::{UNJUDGED, Verdict};
 use coilwind::simulation::SimError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -114,11 +114,6 @@ impl Row {
 
     /// It ended as planned, and nothing could be measured.
     pub(super) fn is_unsettled(&self) -> bool {
-        !self.failed() && self.verdict == "unsettled"
-    }
-
-    /// It ended as planned, and without a defect.
-    pub(super) fn is_free(&self) -> bool {
-        !self.failed() && !self.defect
+        !self.failed() && self.verdict == Verdict::Unsettled.as_str()
     }
 }
