@@ -207,3 +207,20 @@ fn wire_freezes_on_a_coil_of_any_height() {
     let live = outputs.turns_wound - outputs.turns_settled;
     assert!(live < 1.5, "{live} turns are live");
 }
+
+/// The nozzle begins near a flange, and wire touches its edge before it comes to the core: that was taken for the coil, and
+/// `turns_wound` fell once the nozzle had left the flange.
+#[test]
+fn wire_that_passes_a_flange_is_not_wound_there() {
+    let mut sim = started(&small_bobbin(1, 20.0));
+    let mut before: f64 = 0.0;
+    let on_core = 6e-3 + 0.5 * DIAMETER;
+    for tenth in 1..=9 {
+        wound(&mut sim, 0.1 * f64::from(tenth));
+        let o = *sim.outputs();
+        let off = libm::hypot(o.layon_x, o.layon_z);
+        assert!((off - on_core).abs() < 0.02e-3, "turn 0.{tenth}: {off}");
+        assert!(o.turns_wound > before, "turn 0.{tenth}: {o:?}");
+        before = o.turns_wound;
+    }
+}

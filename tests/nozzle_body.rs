@@ -124,6 +124,14 @@ fn a_body_that_reaches_into_the_coil_ends_the_winding() {
     let exit = exit_z(&texts[0]);
     assert!((exit.abs() - (6.7 + 1.8)).abs() < 0.1, "{exit}");
 
+    // inputs go on through the core, and nothing is there any more to be wound: that was a failed run
+    let through = Inputs {
+        nozzle_offset_z: 0.0,
+        ..sim.inputs()
+    };
+    go(&mut sim, through, 0.02);
+    assert_eq!(sim.verdict(), Verdict::Collision);
+
     let (collisions, _) = sent_beside(&bare_core(2.8), 20e-3, 1e-3, 8.2e-3);
     assert!(collisions.is_empty(), "{collisions:?}");
 }

@@ -423,6 +423,16 @@ fn broken_wire_is_told_once_and_the_spindle_turns_on() {
         ..now
     };
     assert_eq!(still, then, "all else stays");
+    // no wire of it had come to rest, and no row of the table said that it broke
+    let turns = m.sim.turns();
+    let last = turns.last().expect("the turn that broke");
+    assert_eq!(last.verdict, Verdict::Break, "{turns:?}");
+    assert!(
+        turns
+            .iter()
+            .zip(1..)
+            .all(|(turn, number)| turn.turn == number)
+    );
     assert_eq!(m.sim.inputs().nozzle_position, m.inputs.nozzle_position);
 }
 

@@ -24,6 +24,12 @@ impl Defect {
             (DefectKind::EarlyJump | DefectKind::LateJump, _, Some(turns)) => {
                 format!("{} by {turns:.1} turns {place}", self.kind.words())
             }
+            (DefectKind::LooseTurn, Some(m), _) => {
+                format!(
+                    "loose turn: it stands up to {:.3} mm off what it was laid over, or has hardly any tension, {place}",
+                    1e3 * m
+                )
+            }
             (DefectKind::Overstretch, Some(m), _) => {
                 format!("overstretch, {:.3} mm a turn, {place}", 1e3 * m)
             }

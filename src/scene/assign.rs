@@ -146,6 +146,13 @@ impl SceneSettings {
                 let unit = if v.unit == "1" { "" } else { v.unit };
                 match get(self) {
                     Value::String(text) if text.is_empty() => "\"\"".to_owned(),
+                    // (without what converting a unit leaves in the last digits)
+                    Value::Real(x) => {
+                        let rounded = format!("{x:.11e}").parse().unwrap_or(x);
+                        format!("{} {unit}", Value::Real(rounded))
+                            .trim_end()
+                            .to_owned()
+                    }
                     value => format!("{value} {unit}").trim_end().to_owned(),
                 }
             }

@@ -184,6 +184,10 @@ impl SceneSettings {
         }
         let least = w.pitch.max(d);
         let most = window.map(|width| ((width - d) / least * (1.0 + ROUNDING)).floor() + 1.0);
+        if most.is_some_and(|most| most < 1.0) {
+            // flanges so near to each other are told already
+            return None;
+        }
         let turns = match (w.turns_per_layer, most) {
             (0.0, None) => {
                 problems.add(self.impossible(
@@ -204,18 +208,12 @@ impl SceneSettings {
                 let allowed = format!("at most {most}, or a larger core.flange.inner_distance");
                 problems.add(self.impossible("winding.turns_per_layer", reason, allowed));
                 // what fits must not meet the nozzle either
-                if most >= 1.0 {
-                    let fits = self.stacked(most as u32, least, true);
-                    self.check_coil(&fits, d, extent, problems);
-                }
+                let fits = self.stacked(most as u32, least, true);
+                self.check_coil(&fits, d, extent, problems);
                 return None;
             }
             (turns, _) => turns,
         };
-        if turns < 1.0 {
-            // flanges so near to each other are told already
-            return None;
-        }
         if turns * w.layers > MOST_TURNS {
             let reason = format!(
                 "{turns} turns in {} layers are more than a run can have",
@@ -457,7 +455,11 @@ impl SceneSettings {
         ];
         let [Some(angle), Some(y)] = columns else {
             let found: Vec<&str> = header.iter().collect();
-            return Err(problem(format!("its columns are {}", found.join(", "))));
+            let reason = match found.iter().all(|name| name.is_empty()) {
+                true => "it is empty".to_owned(),
+                false => format!("its columns are {}", found.join(", ")),
+            };
+            return Err(problem(reason));
         };
         let per_turn = match header.iter().any(|name| name == "turns") {
             true => 1.0,

@@ -296,6 +296,40 @@ fn a_clamp_beside_the_first_turn_is_told() {
     assert!(!keys("[traverse]\nmode = 'by-angle'\n").contains(&"start.clamp_y"));
 }
 
+/// A nozzle led 4 mm past a flange of 1 mm wound its wire over that flange until it broke, and nothing said so before the run.
+#[test]
+fn a_nozzle_far_past_a_flange_is_told() {
+    let told = |lead_mm: f64, distance_mm: f64| -> bool {
+        let text = BOBBIN.replace(
+            "[nozzle]\n",
+            &format!("[nozzle]\ndistance_mm = {distance_mm}\n"),
+        );
+        let text = format!("{text}mode = 'helical'\nlead_mm = {lead_mm}\n");
+        let (_, warnings) = parse(&text).unwrap().build_with_warnings().unwrap();
+        warnings.iter().any(|w| w.key == "traverse.lead")
+    };
+    assert!(told(4.0, 25.0));
+    assert!(!told(0.3, 25.0));
+    // seen from far away the wire passes over the rim
+    assert!(!told(4.0, 120.0));
+}
+
+/// Turns that are planned apart are judged as gaps, and the verdict came as a surprise.
+#[test]
+fn turns_planned_apart_are_told() {
+    let told = |pitch: &str| -> bool {
+        let text = BOBBIN.replace(
+            "[winding]\n",
+            &format!("[winding]\n{pitch}\nturns_per_layer = 5\n"),
+        );
+        let text = format!("{text}mode = 'helical'\n");
+        let (_, warnings) = parse(&text).unwrap().build_with_warnings().unwrap();
+        warnings.iter().any(|w| w.key.starts_with("winding."))
+    };
+    assert!(told("pitch_mm = 1"));
+    assert!(!told("pitch_mm = 0.75"));
+}
+
 /// The scene that a run keeps has every key. `check` told of seventeen of them that they had no effect.
 #[test]
 fn keys_at_their_default_are_not_told() {
