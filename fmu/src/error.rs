@@ -91,9 +91,11 @@ pub(crate) enum Error {
     /// A parameter is not valid, or the scene made of all of them is not.
     #[error("{0}")]
     Scene(Box<SceneError>),
-    /// The file of a mesh is in none of the places where it may be.
-    #[error("core.file = {file} is not there; looked in {places}")]
-    NoMesh {
+    /// A file is in none of the places where it may be.
+    #[error("{name} = {file} is not there{}", looked_in(places))]
+    NoFile {
+        /// Name of the parameter.
+        name: &'static str,
         /// The importer's name of the file.
         file: String,
         /// The folders that were looked in, in words.
@@ -315,6 +317,14 @@ pub(crate) enum BytesError {
         /// Number of bytes that the header announces, itself included.
         needed: u64,
     },
+    /// There is more than the state.
+    #[error("the state takes {needed} bytes, {size} are there; pass no more than the state")]
+    Longer {
+        /// Number of bytes that are there.
+        size: usize,
+        /// Number of bytes that the header announces, itself included.
+        needed: u64,
+    },
     /// The checksum does not fit.
     #[error("the state is damaged: its checksum is wrong; use another copy")]
     Damaged,
@@ -343,4 +353,12 @@ pub(crate) enum RecordError {
     /// The core's surface, which the picture shows, cannot be made.
     #[error(transparent)]
     Core(#[from] SimError),
+}
+
+/// The end of a message about a file that is missing: where it was looked for, unless its path is absolute.
+fn looked_in(places: &str) -> String {
+    match places {
+        "" => String::new(),
+        places => format!("; looked in {places}"),
+    }
 }

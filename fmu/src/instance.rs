@@ -191,7 +191,7 @@ impl Instance {
             Some(run) => run,
             None => {
                 self.parameters
-                    .find_mesh(self.identity.resources.as_deref())?;
+                    .find_files(self.identity.resources.as_deref())?;
                 let (scene, warnings) = self.parameters.scene()?;
                 let inputs = self.parameters.start_inputs();
                 let by_law = self.parameters.settings().nozzle_follows_law();

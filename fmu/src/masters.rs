@@ -360,6 +360,8 @@ fn the_tolerance_of_the_experiment_scales_that_of_the_solver() {
     assert!((tolerance - 1e-5).abs() < 1e-18 && told == 1, "{tolerance}");
     // a tenth of the wire's diameter at most
     assert_eq!(solver(Some(1e9), &none), (0.1 * 0.7e-3, 1));
+    // a fine one made a tolerance that no scene may have, and the instance did not start
+    assert_eq!(solver(Some(1e-9), &none), (1e-9, 1));
     // whichever is set first, a parameter overrules the experiment
     let explicit = |i: &mut Instance| set(i, "solver.tolerance", 4e-6);
     assert_eq!(solver(Some(1e-3), &explicit), (4e-6, 0));
@@ -367,6 +369,56 @@ fn the_tolerance_of_the_experiment_scales_that_of_the_solver() {
         let refused = Instance::for_tests().setup_experiment(Some(wrong), 0.0, None);
         assert!(matches!(refused, Err(Error::Tolerance { .. })));
     }
+}
+
+/// A file that the importer set was looked for "relative to the scene file", where there may be none.
+#[test]
+fn a_missing_file_is_told_by_the_way_of_the_fmu() {
+    let refused = |set_up: &dyn Fn(&mut Instance)| {
+        let mut instance = Instance::for_tests();
+        set_up(&mut instance);
+        instance.setup_experiment(None, 0.0, None).expect("valid");
+        instance.enter_initialization_mode().expect("enters");
+        let error = instance.exit_initialization_mode().expect_err("no file");
+        error.to_string()
+    };
+    let text = refused(&|i| {
+        set_text(i, "traverse.mode", "table");
+        set_text(i, "traverse.file", "none.csv");
+    });
+    let here = std::env::current_dir().expect("a folder");
+    let here = format!("is not there; looked in {}", here.display());
+    assert!(
+        text.contains("traverse.file = none.csv") && text.contains(&here),
+        "{text}"
+    );
+    for (name, key) in [("core.shape", "mesh"), ("traverse.mode", "table")] {
+        let text = refused(&|i| set_text(i, name, key));
+        let way = "by its name among the FMU's resources, or else as given";
+        assert!(
+            text.contains(way) && !text.contains("relative to"),
+            "{text}"
+        );
+    }
+}
+
+/// The results of an earlier run went without a word.
+#[test]
+fn a_run_that_overwrites_another_one_says_so() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = folder.path().to_str().expect("UTF-8");
+    let told = || {
+        let (mut instance, messages) = started(0.0, |i| set_text(i, "output.directory", place));
+        instance.do_step(0.0, 1e-4).expect("a step");
+        instance.terminate().expect("terminates");
+        warnings(&messages).join("\n")
+    };
+    assert_eq!(told(), "");
+    let text = told();
+    assert!(
+        text.contains(place) && text.contains("which this run overwrites"),
+        "{text}"
+    );
 }
 
 /// A scene's own traverse is for its own motion: only a mode that the importer sets moves the nozzle by a law.

@@ -59,4 +59,12 @@ impl Message {
     pub(crate) fn not_written(reason: impl Display) -> Self {
         Self::warning(format_args!("output.directory: {reason}"))
     }
+
+    /// Returns the warning that `directory` holds a run that has ended, which this one overwrites.
+    pub(crate) fn overwritten(directory: &str) -> Self {
+        Self::warning(format_args!(
+            "output.directory: {directory} holds the results of a run before, which this run overwrites; \
+             name another folder to keep them"
+        ))
+    }
 }

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::resources;
 use coilwind::measure::DefectLimits;
-use coilwind::scene::{Scene, Warning};
+use coilwind::scene::{Scene, SceneError, Warning};
 use coilwind::settings::{BY_INPUT, Friction, Origin, SceneSettings};
 use coilwind::signals::Inputs;
 use coilwind::variables::{Access, Value, Variable, by_name, by_reference, choice};
@@ -24,6 +24,11 @@ const SOLVER_TOLERANCE: &str = "solver.tolerance";
 
 /// Largest tolerance of the solver in wire diameters; a scene with more is refused.
 const COARSEST: f64 = 0.1;
+/// Least tolerance of the solver, m; a scene with less is refused.
+const FINEST: f64 = 1e-9;
+/// How the core says where files are looked for, and how the FMU finds those that are set.
+const BESIDE_THE_SCENE: &str = "relative to the scene file";
+const BY_THE_FMU: &str = "by its name among the FMU's resources, or else as given";
 
 /// What a saved state holds of parameters: `scene.file`, the scene that it held, and what was set
 /// explicitly, by value reference, and the tolerance of the experiment.
@@ -146,11 +151,13 @@ impl Parameters {
         let tolerance = self.tolerance?;
         let (is, scene) = (in_use(&self.settings), in_use(&self.base));
         (is != scene && !self.explicit.contains_key(&row.reference)).then(|| {
+            let least = scene * (tolerance / DEFAULT_TOLERANCE) < FINEST;
             format!(
-                "the experiment's tolerance {} makes {SOLVER_TOLERANCE} {} m; the scene has {} m, which {} stands for; \
+                "the experiment's tolerance {} makes {SOLVER_TOLERANCE} {} m{}; the scene has {} m, which {} stands for; \
                  set {SOLVER_TOLERANCE} to overrule the experiment",
                 Value::Real(tolerance),
                 Value::Real(is),
+                if least { ", the least that it may be" } else { "" },
                 Value::Real(scene),
                 Value::Real(DEFAULT_TOLERANCE),
             )
@@ -251,24 +258,32 @@ impl Parameters {
         })
     }
 
-    /// Checks that the file of a mesh is there, among the resources or where it is given.
+    /// Checks that the files of a mesh and of a table are there, among the resources or where they are given.
     ///
     /// # Errors
     ///
-    /// [`Error::NoMesh`] with the places that were looked in.
-    pub(crate) fn find_mesh(&self, resources: Option<&Path>) -> Result<(), Error> {
-        let core = &self.settings.core;
-        if core.shape != "mesh" || core.file.is_empty() || Path::new(&core.file).is_file() {
+    /// [`Error::NoFile`] with the places that were looked in.
+    pub(crate) fn find_files(&self, resources: Option<&Path>) -> Result<(), Error> {
+        let (core, traverse) = (&self.settings.core, &self.settings.traverse);
+        let files = [
+            (MESH_FILE, &core.file, core.shape == "mesh"),
+            (TRAVERSE_FILE, &traverse.file, traverse.mode == "table"),
+        ];
+        let missing = files
+            .into_iter()
+            .find(|(_, file, read)| *read && !file.is_empty() && !Path::new(file).is_file());
+        let Some((name, file, _)) = missing else {
             return Ok(());
-        }
+        };
         let shown = |path: &Path| path.display().to_string();
         let mut places = Vec::new();
-        if !Path::new(&core.file).is_absolute() {
+        if !Path::new(file).is_absolute() {
             places.extend(resources.map(shown));
             places.extend(std::env::current_dir().ok().as_deref().map(shown));
         }
-        Err(Error::NoMesh {
-            file: core.file.clone(),
+        Err(Error::NoFile {
+            name,
+            file: file.clone(),
             places: places.join(" and in "),
         })
     }
@@ -279,7 +294,38 @@ impl Parameters {
     ///
     /// [`Error::Scene`] if the parameters do not make a valid scene.
     pub(crate) fn scene(&self) -> Result<(Scene, Vec<Warning>), Error> {
-        Ok(self.settings.build_with_warnings()?)
+        let built = self.settings.build_with_warnings();
+        Ok(built.map_err(|error| self.by_the_fmu(error))?)
+    }
+
+    /// Returns the error with the FMU's way to a file where the file is not the scene's.
+    fn by_the_fmu(&self, error: SceneError) -> SceneError {
+        match error {
+            SceneError::Several { errors } => SceneError::Several {
+                errors: errors.into_iter().map(|e| self.by_the_fmu(e)).collect(),
+            },
+            SceneError::Impossible {
+                origin,
+                key,
+                value,
+                reason,
+                allowed,
+            } => {
+                let of_file = [MESH_FILE, TRAVERSE_FILE].contains(&&*key);
+                let allowed = match of_file && !matches!(origin, Origin::File { .. }) {
+                    true => allowed.replace(BESIDE_THE_SCENE, BY_THE_FMU).into(),
+                    false => allowed,
+                };
+                SceneError::Impossible {
+                    origin,
+                    key,
+                    value,
+                    reason,
+                    allowed,
+                }
+            }
+            other => other,
+        }
     }
 
     /// Returns the inputs of that scene at the start.
@@ -316,7 +362,7 @@ fn laid_over(
         let scaled = in_use(&settings) * (tolerance / DEFAULT_TOLERANCE);
         let most = COARSEST * settings.wire.diameter;
         if scaled != in_use(&settings) {
-            settings.solver.tolerance = row.nearest(scaled.min(most));
+            settings.solver.tolerance = row.nearest(scaled.max(FINEST).min(most));
         }
     }
     Ok(settings)

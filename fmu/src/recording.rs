@@ -4,7 +4,7 @@ use crate::error::RecordError;
 use coilwind::output::{Ending, History, Mark, Snapshot, write_results};
 use coilwind::settings::SceneSettings;
 use coilwind::simulation::Simulation;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// The open files of a run, and the time that the solver took so far.
@@ -15,6 +15,12 @@ pub(crate) struct Recording {
     history: Option<History>,
     snapshot: Snapshot,
     computed: Duration,
+}
+
+/// Tells whether `output.directory` holds the results of a run that has ended.
+pub(crate) fn holds_results(settings: &SceneSettings) -> bool {
+    let summary = Path::new(&settings.output.directory).join("summary.json");
+    summary.is_file()
 }
 
 impl Recording {

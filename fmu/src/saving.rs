@@ -148,10 +148,20 @@ fn other_bytes_are_refused_with_the_reason() {
         );
         assert!(short, "{size}: {error}");
     }
-    // What an importer's buffer holds beyond the state does not matter.
-    let mut long = good.clone();
-    long.extend([9; 10]);
-    assert!(read(&long).is_ok());
+}
+
+/// Bytes behind a state were passed over, and with them the sign that something else was written there.
+#[test]
+fn a_byte_behind_a_state_is_refused() {
+    let good = bytes(&started().snapshot());
+    for more in [&[0][..], &[7], &[9; 10]] {
+        let long = [&good, more].concat();
+        let error = read(&long).expect_err("more than a state");
+        assert!(matches!(error, Error::Bytes(BytesError::Longer { .. })));
+        let needed = format!("takes {} bytes", good.len());
+        assert!(error.to_string().contains(&needed), "{error}");
+    }
+    assert!(read(&good).is_ok());
 }
 
 #[test]

@@ -230,10 +230,11 @@ fn open<'a>(bytes: &'a [u8], guid: &'static str) -> Result<&'a [u8], BytesError>
     }
     let length = number(4 + GUID, 8);
     let contents = usize::try_from(length).ok().and_then(|n| rest.get(..n));
-    let contents = contents.ok_or(BytesError::Truncated {
-        size,
-        needed: length.saturating_add(HEADER as u64),
-    })?;
+    let needed = length.saturating_add(HEADER as u64);
+    let contents = contents.ok_or(BytesError::Truncated { size, needed })?;
+    if size as u64 > needed {
+        return Err(BytesError::Longer { size, needed });
+    }
     if u64::from(crc32fast::hash(contents)) != number(4 + GUID + 8, 4) {
         return Err(BytesError::Damaged);
     }

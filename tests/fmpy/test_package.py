@@ -28,6 +28,14 @@ def test_documentation_licences_and_icon_are_there(archive, description):
         assert archive.read(picture).startswith(b"\x89PNG"), picture
 
 
+def test_the_introduction_counts_no_inputs(archive, description):
+    """It told of three inputs where there are seven."""
+    page = archive.read("documentation/index.html").decode()
+    inputs = [variable for variable in description.modelVariables if variable.causality == "input"]
+    assert len(inputs) > 3
+    assert "Connect the inputs" in page and "three inputs" not in page
+
+
 def test_every_crate_that_is_linked_in_has_its_licence(archive):
     text = archive.read("documentation/licenses/third-party.txt").decode()
     table = text.split("Crates\n------\n\n")[1].split("\n\n")[0].splitlines()

@@ -2,7 +2,7 @@
 
 use super::Instance;
 use crate::message::Message;
-use crate::recording::Recording;
+use crate::recording::{self, Recording};
 use coilwind::output::Ending;
 
 impl Instance {
@@ -13,8 +13,15 @@ impl Instance {
         if settings.output.directory.is_empty() {
             return;
         }
+        let before = recording::holds_results(settings);
         match Recording::start(settings, &run.simulation) {
-            Ok(recording) => run.recording = Some(recording),
+            Ok(recording) => {
+                run.recording = Some(recording);
+                if before {
+                    let directory = &settings.output.directory;
+                    self.messages.push(Message::overwritten(directory));
+                }
+            }
             Err(reason) => self.messages.push(Message::not_written(reason)),
         }
         self.record_row();
