@@ -14,6 +14,8 @@ turns) and one or more of
 Every parameter starts from the value behind its name, or from the scene's, and stays within a factor of ten of it. Least
 squares in the logarithms of the parameters, with derivatives by central differences; each run is `coilwind run` and all
 cores work. DIR gets calibration.json, residuals.csv and residuals.png.
+
+Exit codes: 0 fitted, 1 a parameter ended at an end of its range, so that nothing is fitted, 2 a mistake that can be mended.
 """
 
 import argparse
@@ -46,6 +48,8 @@ LOOKS = (0.01, 0.03, 0.06)
 ROUNDS = 4
 # A parameter may go as far from its start, as a factor.
 REACH = 10.0
+# Of the way there, in the logarithm: from here on it is at the end of its range.
+NEAR = 0.99
 # Share of measured heights that has to lie on settled wire.
 SETTLED = 0.8
 # Measured and computed levels that differ by more than this factor are of other units.
@@ -276,12 +280,17 @@ def autocorrelation(residual):
     return float(np.sum(residual[1:] * residual[:-1]) / power) if power > 0.0 else 0.0
 
 
+def ends_of(names, found):
+    """The parameters that ended at an end of their range, and which end: there is no minimum within the range."""
+    reach = np.log(REACH)
+    at = {name: x for name, x, active in zip(names, found.x, found.active_mask) if active or abs(x) > NEAR * reach}
+    return {name: "lower" if x < 0.0 else "upper" for name, x in at.items()}
+
+
 def warnings_of(names, found, deviation, correlation, curves, computed):
     for k, name in enumerate(names):
         if not deviation[k] < 0.5:
             yield f"{name} hardly shows in what was measured: measure something else, or leave it out"
-        elif abs(found.x[k]) > 0.999 * np.log(REACH):
-            yield f"{name} went as far from its start as it may: give another start"
         for other in range(k):
             if abs(correlation[k, other]) > CORRELATED:
                 yield f"{names[other]} and {name} cannot be told apart (correlation {correlation[k, other]:.2f}): fit one of them"
@@ -377,13 +386,14 @@ def run(args):
     with np.errstate(over="ignore"):
         low, high = best * np.exp(-width), best * np.exp(width)
     told = list(warnings_of(model.names, found, deviation, correlation, curves, computed))
+    ends = ends_of(model.names, found)
 
     args.out.mkdir(parents=True, exist_ok=True)
     finite = lambda value: float(value) if np.isfinite(value) else None
     result = {
-        "scene": args.scene, "runs": model.runs, "confidence": args.confidence, "warnings": told,
+        "scene": args.scene, "runs": model.runs, "confidence": args.confidence, "fitted": not ends, "warnings": told,
         "parameters": {
-            name: {"start": start, "value": float(value), "low": finite(a), "high": finite(b)}
+            name: {"start": start, "value": float(value), "low": finite(a), "high": finite(b), "at_end": ends.get(name)}
             for name, start, value, a, b in zip(model.names, starts, best, low, high)
         },
         "correlation": [[finite(cell) for cell in row] for row in correlation],
@@ -402,13 +412,23 @@ def run(args):
 
     print(f"{'parameter':32} {'start':>11} {'fitted':>11}   {100 * args.confidence:g} % interval")
     for name, start, value, a, b in zip(model.names, starts, best, low, high):
-        print(f"{name:32} {start:11.5g} {value:11.5g}   {a:.5g} to {b:.5g}")
+        interval = f"at the {ends[name]} end of its range" if name in ends else f"{a:.5g} to {b:.5g}"
+        print(f"{name:32} {start:11.5g} {value:11.5g}   {interval}")
     for curve, values in zip(curves, computed):
         print(f"{curve.column}: rms {rms(curve.values - values) / curve.unit:.3g} over {values.size} points")
     for sentence in told:
         print(f"warning: {sentence}")
     settings = " ".join(f"--set {name}={value:.6g}" for name, value in zip(model.names, best))
-    print(f"{model.runs} runs; residuals: {args.out / 'residuals.png'}\nwind with: {settings}")
+    print(f"{model.runs} runs; residuals: {args.out / 'residuals.png'}")
+    if ends:
+        which = ", ".join(f"{name} ended at the {end} end of its range" for name, end in ends.items())
+        print(
+            f"calibrate.py: no fit: {which}, a factor of {REACH:g} from its start; do the columns have the units of their names "
+            "(angle_deg, angle_rad, turns)? If so, give another start with --fit NAME=START",
+            file=sys.stderr,
+        )
+        sys.exit(1)
+    print(f"wind with: {settings}")
 
 
 if __name__ == "__main__":

@@ -73,7 +73,7 @@ def test_parameters_of_a_noisy_measurement_are_recovered(calibrate, measured, tm
         assert got["high"] / got["low"] < 1.2, f"{name}\n{said}"
     for column, sigma in NOISE.items():
         assert result["curves"][column]["rms"] == pytest.approx(sigma, rel=0.15)
-    assert result["warnings"] == []
+    assert result["warnings"] == [] and result["fitted"]
     assert (tmp_path / "residuals.png").stat().st_size > 10_000
     assert (tmp_path / "residuals.csv").read_text(encoding="utf-8").startswith("column,angle_rad,measured,fitted\n")
 
@@ -88,6 +88,20 @@ def test_what_does_not_show_is_told(calibrate, measured, tmp_path):
     assert code == 0, said
     assert "friction.slip_speed hardly shows in what was measured" in said
     assert "what is left of tension_N is no noise" in said
+
+
+def test_a_fit_that_ends_at_an_end_of_its_range_is_none(calibrate, measured, tmp_path):
+    """The least mass that was allowed was told as a result, where a better one lies beyond."""
+    known = [word for name, value in TRUTH.items() if name != "tensioner.mass" for word in ("--set", f"{name}={value}")]
+    lines = [line.split(",")[:2] for line in measured.read_text(encoding="utf-8").splitlines()]
+    tension = tmp_path / "tension.csv"
+    tension.write_text("".join(f"{turns},{pull}\n" for turns, pull in lines), encoding="utf-8")
+    code, said = calibrate(tension, *known, "--fit", "tensioner.mass=0.02", "--out", tmp_path)
+    assert code == 1, said
+    result = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
+    assert not result["fitted"] and result["parameters"]["tensioner.mass"]["at_end"] == "lower"
+    assert "no fit: tensioner.mass ended at the lower end of its range" in said, said
+    assert "wind with" not in said
 
 
 @pytest.mark.parametrize(
