@@ -61,6 +61,19 @@ def test_a_run_cut_short_says_so(make_slave, tmp_path):
         assert (status(directory), len(times(directory))) == ("interrupted", 3)
 
 
+def test_results_of_a_run_before_are_not_overwritten_without_a_word(make_slave, tmp_path):
+    directory = str(tmp_path / "results")
+    first, second = make_slave("first"), make_slave("second")
+    for slave in (first, second):
+        slave.start(output__directory=directory)
+        steps(slave, 1)
+        slave.fmu.terminate()
+    assert first.log == []
+    [(_, level, category, text)] = second.log
+    assert (level, category) == (WARNING, "logStatusWarning")
+    assert "output.directory" in text and directory in text
+
+
 def test_a_directory_that_cannot_be_made_is_a_warning(slave, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("in the way")

@@ -88,14 +88,14 @@ def test_inputs_out_of_range_are_held_and_the_run_goes_on(slave):
 def test_the_tolerance_of_the_experiment(make_slave, description):
     assert float(description.defaultExperiment.tolerance) == 1e-4
     solved = []
-    for tolerance in (None, 1e-4, 5e-4):
+    for tolerance in (None, 1e-4, 5e-4, 1e-9):
         slave = make_slave()
         slave.fmu.setupExperiment(tolerance=tolerance)
         slave.fmu.enterInitializationMode()
         slave.fmu.exitInitializationMode()
         told = [entry for entry in slave.log if "tolerance" in entry[3]]
         solved.append((slave.get("solver.tolerance"), len(told)))
-    assert solved == [(0.0, 0), (0.0, 0), (pytest.approx(1e-5), 1)]
+    assert solved == [(0.0, 0), (0.0, 0), (pytest.approx(1e-5), 1), (1e-9, 1)]
     slave = make_slave()
     assert "above 0" in refused(slave, slave.fmu.setupExperiment, tolerance=-1.0)
 
