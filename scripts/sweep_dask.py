@@ -36,6 +36,8 @@ UNITS = {
     "m": 1.0, "mm": 1e-3, "um": 1e-6, "kg": 1.0, "g": 1e-3, "Pa": 1.0, "MPa": 1e6, "GPa": 1e9,
     "rad": 1.0, "deg": math.pi / 180.0, "rad_per_s": 1.0, "rpm": math.pi / 30.0,
 }
+# Files of a sweep, this script's first; the others are those of `coilwind sweep`.
+FILES = ["sweep.csv", "times.csv", "sweep.json", "ensemble.csv", "map.svg", "map.html"]
 COUNTS = ["bulge", "gap", "overlap", "break", "slack"]
 RESULTS = [
     "outcome", "reason", "defect", *(f"defects_{kind}" for kind in COUNTS),
@@ -249,8 +251,16 @@ def wind_all(client, fmu, tasks, ended=lambda count: None):
     return [reports[task["run"]] for task in tasks]
 
 
+def refuse_occupied(folder, force):
+    """A mistake where the folder holds a sweep, unless `force` says otherwise."""
+    if not force and any((folder / name).exists() for name in FILES):
+        raise Mistake(f"{folder} holds another sweep; add --force to overwrite it, or --out for another folder")
+
+
 def write(folder, names, tasks, reports):
     folder.mkdir(parents=True, exist_ok=True)
+    for name in FILES:
+        (folder / name).unlink(missing_ok=True)
     with open(folder / "sweep.csv", "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*names, "member", *RESULTS])
@@ -292,6 +302,7 @@ def main():
     parser.add_argument("--ensemble", type=int, default=1, metavar="K", help="runs a point, with the nozzle moved as in coilwind sweep")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     parser.add_argument("--out", type=Path, default=Path("sweep"), metavar="DIR")
+    parser.add_argument("--force", action="store_true", help="overwrite the sweep that DIR holds")
     parser.add_argument("--step", type=float, default=5e-4, metavar="H", help="communication step, s (default: 5e-4)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a cluster, such as tcp://host:8786 (default: workers on this machine)")
     parser.add_argument("--workers", type=int, default=os.cpu_count(), metavar="N", help="without --scheduler (default: all cores)")
@@ -315,6 +326,7 @@ def run(args):
     for path, build in ((Path(args.command), "cargo build --release"), (args.fmu, "scripts/build_fmu.sh")):
         if not path.is_file():
             raise Mistake(f"{path} is missing; build it with {build}")
+    refuse_occupied(args.out, args.force)
     names, tasks = tasks_of(args)
     fmu = args.fmu.read_bytes()
     # Dask tells of dead workers at length; the runs are wound again all the same.

@@ -67,6 +67,21 @@ def test_the_script_leaves_the_table_of_a_plain_loop(alone, scene, fmu, command,
     assert [int(row["run"]) for row in rows] == list(range(RUNS))
 
 
+def test_another_sweep_is_not_overwritten_without_a_word(scene, fmu, command, script, tmp_path):
+    other = tmp_path / "sweep.csv"
+    other.write_text("of another sweep\n", encoding="utf-8")
+    (tmp_path / "sweep.json").write_text("{}\n", encoding="utf-8")
+    over = ["--over", "spindle.speed=100:100:1", "--set", "spindle.turns=0.3"]
+    words = [*over, "--command", command, "--fmu", fmu, "--workers", "1", "--out", tmp_path]
+    code, said = script("scripts/sweep_dask.py", scene, *words)
+    assert code == 2 and "holds another sweep; add --force" in said and len(said.splitlines()) == 1, said
+    assert other.read_text(encoding="utf-8") == "of another sweep\n"
+    code, said = script("scripts/sweep_dask.py", scene, *words, "--force")
+    assert code == 0, said
+    assert {path.name for path in tmp_path.iterdir()} == {"sweep.csv", "times.csv"}
+    assert len(list(csv.DictReader(other.open(encoding="utf-8")))) == 1
+
+
 def test_killed_workers_change_nothing(alone, sweep_dask, tasks, fmu, tmp_path):
     import dask
     from distributed import Client, LocalCluster
