@@ -31,7 +31,7 @@ SAME_PLACE = 0.5
 """Turns by which a defect may move in a refined run."""
 TOLERANCE_UM = 5.0
 SPACING_MM = 0.4
-"""Tolerance and spacing of every scene: the default spacing at this tolerance, rounded."""
+"""Tolerance and spacing of a scene with wire of 0.7 mm: the default spacing at this tolerance, rounded."""
 
 
 @dataclass
@@ -60,8 +60,9 @@ def wind(scene, command, folder, share):
     folder.mkdir(parents=True, exist_ok=True)
     scene.write(folder)
     arguments = [command, "run", "scene.toml", "--out", "run", "--force", "--quiet", "--no-geometry"]
-    arguments += ["--set", f"solver.tolerance_um={share * TOLERANCE_UM}"]
-    arguments += ["--set", f"solver.spacing_near_mm={share * SPACING_MM}"]
+    finer = share * scene.scale
+    arguments += ["--set", f"solver.tolerance_um={finer * TOLERANCE_UM}"]
+    arguments += ["--set", f"solver.spacing_near_mm={finer * SPACING_MM}"]
     if scene.tension is not None:
         motion = [command, "motion", "scene.toml", "--step", str(scene.step), "--out", "motion.csv"]
         subprocess.run(motion, cwd=folder, check=True, capture_output=True)

@@ -2,6 +2,7 @@
 
 import csv
 import math
+import random
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -52,6 +53,8 @@ class Scene:
     """share of the set tension by turns of the spindle"""
     mesh: callable = None
     """writes the core's STL file"""
+    scale: float = 1.0
+    """size over that of the other scenes: tolerance and spacing go with it"""
 
     @property
     def step(self):
@@ -200,6 +203,32 @@ def by_table(keys, turns, planned=None):
 def nominal(core, layers, speed):
     keys, mesh = base(core, layers, speed)
     return Scene(f"nominal-{slug(core)}-{layers}-{speed:g}", "as planned", core, layers, speed, keys, mesh=mesh)
+
+
+def drawn(number):
+    """An orthocyclic coil of another wire on another core, drawn by its number: nothing of it was tried before."""
+    draw = random.Random(number)
+    d = draw.choice((0.3, 0.45, 0.6, 0.8, 1.0))
+    turns, layers, speed = draw.randint(4, 7), draw.randint(2, 4), draw.choice((60.0, 150.0, 300.0, 400.0))
+    pitch = d * 1.02
+    inner, height = (turns - 0.5) * pitch + d, (layers + 0.5) * d
+    keys = {"wire.diameter_mm": d, "tensioner.tension": draw.uniform(28.0, 42.0) * d * d}
+    if draw.random() < 0.5:
+        core, half = "cylinder", draw.uniform(7.0, 12.0) * d
+        keys |= {"core.shape": "cylinder", "core.radius_mm": half}
+        turning = half + height
+    else:
+        core, half, long, corner = "box", draw.uniform(5.0, 9.0) * d, draw.uniform(9.0, 16.0) * d, draw.uniform(2.0, 3.5) * d
+        keys |= {"core.shape": "rounded-box", "core.width_x_mm": 2 * half, "core.height_z_mm": 2 * long, "core.corner_radius_mm": corner}
+        turning = math.hypot(half - corner, long - corner) + corner + height
+    start, distance = -(inner - d) / 2, turning + draw.uniform(3.0, 15.0) * d
+    trails = math.degrees(math.acos((half + d / 2) / distance))
+    keys |= {"core.flange.inner_distance_mm": inner, "core.flange.height_mm": height, "core.flange.thickness_mm": 1.0,
+             "core.flange.edge_radius_mm": 0.2, "nozzle.distance_mm": distance, "nozzle.y_start_mm": start,
+             "start.clamp_y_mm": start, "spindle.speed": speed, "traverse.mode": "orthocyclic",
+             "traverse.crossover_deg": 360 * CROSSOVER, "traverse.advance_deg": trails + AHEAD,
+             "winding.layers": layers, "winding.turns_per_layer": turns}
+    return Scene(f"drawn-{number}", f"drawn: {turns} turns a layer of {d:g} mm", core, layers, speed, keys, scale=d / D)
 
 
 def slug(core):
@@ -362,6 +391,7 @@ SCENES = [
     *[nominal("mesh cylinder", layers, 100.0) for layers in (1, 3)],
     nominal("mesh cylinder", 2, 300.0),
     *[nominal("mesh box", layers, 100.0) for layers in (1, 2)],
+    *[drawn(number) for number in range(1, 13)],
     gap("cylinder", 100.0, 3, 0.5),
     gap("cylinder", 300.0, 2, 0.4),
     gap("box", 100.0, 2, 0.5),

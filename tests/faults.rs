@@ -99,7 +99,14 @@ fn a_full_disk_is_named() {
         std::fs::create_dir(&out).unwrap();
         std::os::unix::fs::symlink("/dev/full", out.join(name)).unwrap();
         let output = run(&out, 0.3).output().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{name}: {}", said(&output));
+        // Without a history nothing is wound; later, what was computed is on disk.
+        let code = if name == "history.csv" { 2 } else { 3 };
+        assert_eq!(
+            output.status.code(),
+            Some(code),
+            "{name}: {}",
+            said(&output)
+        );
         assert!(said(&output).contains("No space left"), "{}", said(&output));
         assert!(said(&output).contains(name), "{}", said(&output));
     }
@@ -129,7 +136,13 @@ fn a_limit_on_the_size_of_files_is_named() {
     for limit in [1, 8, 70, 250, 600] {
         let line = format!("trap '' XFSZ; ulimit -f {limit}; {inner}");
         let output = Command::new("bash").args(["-c", &line]).output().unwrap();
-        assert_eq!(output.status.code(), Some(2), "{limit}: {}", said(&output));
+        let code = if limit == 1 { 2 } else { 3 };
+        assert_eq!(
+            output.status.code(),
+            Some(code),
+            "{limit}: {}",
+            said(&output)
+        );
         let told = said(&output);
         assert!(told.contains("File too large"), "{limit}: {told}");
         most = most.max(rows(&out));
