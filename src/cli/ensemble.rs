@@ -112,7 +112,7 @@ impl Ensemble {
         } else {
             let mut settings = self.plan.settings.clone();
             members::vary(&mut settings, member, self.members)?;
-            one.settings = Some(settings);
+            one.settings = Some(Box::new(settings));
             (one.inputs, one.step) = self.plan.motion.inputs.clone().unzip();
             one.stop_time = self.plan.motion.stop_time;
             one.frames = self.plan.frames;

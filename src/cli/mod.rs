@@ -53,7 +53,7 @@ struct Cli {
 enum Command {
     /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp,
     /// coil.png and report.html; or go on with a run that was stopped
-    Run(Box<run::RunArgs>),
+    Run(run::RunArgs),
     /// Wind every combination of values on all cores, and leave a table of verdicts; or find the
     /// highest value without a defect
     Sweep(sweep::SweepArgs),

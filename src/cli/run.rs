@@ -84,7 +84,7 @@ pub(super) struct RunArgs {
     pub(super) verbose: bool,
     /// The scene itself, in place of one to load
     #[arg(skip)]
-    pub(super) settings: Option<SceneSettings>,
+    pub(super) settings: Option<Box<SceneSettings>>,
 }
 
 impl RunArgs {
@@ -259,7 +259,7 @@ fn stuck(failure: Failure, directory: &Path) -> Failure {
 /// A new run.
 fn begin(args: &RunArgs) -> Result<Start, Failure> {
     let name = args.scene.as_deref().unwrap_or_default();
-    let (settings, scene, warnings) = match args.settings.clone() {
+    let (settings, scene, warnings) = match args.settings.as_deref().cloned() {
         Some(settings) => {
             let (scene, warnings) = settings.build_with_warnings()?;
             (settings, scene, warnings)
