@@ -1,6 +1,8 @@
 //! Which limit a station is judged by, and the runs of stations beyond it.
 
+use super::STATIONS_PER_TURN;
 use super::coil::{Coil, Record};
+use super::crossover::OVER;
 use super::defect::{DefectKind, FALLBACK_BULGE, MEASURED};
 use super::runs::{Run, SHORT_RUN, stations_for};
 use super::station::{Neighbour, Station};
@@ -10,6 +12,37 @@ use super::station::{Neighbour, Station};
 const STANDS: f64 = 0.5;
 
 impl Coil {
+    /// The last station up to the next one at which wire crosses, when the next one lies at `y`, m.
+    pub(crate) fn last_crossing(&self, y: f64) -> Option<usize> {
+        let crossover = self.spec.crossover?;
+        let index = self.records.len();
+        let before = index.checked_sub(OVER).map(|k| &self.records[k]);
+        if before.is_some_and(|before| (y - before.station.position.y).abs() > crossover.steep()) {
+            return Some(index);
+        }
+        self.records.last().and_then(|last| last.last_crossing)
+    }
+
+    /// Whether the next station lies in a crossover of its own turn or the one before, up to half a crossover before it, or up to
+    /// a whole one after it: wire that is drawn beyond its place comes back within as much.
+    ///
+    /// `last_crossing` is that of the next station. How soon its own turn crosses is not known yet; as a rule it does so where the
+    /// turn before has.
+    pub(crate) fn is_in_crossover(&self, last_crossing: Option<usize>) -> bool {
+        let Some(crossover) = self.spec.crossover else {
+            return false;
+        };
+        let index = self.records.len();
+        let half = crossover.half();
+        let near = |last: Option<usize>, at: usize| last.is_some_and(|last| last + 2 * half >= at);
+        let turn_before = || {
+            let ahead = (index + half).checked_sub(STATIONS_PER_TURN)?;
+            let record = &self.records[ahead.min(index.checked_sub(1)?)];
+            Some((record.last_crossing, index.checked_sub(STATIONS_PER_TURN)?))
+        };
+        near(last_crossing, index) || turn_before().is_some_and(|(last, from)| near(last, from))
+    }
+
     /// Whether the station at `index` is part of a double turn.
     pub(crate) fn is_double(&self, index: usize) -> bool {
         let kind = DefectKind::DoubleTurn;
