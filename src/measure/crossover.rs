@@ -8,6 +8,9 @@ use super::STATION_STEP;
 /// Share of the planned slope from which on wire crosses. Chosen: half. Wire in its place runs straight, and wire that is drawn
 /// through its crossover late does so more steeply than planned.
 const STEEP: f64 = 0.5;
+/// Longest crossover that is one to the measures, rad: a sixth of a turn, and usual ones take a twelfth to a sixth. In longer ones wire
+/// moves no more steeply than wire that creeps to its place, and most of a turn would count as crossing.
+const LONGEST: f64 = std::f64::consts::TAU / 6.0;
 /// Stations over which the slope of the wire is taken.
 pub(crate) const OVER: usize = 6;
 
@@ -23,11 +26,11 @@ pub struct Crossover {
 impl Crossover {
     /// Way along y from which on wire crosses, over [`OVER`] stations, m.
     pub(crate) fn steep(&self) -> f64 {
-        STEEP * self.step / self.angle * OVER as f64 * STATION_STEP
+        STEEP * self.step / self.angle.min(LONGEST) * OVER as f64 * STATION_STEP
     }
 
-    /// Stations that half of it takes.
-    pub(crate) fn half(&self) -> usize {
-        (0.5 * self.angle / STATION_STEP).ceil() as usize
+    /// Stations up to which wire is beside its crossover, before it; after it, twice as many.
+    pub(crate) fn beside(&self) -> usize {
+        (0.5 * self.angle.min(LONGEST) / STATION_STEP).ceil() as usize
     }
 }

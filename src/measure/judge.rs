@@ -23,8 +23,8 @@ impl Coil {
         self.records.last().and_then(|last| last.last_crossing)
     }
 
-    /// Whether the next station lies in a crossover of its own turn or the one before, up to half a crossover before it, or up to
-    /// a whole one after it: wire that is drawn beyond its place comes back within as much.
+    /// Whether the next station lies in a crossover of its own turn or the one before, or beside it: wire that is drawn beyond its
+    /// place comes back within as much again.
     ///
     /// `last_crossing` is that of the next station. How soon its own turn crosses is not known yet; as a rule it does so where the
     /// turn before has.
@@ -33,7 +33,7 @@ impl Coil {
             return false;
         };
         let index = self.records.len();
-        let half = crossover.half();
+        let half = crossover.beside();
         let near = |last: Option<usize>, at: usize| last.is_some_and(|last| last + 2 * half >= at);
         let turn_before = || {
             let ahead = (index + half).checked_sub(STATIONS_PER_TURN)?;
