@@ -295,37 +295,29 @@ impl Parameters {
     /// [`Error::Scene`] if the parameters do not make a valid scene.
     pub(crate) fn scene(&self) -> Result<(Scene, Vec<Warning>), Error> {
         let built = self.settings.build_with_warnings();
-        Ok(built.map_err(|error| self.by_the_fmu(error))?)
+        Ok(built.map_err(Self::by_the_fmu)?)
     }
 
     /// Returns the error with the FMU's way to a file where the file is not the scene's.
-    fn by_the_fmu(&self, error: SceneError) -> SceneError {
-        match error {
-            SceneError::Several { errors } => SceneError::Several {
-                errors: errors.into_iter().map(|e| self.by_the_fmu(e)).collect(),
-            },
+    fn by_the_fmu(mut error: SceneError) -> SceneError {
+        match &mut error {
+            SceneError::Several { errors } => {
+                let told = std::mem::take(errors).into_iter();
+                *errors = told.map(Self::by_the_fmu).collect();
+            }
             SceneError::Impossible {
                 origin,
                 key,
-                value,
-                reason,
                 allowed,
-            } => {
-                let of_file = [MESH_FILE, TRAVERSE_FILE].contains(&&*key);
-                let allowed = match of_file && !matches!(origin, Origin::File { .. }) {
-                    true => allowed.replace(BESIDE_THE_SCENE, BY_THE_FMU).into(),
-                    false => allowed,
-                };
-                SceneError::Impossible {
-                    origin,
-                    key,
-                    value,
-                    reason,
-                    allowed,
-                }
+                ..
+            } if [MESH_FILE, TRAVERSE_FILE].contains(&&**key)
+                && !matches!(origin, Origin::File { .. }) =>
+            {
+                *allowed = allowed.replace(BESIDE_THE_SCENE, BY_THE_FMU).into();
             }
-            other => other,
+            _ => {}
         }
+        error
     }
 
     /// Returns the inputs of that scene at the start.
