@@ -29,16 +29,21 @@ fn short_bobbin(trail: &str) -> SceneSettings {
     settings
 }
 
+fn wound(trail: &str) -> Simulation {
+    let mut sim = Simulation::new(&short_bobbin(trail).build().expect("valid")).expect("starts");
+    let end = sim.motion_profile().end();
+    sim.advance_profile(end).expect("the run goes on");
+    sim
+}
+
 /// Turns that lie beside their groove between crossovers, from 1, how far (diameters) and where (degrees) most, and defects in all.
 fn out_of_place(trail: &str) -> (Vec<(usize, f64, usize)>, usize) {
-    let scene = short_bobbin(trail).build().expect("valid");
+    let sim = wound(trail);
+    let scene = sim.scene();
     let d = scene.wire.diameter;
     let (first, window) = (scene.nozzle.y_start, 6.008e-3);
     let pitch = (window - d) / (TURNS as f64 - 0.5);
     let rise = (d * d - 0.25 * pitch * pitch).sqrt();
-    let mut sim = Simulation::new(&scene).expect("starts");
-    let end = sim.motion_profile().end();
-    sim.advance_profile(end).expect("the run goes on");
     let stations: Vec<_> = sim.coil().stations().collect();
     let mut out = Vec::new();
     for turn in 0..3 * TURNS {
@@ -76,13 +81,10 @@ fn a_led_wire_lies_in_its_grooves() {
 #[test]
 fn a_wire_that_trails_leaves_room_where_it_crosses() {
     let widest = |trail: &str| -> f64 {
-        let scene = short_bobbin(trail).build().expect("valid");
-        let mut sim = Simulation::new(&scene).expect("starts");
-        let end = sim.motion_profile().end();
-        sim.advance_profile(end).expect("the run goes on");
+        let sim = wound(trail);
         let measured = sim.coil().stations().filter(|s| s.measured);
         let gaps = measured.filter_map(|s| s.neighbour).map(|n| n.gap);
-        gaps.fold(0.0, f64::max) / scene.wire.diameter
+        gaps.fold(0.0, f64::max) / sim.scene().wire.diameter
     };
     let (free, led) = (widest("free"), widest("led"));
     assert!(free > 0.4 && free > 1.5 * led, "{free} and {led}");

@@ -225,15 +225,22 @@ fn what_goes_on_is_told_where_a_run_is_stopped() {
     assert!(said(&output).contains(&line), "{}", said(&output));
 }
 
+/// A run of a fiftieth of a turn.
+fn of_a_moment(out: &Path) -> Command {
+    let mut command = coilwind();
+    command.args(["run", "fig8", "--set", "spindle.turns=0.02"]);
+    command.args(["--set", "spindle.ramp_turns=0.02", "--out"]);
+    command.arg(out);
+    command
+}
+
 #[test]
 fn a_folder_with_another_run_is_not_overwritten() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let quick = |more: &[&str]| {
-        let mut command = coilwind();
-        command.args(["run", "fig8", "--quiet", "--set", "spindle.turns=0.02"]);
-        command.args(["--set", "spindle.ramp_turns=0.02"]);
-        command.arg("--out").arg(&out).args(more);
+        let mut command = of_a_moment(&out);
+        command.arg("--quiet").args(more);
         command
     };
     assert!(quick(&["--frames", "2"]).status().unwrap().success());
@@ -443,10 +450,8 @@ fn a_damaged_run_that_has_ended_is_to_begin_again() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
     let run = |more: &[&str]| {
-        let mut command = coilwind();
-        command.args(["run", "fig8", "--no-report", "--set", "spindle.turns=0.02"]);
-        command.args(["--set", "spindle.ramp_turns=0.02", "--out"]);
-        command.arg(&out).args(more).output().unwrap()
+        let mut command = of_a_moment(&out);
+        command.arg("--no-report").args(more).output().unwrap()
     };
     // One frame at each row of the history at most: more were left out without a word.
     let output = run(&["--frames", "1000000"]);

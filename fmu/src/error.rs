@@ -317,8 +317,10 @@ pub(crate) enum BytesError {
         /// Number of bytes that the header announces, itself included.
         needed: u64,
     },
-    /// There is more than the state.
-    #[error("the state takes {needed} bytes, {size} are there; pass no more than the state")]
+    /// There is something else behind the state.
+    #[error(
+        "the state takes {needed} of {size} bytes, and the others are not zero; pass the state as it was written"
+    )]
     Longer {
         /// Number of bytes that are there.
         size: usize,

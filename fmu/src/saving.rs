@@ -154,14 +154,16 @@ fn other_bytes_are_refused_with_the_reason() {
 #[test]
 fn a_byte_behind_a_state_is_refused() {
     let good = bytes(&started().snapshot());
-    for more in [&[0][..], &[7], &[9; 10]] {
+    for more in [&[7][..], &[0, 0, 1], &[9; 10]] {
         let long = [&good, more].concat();
         let error = read(&long).expect_err("more than a state");
         assert!(matches!(error, Error::Bytes(BytesError::Longer { .. })));
-        let needed = format!("takes {} bytes", good.len());
+        let needed = format!("takes {} of {} bytes", good.len(), long.len());
         assert!(error.to_string().contains(&needed), "{error}");
     }
     assert!(read(&good).is_ok());
+    // a master whose buffers are larger than a state reads back what it had written into one
+    assert!(read(&[&good[..], &[0; 100]].concat()).is_ok());
 }
 
 #[test]

@@ -232,7 +232,8 @@ fn open<'a>(bytes: &'a [u8], guid: &'static str) -> Result<&'a [u8], BytesError>
     let contents = usize::try_from(length).ok().and_then(|n| rest.get(..n));
     let needed = length.saturating_add(HEADER as u64);
     let contents = contents.ok_or(BytesError::Truncated { size, needed })?;
-    if size as u64 > needed {
+    // (a buffer may be larger than the state, and is zero behind it)
+    if rest[contents.len()..].iter().any(|byte| *byte != 0) {
         return Err(BytesError::Longer { size, needed });
     }
     if u64::from(crc32fast::hash(contents)) != number(4 + GUID + 8, 4) {

@@ -23,10 +23,10 @@ pub struct NozzleLaw {
     turns: f64,
     /// angles between which wire is meant to climb to the next layer, rad, one pair a layer
     jumps: Arc<[[f64; 2]]>,
-    /// step (m) and angle (rad) of the crossover of each turn
-    crossover: Option<[f64; 2]>,
     /// way from turn to turn of a layer, m, where layers are planned
     pitch: Option<f64>,
+    /// angle in which each turn steps to its next place, rad, where it does so in steps
+    crossover: Option<f64>,
 }
 
 impl NozzleLaw {
@@ -41,8 +41,8 @@ impl NozzleLaw {
             pieces: Arc::new([piece]),
             turns,
             jumps: Arc::new([]),
-            crossover: None,
             pitch: None,
+            crossover: None,
         }
     }
 
@@ -68,8 +68,8 @@ impl NozzleLaw {
             pieces: pieces.into(),
             turns: last[0],
             jumps: Arc::new([]),
-            crossover: None,
             pitch: None,
+            crossover: None,
         }
     }
 
@@ -92,8 +92,8 @@ impl NozzleLaw {
             pieces: std::iter::once(start).chain(later).collect(),
             turns: self.turns,
             jumps: self.jumps,
-            crossover: self.crossover,
             pitch: self.pitch,
+            crossover: self.crossover,
         }
     }
 
@@ -117,7 +117,7 @@ impl NozzleLaw {
     /// The same law, in which each turn steps by a pitch (m) to its next place within so much of the core's angle (rad).
     pub(super) fn with_crossovers(self, pitch: f64, angle: f64) -> Self {
         Self {
-            crossover: Some([pitch, angle]),
+            crossover: Some(angle),
             ..self.with_pitch(pitch)
         }
     }
@@ -129,7 +129,8 @@ impl NozzleLaw {
 
     /// Step (m) and angle (rad) of the crossover of each turn; none where turns do not cross in steps.
     pub fn crossover(&self) -> Option<[f64; 2]> {
-        self.crossover
+        let (step, angle) = self.pitch.zip(self.crossover)?;
+        Some([step, angle])
     }
 
     /// Angles between which wire is meant to climb to the next layer, rad; none where layers are not planned.

@@ -91,7 +91,7 @@ pub unsafe extern "C" fn fmi2SerializedFMUstateSize(
 
 /// `fmi2SerializeFMUstate`: writes the bytes of a state, then zeros to the end of the buffer.
 ///
-/// A buffer of less than the size of the state is an error. `fmi2DeSerializeFMUstate` takes the state without the zeros.
+/// A buffer of less than the size of the state is an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SerializeFMUstate(
     c: fmi2Component,
