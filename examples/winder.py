@@ -20,6 +20,7 @@ class Winder:
             fmpy.extract(fmu, self.unpacked[fmu].name)
         description = fmpy.read_model_description(fmu)
         self.reference = {variable.name: variable.valueReference for variable in description.modelVariables}
+        self.type = {variable.name: variable.type for variable in description.modelVariables}
         self.step, self.time = step, 0.0
         self.fmu = FMU2Slave(
             guid=description.guid, unzipDirectory=self.unpacked[fmu].name,
@@ -38,7 +39,8 @@ class Winder:
         self.fmu.setReal([self.reference[name] for name in INPUTS], [float(value) for value in inputs])
 
     def get(self, *names):
-        return self.fmu.getReal([self.reference[name] for name in names])
+        read = {"Real": self.fmu.getReal, "Integer": self.fmu.getInteger}
+        return [read[self.type[name]]([self.reference[name]])[0] for name in names]
 
     def advance(self, inputs):
         """A step with these inputs."""

@@ -76,7 +76,7 @@ impl Plan {
     ) -> Result<Self, Failure> {
         let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let mut settings = settings.clone();
-        for file in [&mut settings.core.file, &mut settings.traverse.file] {
+        for file in settings.files_mut() {
             if !file.is_empty() {
                 *file = absolute(Path::new(file)).display().to_string();
             }

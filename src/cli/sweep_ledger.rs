@@ -164,8 +164,8 @@ fn header(grid: &Grid) -> Vec<&str> {
 /// What makes a sweep the same sweep.
 fn plan(grid: &Grid, find_max: bool) -> Value {
     let over: Vec<String> = grid.ranges.iter().map(ToString::to_string).collect();
-    let core = fs::read(&grid.base().core.file).map_or(0, |bytes| crc32fast::hash(&bytes));
-    let table = fs::read(&grid.base().traverse.file).map_or(0, |bytes| crc32fast::hash(&bytes));
+    let checksum = |file: &String| fs::read(file).map_or(0, |bytes| crc32fast::hash(&bytes));
+    let [core, table, speed] = grid.base().files().map(checksum);
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "over": over,
@@ -173,6 +173,7 @@ fn plan(grid: &Grid, find_max: bool) -> Value {
         "find_max": find_max,
         "core_checksum": core,
         "table_checksum": table,
+        "speed_checksum": speed,
         "scene": grid.base().to_toml(),
     })
 }

@@ -498,6 +498,10 @@ impl Coil {
                 .map(|profile| bulge - at_rest(profile)),
             neighbour,
             overlap_depth: 0.0,
+            flange_gap: end.settled.flange.map(|way| {
+                let face = end.settled.position.y + way;
+                (face - position.y).abs() - 0.5 * self.spec.diameter
+            }),
             layer,
             pass: number,
             crosses: self.is_in_crossover(last_crossing),

@@ -138,6 +138,8 @@ pub struct TurnMeasures {
     pub gap_over: f64,
     /// longest run above the limit, as a fraction of a whole turn
     pub gap_run: f64,
+    /// median room along y to the flange beside it; `None` but for the first and the last turn of a layer
+    pub flange_gap: Option<f64>,
     /// mean axial distance to the neighbour, positive in the direction of the traverse
     pub axial_mean: Option<f64>,
     /// largest height over the faces on +x, +z, -x, -z; 0 where nothing is measured
@@ -167,6 +169,13 @@ impl Coil {
             *count += 1;
             turn.turn_in_layer = *count;
         }
+        let layers: Vec<u32> = turns.iter().map(|turn| turn.layer).collect();
+        let is_last = |k: usize| layers.get(k + 1) != Some(&layers[k]);
+        for (k, turn) in turns.iter_mut().enumerate() {
+            if turn.turn_in_layer > 1 && !is_last(k) {
+                turn.flange_gap = None;
+            }
+        }
         // The station at the end of a turn says how loose it is.
         let mut loose = vec![0; self.records.len()];
         self.mark(DefectKind::LooseTurn, &mut loose);
@@ -193,6 +202,7 @@ impl Coil {
             ..TurnMeasures::default()
         };
         let mut gaps = GapSums::default();
+        let mut rooms = Vec::new();
         let mut runs = [Run::default(); MEASURED];
         let mut has = [false; MEASURED];
         for record in records {
@@ -215,6 +225,7 @@ impl Coil {
             if let Some(neighbour) = station.neighbour.filter(|_| !station.crosses) {
                 gaps.add(neighbour.gap, neighbour.axial, ALIGNED_GAP * d);
             }
+            rooms.extend(station.flange_gap);
             let face = &mut result.bulge_faces[self.face(station.angle)];
             *face = face.max(station.bulge);
             result.bulge_max = result.bulge_max.max(station.bulge);
@@ -226,6 +237,8 @@ impl Coil {
             result.layer_max = result.layer_max.max(station.layer);
         }
         gaps.write(&mut result);
+        rooms.sort_by(f64::total_cmp);
+        result.flange_gap = rooms.get(rooms.len() / 2).copied();
         result.verdict = gaps.verdict(&result, has, d);
         result
     }

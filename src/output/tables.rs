@@ -19,6 +19,7 @@ struct TurnRow {
     gap_max: Option<f64>,
     gap_over: f64,
     gap_run: f64,
+    flange_gap: Option<f64>,
     axial_mean: Option<f64>,
     bulge_max: f64,
     bulge_excess_max: Option<f64>,
@@ -82,6 +83,7 @@ struct StationRow {
     bulge_excess: Option<f64>,
     gap: Option<f64>,
     axial: Option<f64>,
+    flange_gap: Option<f64>,
     overlap: f64,
     layer: u32,
     pass: u32,
@@ -119,6 +121,7 @@ impl From<&TurnMeasures> for TurnRow {
             gap_max: turn.gap_max,
             gap_over: turn.gap_over,
             gap_run: turn.gap_run,
+            flange_gap: turn.flange_gap,
             axial_mean: turn.axial_mean,
             bulge_max: turn.bulge_max,
             bulge_excess_max: turn.bulge_excess_max,
@@ -151,6 +154,7 @@ impl From<(usize, &Station)> for StationRow {
             bulge_excess: station.bulge_excess,
             gap: station.neighbour.map(|n| n.gap),
             axial: station.neighbour.map(|n| n.axial),
+            flange_gap: station.flange_gap,
             overlap: station.overlap_depth,
             layer: station.layer,
             pass: station.pass,
@@ -162,11 +166,11 @@ impl From<(usize, &Station)> for StationRow {
 
 /// Headers, for a table without rows; with rows they come from the fields (a test compares).
 const TURN_HEADER: &str = "turn,layer,turn_in_layer,verdict,settled,stations,gap_mean,gap_rms,gap_max,gap_over,\
-    gap_run,axial_mean,bulge_max,bulge_excess_max,bulge_face_px,bulge_face_pz,bulge_face_nx,\
+    gap_run,flange_gap,axial_mean,bulge_max,bulge_excess_max,bulge_face_px,bulge_face_pz,bulge_face_nx,\
     bulge_face_nz,overlap_max,layer_max";
 const DEFECT_HEADER: &str = "kind,turn,layer,angle_deg,time_s,size_m,size_d";
 const STATION_HEADER: &str = "turn,station,angle,polar,x,y,z,radius,arc,time,height,bulge,\
-    bulge_excess,gap,axial,overlap,layer,pass,measured,crosses";
+    bulge_excess,gap,axial,flange_gap,overlap,layer,pass,measured,crosses";
 
 fn write_rows(
     path: &Path,
@@ -229,6 +233,7 @@ mod tests {
             bulge_excess: None,
             neighbour: None,
             overlap_depth: 0.0,
+            flange_gap: None,
             layer: 1,
             pass: 1,
             measured: true,

@@ -89,7 +89,13 @@ impl SceneSettings {
         if let Some(wire) = &wire {
             self.check_nozzle_body(wire, integrator, &mut problems);
         }
-        let Some(((mut wire, (core, extent)), nozzle_law)) = wire.zip(core).zip(law) else {
+        let speed_law = law
+            .as_ref()
+            .and_then(|law| self.speed_law(law, &mut problems));
+        let laws_of_motion = law.zip(speed_law);
+        let Some(((mut wire, (core, extent)), (nozzle_law, speed_law))) =
+            wire.zip(core).zip(laws_of_motion)
+        else {
             return problems.finish_with(None);
         };
         let mut decisions = Decisions::default();
@@ -127,8 +133,9 @@ impl SceneSettings {
                     0.0 => nozzle_law.turns(),
                     turns => turns,
                 },
-                ..self.spindle
+                ..self.spindle.clone()
             },
+            speed_law,
             traverse: self.traverse.clone(),
             winding: self.winding.clone(),
             nozzle_law,

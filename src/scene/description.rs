@@ -1,6 +1,7 @@
 //! The checked scene of a run, in SI units; nothing changes it while the run goes on.
 
 use super::nozzle_law::NozzleLaw;
+use super::speed_law::SpeedLaw;
 use crate::measure::DefectLimits;
 use crate::rod::{RoundLaws, Section, Twist};
 use crate::settings::{
@@ -34,8 +35,10 @@ pub struct Scene {
     pub tensioner: Tensioner,
     /// where the wire begins
     pub start: Start,
-    /// spindle motion profile of `coilwind run`
+    /// spindle motion profile of `coilwind run`, as given
     pub spindle: Spindle,
+    /// the spindle's speed that follows from it
+    pub speed_law: SpeedLaw,
     /// traverse motion profile of `coilwind run`, as given
     pub traverse: Traverse,
     /// turns and layers of `coilwind run`, as given

@@ -143,7 +143,7 @@ impl SceneSettings {
             }
         }
 
-        for file in [&mut settings.core.file, &mut settings.traverse.file] {
+        for file in settings.files_mut() {
             if !file.is_empty() {
                 *file = base_dir.join(&*file).to_string_lossy().into_owned();
             }

@@ -5,6 +5,7 @@
 //! everything else reads.
 
 mod allowed;
+mod angle_table;
 mod assign;
 mod build;
 mod checks;
@@ -22,6 +23,8 @@ mod nozzle_plan;
 mod nozzle_trail;
 mod problems;
 mod saved;
+mod speed_law;
+mod spindle_plan;
 mod stress_strain;
 mod warnings;
 mod write;
@@ -35,6 +38,7 @@ pub use file::packed_names;
 pub(crate) use impossible::si;
 pub use key::{assignment, unit_suffixes};
 pub use nozzle_law::{NozzleLaw, Piece};
+pub use speed_law::{SpeedLaw, Stretch};
 
 #[cfg(doc)]
 use crate::settings::SceneSettings;

@@ -4,6 +4,7 @@
 //! below, half a pitch aside.
 
 use super::SceneError;
+use super::angle_table::Form;
 use super::extent::Extent;
 use super::impossible::si;
 use super::nozzle_law::NozzleLaw;
@@ -11,9 +12,7 @@ use super::nozzle_trail::Trail;
 use super::problems::Problems;
 use crate::rod::Section;
 use crate::settings::SceneSettings;
-use crate::variables::{Scale, scaled, split_suffix};
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// Turns of a run by the law `by-angle` that does not say how many.
 const TURNS: f64 = 2.5;
@@ -113,7 +112,7 @@ impl SceneSettings {
         let diameter = self.wire.outer_diameter();
         let law = match t.mode.as_str() {
             "table" => {
-                let law = problems.note(self.law_of_table())?;
+                let law = self.law_of_table(problems)?;
                 match self.winding.turns_per_layer {
                     0.0 => law,
                     _ => law.with_jumps(&self.layers(diameter, extent, problems)?.jumps(0.0, 0.0)),
@@ -424,87 +423,23 @@ impl SceneSettings {
         problems.add(self.impossible(key, reason, allowed));
     }
 
-    /// The law in the file of a table: a column of angles, `angle_deg`, `angle_rad` or `turns`, from 0 on and rising, and one of
-    /// nozzle positions, `y_mm` or `y_m`.
-    fn law_of_table(&self) -> Result<NozzleLaw, SceneError> {
-        let problem = |reason: String| {
-            self.impossible(
-                "traverse.file",
-                reason,
-                "a CSV file, relative to the scene file, with the columns angle_deg (or angle_rad, turns) and y_mm (or y_m)",
-            )
+    /// The law in the file of a table.
+    fn law_of_table(&self, problems: &mut Problems) -> Option<NozzleLaw> {
+        let form = Form {
+            key: "traverse.file",
+            file: &self.traverse.file,
+            columns: &[("y", "m")],
+            allowed: "a CSV file, relative to the scene file, with the columns angle_deg (or angle_rad, turns) and y_mm (or y_m)",
         };
-        if self.traverse.file.is_empty() {
-            return Err(problem("traverse.mode = table needs a file".to_owned()));
+        if form.file.is_empty() {
+            let reason = "traverse.mode = table needs a file";
+            problems.add(self.impossible(form.key, reason, form.allowed));
+            return None;
         }
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .comment(Some(b'#'))
-            .from_path(Path::new(&self.traverse.file))
-            .map_err(|e| problem(format!("the table cannot be opened ({e})")))?;
-        let header = reader
-            .headers()
-            .map_err(|e| problem(e.to_string()))?
-            .clone();
-        let columns = [
-            column(&header, "angle", "rad").or_else(|| {
-                let turns = header.iter().position(|name| name == "turns")?;
-                Some((turns, Scale::Tens(0)))
-            }),
-            column(&header, "y", "m"),
-        ];
-        let [Some(angle), Some(y)] = columns else {
-            let found: Vec<&str> = header.iter().collect();
-            let reason = match found.iter().all(|name| name.is_empty()) {
-                true => "it is empty".to_owned(),
-                false => format!("its columns are {}", found.join(", ")),
-            };
-            return Err(problem(reason));
-        };
-        let per_turn = match header.iter().any(|name| name == "turns") {
-            true => 1.0,
-            false => TAU,
-        };
-        let mut points: Vec<[f64; 2]> = Vec::new();
-        for record in reader.records() {
-            let record = record.map_err(|e| problem(e.to_string()))?;
-            let line = record.position().map_or(0, csv::Position::line);
-            let cell = |(index, scale): (usize, Scale)| {
-                let text = record.get(index).unwrap_or_default();
-                let number: Option<f64> = text.parse().ok().filter(|x: &f64| x.is_finite());
-                let number =
-                    number.ok_or_else(|| problem(format!("line {line}: {text:?} is no number")))?;
-                Ok(scaled(number, scale))
-            };
-            let point = [cell(angle)? / per_turn, cell(y)?];
-            match points.last() {
-                None if point[0] != 0.0 => {
-                    return Err(problem(format!("line {line}: the first angle is not 0")));
-                }
-                Some(last) if point[0] <= last[0] => {
-                    return Err(problem(format!(
-                        "line {line}: the angle does not rise, {} turns after {}",
-                        si(point[0]),
-                        si(last[0])
-                    )));
-                }
-                _ => points.push([point[0], point[1] + self.traverse.lead]),
-            }
+        let mut points = self.angle_table(form, problems)?.rows;
+        for point in &mut points {
+            point[1] += self.traverse.lead;
         }
-        if points.len() < 2 {
-            return Err(problem("the table has less than two rows".to_owned()));
-        }
-        Ok(NozzleLaw::through(&points))
+        Some(NozzleLaw::through(&points))
     }
-}
-
-/// The column of a quantity, with its unit in the name or none where it is SI, and how its numbers become SI.
-fn column(header: &csv::StringRecord, stem: &str, unit: &str) -> Option<(usize, Scale)> {
-    header.iter().enumerate().find_map(|(index, name)| {
-        if name == stem {
-            return Some((index, Scale::Tens(0)));
-        }
-        let (found, of, scale) = split_suffix(name)?;
-        (found == stem && of == unit).then_some((index, scale))
-    })
 }

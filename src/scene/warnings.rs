@@ -78,6 +78,11 @@ const KEYS_OF_CHOICES: [KeysOf; 11] = [
 ];
 
 impl SceneSettings {
+    /// Whether it is known between which turns wire climbs to the next layer.
+    fn plans_layers(&self) -> bool {
+        self.winds_layers() || self.traverse.mode == "table" && self.winding.turns_per_layer > 0.0
+    }
+
     /// A nozzle so far past a flange that wire from the last place beside it lies against the rim, and the key that sends it there.
     fn nozzle_past_a_flange(
         &self,
@@ -302,6 +307,19 @@ impl SceneSettings {
                     ),
                 );
             }
+        }
+        if self.spindle.file.is_empty() {
+            let message = "has no effect: there is no table without spindle.file";
+            warn("spindle.repeat_turns", message.to_owned());
+        }
+        if self.spindle.flange_share == 1.0 {
+            let message =
+                "has no effect: with spindle.flange_share = 1 the spindle does not slow down";
+            warn("spindle.flange_turns", message.to_owned());
+        }
+        if !self.plans_layers() {
+            let message = "has no effect: no layers are planned; set winding.turns_per_layer, or a traverse.mode that winds layers";
+            warn("spindle.flange_share", message.to_owned());
         }
         if self.core.flange.inner_distance > 0.0 {
             if self.core.shape != "mesh" {

@@ -226,6 +226,20 @@ impl SceneSettings {
         }
     }
 
+    /// Paths of the files that the scene names beside its own: core, traverse, spindle; empty where it names none.
+    pub fn files(&self) -> [&String; 3] {
+        [&self.core.file, &self.traverse.file, &self.spindle.file]
+    }
+
+    /// The same, to change them.
+    pub fn files_mut(&mut self) -> [&mut String; 3] {
+        [
+            &mut self.core.file,
+            &mut self.traverse.file,
+            &mut self.spindle.file,
+        ]
+    }
+
     /// Whether the nozzle of a run that is driven by inputs follows the law of `traverse.mode`: where that was set by
     /// name. A scene file's mode is for runs of its own motion.
     pub fn nozzle_follows_law(&self) -> bool {
@@ -328,6 +342,10 @@ impl Default for SceneSettings {
                 speed: 500.0,
                 ramp_turns: 0.25,
                 turns: 0.0,
+                file: String::new(),
+                repeat_turns: 0.0,
+                flange_share: 1.0,
+                flange_turns: 1.0,
             },
             traverse: Traverse {
                 mode: "by-angle".to_owned(),

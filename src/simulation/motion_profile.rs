@@ -1,66 +1,44 @@
 //! The scene's own spindle ramp and traverse, as functions of time.
 
 use super::WORTH_A_STEP;
-use crate::scene::{NozzleLaw, Scene};
+use crate::scene::{NozzleLaw, Scene, SpeedLaw};
 use crate::system::{Drive, NozzleDrive};
-use std::f64::consts::TAU;
 
 /// Share of a time by which sums of pieces of it may miss it.
 pub(super) const ROUNDING: f64 = 1e-12;
 
-/// Constant acceleration over the ramp, then constant speed; the nozzle goes with the angle.
+/// The spindle by its law of speed; the nozzle goes with the angle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MotionProfile {
-    speed: f64,
-    ramp_angle: f64,
+    /// 1 where the spindle turns about +y, -1 where it turns about -y
+    sense: f64,
+    spindle: SpeedLaw,
     nozzle: NozzleLaw,
 }
 
 impl MotionProfile {
     /// From a scene.
     pub fn new(scene: &Scene) -> Self {
-        let s = scene.spindle;
         Self {
-            speed: s.speed,
-            ramp_angle: s.ramp_turns.min(s.turns) * TAU,
+            sense: scene.spindle.speed.signum(),
+            spindle: scene.speed_law.clone(),
             nozzle: scene.nozzle_law.clone(),
         }
     }
 
-    fn ramp_time(&self) -> f64 {
-        2.0 * self.ramp_angle / self.speed.abs()
-    }
-
     /// Angle turned at a time, rad (with the sign of the speed).
     pub fn angle(&self, time: f64) -> f64 {
-        let ramp = self.ramp_time();
-        let size = if time < ramp {
-            self.ramp_angle * (time / ramp).powi(2)
-        } else {
-            self.ramp_angle + self.speed.abs() * (time - ramp)
-        };
-        size.copysign(self.speed)
+        self.spindle.angle(time) * self.sense
     }
 
     /// Speed at a time, rad/s.
     pub fn speed(&self, time: f64) -> f64 {
-        let ramp = self.ramp_time();
-        if time < ramp {
-            self.speed * time / ramp
-        } else {
-            self.speed
-        }
+        self.spindle.speed(time) * self.sense
     }
 
     /// Time at which this much angle has been turned, s.
     pub fn time_at(&self, angle: f64) -> f64 {
-        let a = angle.abs();
-        let ramp = self.ramp_time();
-        if a < self.ramp_angle {
-            ramp * (a / self.ramp_angle).sqrt()
-        } else {
-            ramp + (a - self.ramp_angle) / self.speed.abs()
-        }
+        self.spindle.time_at(angle.abs())
     }
 
     /// When the last turn is done, s.
@@ -80,51 +58,73 @@ impl MotionProfile {
         to: f64,
         tension: f64,
     ) -> impl Iterator<Item = Drive> + use<'_> {
-        // what is left between is the rounding of two times, or too short to be solved for
-        let snapped = move |mut time: f64| {
-            for edge in [from, to] {
+        // What is left between is the rounding of two times, or too short to be solved for.
+        let snapped = |mut time: f64, edges: &[f64]| {
+            for edge in edges {
                 if (edge - time).abs() < WORTH_A_STEP.max(ROUNDING * time) {
-                    time = edge;
+                    time = *edge;
                 }
             }
             time
         };
-        let ramp = snapped(self.ramp_time());
-        // before the ramp ends and after, in the pieces of the nozzle's way
+        let stretches = self.spindle.stretches();
+        let stretches = around(stretches, |one| one.start <= from, |one| one.start < to);
         let pieces = self.nozzle.pieces();
-        let starts = pieces.iter().map(move |p| match p.from {
+        let [begun, done] = [from, to].map(|time| self.spindle.angle(time));
+        let pieces = around(pieces, |one| one.from <= begun, |one| one.from < done);
+        let stretch_starts = stretches
+            .iter()
+            .map(move |stretch| snapped(stretch.start, &[from, to]));
+        let piece_starts = pieces.iter().map(move |piece| match piece.from {
             0.0 => f64::NEG_INFINITY,
-            angle => snapped(self.time_at(angle)),
+            angle => {
+                let starts = stretches.iter().map(|stretch| stretch.start);
+                let time = starts.fold(self.time_at(angle), |time, edge| snapped(time, &[edge]));
+                snapped(time, &[from, to])
+            }
         });
-        let ends = starts.clone().skip(1).chain([f64::INFINITY]);
-        let spans = pieces.iter().zip(starts.zip(ends));
-        spans
-            .filter(move |(_, (start, end))| *start < to && *end > from)
+        let within = move |(start, end): &(f64, f64)| *start < to && *end > from;
+        // the pieces of the nozzle's way, each in the stretches of the spindle's
+        std::iter::zip(pieces, spans(piece_starts))
+            .filter(move |(_, span)| within(span))
             .flat_map(move |(piece, (start, end))| {
                 let (from, to) = (from.max(start), to.min(end));
-                let drive = Drive {
-                    duration: 0.0,
-                    speed: self.speed,
-                    acceleration: 0.0,
-                    nozzle: NozzleDrive::WithSpindle(piece.travel * self.speed.signum()),
-                    aside: [0.0; 2],
-                    tension,
-                    tension_rate: 0.0,
-                };
-                let rises = (from < ramp && to.min(ramp) > from).then(|| Drive {
-                    duration: to.min(ramp) - from,
-                    speed: self.speed(from),
-                    acceleration: self.speed / self.ramp_time(),
-                    ..drive
-                });
-                let begin = from.max(ramp);
-                let goes_on = (to > begin).then_some(Drive {
-                    duration: to - begin,
-                    ..drive
-                });
-                [rises, goes_on].into_iter().flatten()
+                std::iter::zip(stretches, spans(stretch_starts.clone())).filter_map(
+                    move |(stretch, (start, end))| {
+                        let (from, to) = (from.max(start), to.min(end));
+                        let is_even = stretch.gain == 0.0;
+                        (to > from).then(|| Drive {
+                            duration: to - from,
+                            speed: match is_even {
+                                true => stretch.speed * self.sense,
+                                false => self.speed(from),
+                            },
+                            acceleration: match is_even {
+                                true => 0.0,
+                                false => stretch.gain * self.sense / stretch.duration,
+                            },
+                            nozzle: NozzleDrive::WithSpindle(piece.travel * self.sense),
+                            aside: [0.0; 2],
+                            tension,
+                            tension_rate: 0.0,
+                        })
+                    },
+                )
             })
     }
+}
+
+/// Of things that follow each other those from the last that `has_begun` up to the last that `begins`, and one more on either side
+/// for what rounding moves.
+fn around<T>(all: &[T], has_begun: impl Fn(&T) -> bool, begins: impl Fn(&T) -> bool) -> &[T] {
+    let first = all.partition_point(has_begun).saturating_sub(2);
+    let end = all.partition_point(begins) + 1;
+    &all[first..end.min(all.len())]
+}
+
+/// Start and end of things that follow each other; the last goes on without end.
+fn spans(starts: impl Iterator<Item = f64> + Clone) -> impl Iterator<Item = (f64, f64)> {
+    std::iter::zip(starts.clone(), starts.skip(1).chain([f64::INFINITY]))
 }
 
 #[cfg(test)]

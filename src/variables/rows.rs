@@ -220,6 +220,11 @@ macro_rules! text {
     };
 }
 
+/// Parameter of type String that only the native command reads.
+macro_rules! native_text {
+    ($($cell:tt)*) => { Variable { native_only: true, ..text!($($cell)*) } };
+}
+
 /// Parameter of type String whose start value in the FMU is not the scene's.
 macro_rules! fmu_text {
     ($start:literal, $($cell:tt)*) => { Variable { fmu_start: Some($start), ..text!($($cell)*) } };
@@ -393,6 +398,11 @@ table! {
     native(1500, "spindle.speed", spindle.speed, "rad/s", "rpm", 0.1, 2000.0, 100.0, "final speed of the native programme");
     native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "turns over which the speed rises, at constant acceleration");
     native(1502, "spindle.turns", spindle.turns, "1", "", 0.0, 1e5, 1.0, "turns of the spindle until the native programme ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle");
+
+    native_text(1503, "spindle.file", (spindle.file), [], "CSV file of the spindle's angle and the share of its speed that is allowed there, relative to the scene file");
+    native(1504, "spindle.repeat_turns", spindle.repeat_turns, "1", "", 0.0, 1e5, 1.0, "turns after which the table of spindle.file begins again; 0: it does not");
+    native(1505, "spindle.flange_share", spindle.flange_share, "1", "", 0.01, 1.0, 1.0, "share of the speed that is allowed while wire climbs to the next planned layer");
+    native(1506, "spindle.flange_turns", spindle.flange_turns, "1", "", 1e-3, 1e3, 1.0, "turns over which the speed falls before a climb with spindle.flange_share below 1, and rises after it");
 
     fixed(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per turn; the sign is its direction along y");
     fixed(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");

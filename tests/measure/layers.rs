@@ -44,6 +44,27 @@ fn coil_of(layers: u32) -> Coil {
     coil
 }
 
+/// What a layer leaves free beside a flange was not measured.
+#[test]
+fn first_and_last_turns_of_a_layer_say_how_far_the_flange_is() {
+    let faces = [-0.7 * D, (TURNS + 0.1) * D];
+    let mut nodes = on_cylinder(2.0 * TURNS - 0.15, 1.0, orthocyclic);
+    for node in &mut nodes {
+        let ways = faces.map(|face| face - node.position.y);
+        let nearer = if ways[1] < -ways[0] { ways[1] } else { ways[0] };
+        node.flange = Some(nearer);
+    }
+    let mut coil = wound(spec(), &nodes);
+    coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    let rooms: Vec<Option<f64>> = coil.turns().iter().map(|t| t.flange_gap).collect();
+    let expected = [0.2, 0.6, 0.1, 0.7];
+    let told: Vec<usize> = (0..rooms.len()).filter(|k| rooms[*k].is_some()).collect();
+    assert_eq!(told, [0, 4, 5, 9]);
+    for (room, expected) in rooms.iter().flatten().zip(expected) {
+        assert!((room / D - expected).abs() < 1e-3, "{rooms:?}");
+    }
+}
+
 /// The first turn of a pass was compared with the beginning of its pass: gaps of 6 to 12 mm, and `layer` flickered
 /// in grooves.
 #[test]

@@ -70,6 +70,28 @@ async function processorTime(page) {
   };
 }
 
+/** Drags the view to and fro for a second or so: how long it took, ms, how many pictures were drawn, and what for processor time. */
+async function turn(page, canvas) {
+  await canvas.scrollIntoViewIfNeeded();
+  const box = await canvas.boundingBox();
+  const [x, y] = [box.x + 0.5 * box.width, box.y + 0.5 * box.height];
+  const state = () => page.locator(".view").first().evaluate((view) => ({ pictures: Number(view.dataset.pictures), drawn: view.dataset.drawn }));
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  const before = await state();
+  const spent = await processorTime(page);
+  const began = Date.now();
+  for (let step = 0; Date.now() - began < 1500; step += 1) {
+    await page.mouse.move(x + 120 * Math.sin(0.05 * step), y);
+    await page.evaluate(() => new Promise(requestAnimationFrame));
+  }
+  const ms = Date.now() - began;
+  const after = await state();
+  const { all } = await spent();
+  await page.mouse.up();
+  return { ms, all, pictures: after.pictures - before.pictures, drawn: after.drawn };
+}
+
 async function look(scheme) {
   const context = await browser.newContext({ colorScheme: scheme, viewport: { width: 1280, height: 900 }, reducedMotion: "reduce", offline: true });
   const page = await context.newPage();
@@ -167,6 +189,10 @@ async function look(scheme) {
     check(`${scheme}: turns can be taken off`, (await compare(page, before, await shot())).different > 0.02);
     await run.getByRole("button", { name: "Whole coil" }).click();
   }
+  const turned = await turn(page, canvas);
+  check(`${scheme}: a view that is turned is drawn`, turned.pictures > 3, `${turned.pictures} pictures in ${turned.ms} ms, ${turned.all} ms of processor time, the last one ${turned.drawn}`);
+  await settle();
+  await run.getByRole("button", { name: "Whole coil" }).click();
   const row = run.locator(".defects tbody tr").first();
   if (await row.count()) {
     const before = await shot();

@@ -49,7 +49,7 @@ impl Run {
     /// Makes spindle speed and nozzle position those of the demonstration over the next `step`, s.
     pub(super) fn demonstrate(&mut self, step: f64) {
         let scene = self.simulation.scene();
-        let (spindle, per_turn) = (scene.spindle, scene.traverse.per_turn);
+        let (spindle, per_turn) = (&scene.spindle, scene.traverse.per_turn);
         let time = self.simulation.time();
         let speed = demonstrated(spindle, time);
         let after = demonstrated(spindle, time + step);
@@ -66,7 +66,7 @@ impl Run {
 
 /// Speed of the demonstration at a time of the run, s, in rad/s: as many turns as the scene's programme has, with its
 /// ramp at both ends.
-fn demonstrated(spindle: Spindle, time: f64) -> f64 {
+fn demonstrated(spindle: &Spindle, time: f64) -> f64 {
     let speed = spindle.speed.abs().min(SPEED);
     let ramp = 2.0 * ramp_turns(spindle) * TAU / speed;
     let share = (time / ramp).min((end(spindle) - time) / ramp);
@@ -74,12 +74,12 @@ fn demonstrated(spindle: Spindle, time: f64) -> f64 {
 }
 
 /// When the demonstration ends, s.
-fn end(spindle: Spindle) -> f64 {
+fn end(spindle: &Spindle) -> f64 {
     (spindle.turns + 2.0 * ramp_turns(spindle)) * TAU / spindle.speed.abs().min(SPEED)
 }
 
 /// Turns over which the speed rises, and falls again.
-fn ramp_turns(spindle: Spindle) -> f64 {
+fn ramp_turns(spindle: &Spindle) -> f64 {
     spindle.ramp_turns.min(0.5 * spindle.turns)
 }
 
@@ -91,7 +91,7 @@ mod tests {
     #[test]
     fn the_default_experiment_sees_all_of_it() {
         let scene = SceneSettings::default().build().expect("a scene");
-        let spindle = scene.spindle;
+        let spindle = &scene.spindle;
         let end = end(spindle);
         assert!(end < DEFAULT_STOP_TIME && end > 0.9 * DEFAULT_STOP_TIME);
         let step = 1e-5;

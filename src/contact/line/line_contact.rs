@@ -24,14 +24,22 @@ pub struct LineContact<'a> {
 impl LineContact<'_> {
     /// Adds a node at `point` (m), `arc` of unstretched wire (m) from the clamp, to the frozen wire.
     pub fn lay(&mut self, point: V3, arc: f64) {
+        self.note_height(point);
+        Arc::make_mut(&mut self.scratch.tube).push(point, arc);
+    }
+
+    /// Frozen wire lies no farther from the core than the highest of the nodes that its spline depends on.
+    fn note_height(&mut self, point: V3) {
         let distance = self.model.shape.nearness(point).distance;
         self.state.height = self.state.height.max(distance + self.model.radius);
-        Arc::make_mut(&mut self.scratch.tube).push(point, arc);
     }
 
     /// Lets the spline of the frozen wire continue into the first two live nodes: their places (m) and unstretched
     /// lengths from the clamp (m), the clamp's first. With `None` it ends, and nodes can be added or taken up.
     pub fn go_on(&mut self, ahead: Option<[(V3, f64); 2]>) {
+        for (point, _) in ahead.into_iter().flatten() {
+            self.note_height(point);
+        }
         Arc::make_mut(&mut self.scratch.tube).go_on(ahead);
         self.state.ahead = self.scratch.tube.ahead();
         self.state.mark_seam();

@@ -110,9 +110,8 @@ impl NewtonLimits {
                 let change = work.update_of(j + 1) - work.update_of(j);
                 share = share.min(self.turn * work.axial[j].length / change.norm());
             }
-            share = share.min(U::share(&work.update, self.turn));
         }
-        share
+        share.min(U::share(&work.update, self.turn))
     }
 }
 

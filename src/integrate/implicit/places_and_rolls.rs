@@ -3,7 +3,7 @@
 //! The unknowns of a node are its place and the roll of the edge behind it.
 
 use super::lengths::{set_share, voronoi};
-use super::rolls::Rolls;
+use super::rolls::{MOST_TWIST, Rolls, within};
 use super::scheme::{Scheme, StepFormula};
 use super::unknowns::{FAR, NEAR, ROW, Unknowns, add_at};
 use crate::linalg::Banded;
@@ -148,9 +148,10 @@ impl Unknowns<4> for PlacesAndRolls {
     /// A joint must stay clear of half a turn.
     fn share(update: &[f64], turn: f64) -> f64 {
         let edges = update.len() / 4 - 1;
-        (1..edges)
-            .map(|j| turn / (Self::roll(update, j) - Self::roll(update, j - 1)).abs())
-            .fold(f64::INFINITY, f64::min)
+        within(
+            turn.min(MOST_TWIST),
+            (0..edges).map(|j| Self::roll(update, j)),
+        )
     }
 
     fn keep_start(&mut self) {

@@ -16,6 +16,11 @@ use crate::rod::Twist;
 use crate::rod::TwistingJoints;
 use crate::system::{Spindle, Support, System};
 
+/// Largest change of a joint's twist in a guess or an update, rad. Chosen: a third of half a turn, at which a twist changes sides.
+/// Wire without torque has nothing that holds its rolls, and a set that looks away from the bend turns over in no time: neither says
+/// how far.
+pub(super) const MOST_TWIST: f64 = 1.0;
+
 /// Rolls of a step, rad, one per edge.
 #[derive(Debug, Default)]
 pub(super) struct Rolls {
@@ -100,6 +105,10 @@ impl Rolls {
             (self.inertia).extend(rod.rest.iter().map(|rest| density * rest));
         } else {
             self.inertia.resize(edges, 0.0);
+        }
+        let share = within(MOST_TWIST, self.guess.iter().copied());
+        if share < 1.0 {
+            self.guess.iter_mut().for_each(|roll| *roll *= share);
         }
         self.loose = !dynamic && self.clamp == [None; 2];
         self.angle.clone_from(&self.guess);
@@ -212,4 +221,15 @@ impl Rolls {
             .map(|((a, b), roll)| 0.5 * (a + b) * roll)
             .sum()
     }
+}
+
+/// Share of changes of the `rolls`, rad, by which no joint twists by more than `most`, rad; may be above 1.
+pub(super) fn within(most: f64, rolls: impl Iterator<Item = f64>) -> f64 {
+    let mut before = 0.0;
+    let mut largest = 0.0_f64;
+    for roll in rolls {
+        largest = largest.max((roll - before).abs());
+        before = roll;
+    }
+    most / largest
 }

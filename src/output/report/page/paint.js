@@ -1,17 +1,17 @@
-// When the view is drawn, and how finely: a draft at once, the fine picture where it is quick, or when all stands still.
+// When the view is drawn, and how finely: the finest picture that is quick at once, the fine one when all stands still.
 
 /** Pixels drawn for one of the page, either way: the fine picture has more than are shown, so that its edges are smooth. */
-const RATIO = { draft: () => 0.7, fine: () => Math.max(2, devicePixelRatio || 1) };
+const RATIO = { rough: () => 0.5, draft: () => 0.7, fine: () => Math.max(2, devicePixelRatio || 1) };
 /** The fine picture waits until nothing has moved for so long, ms. */
 const STILL = 250;
-/** A fine picture that takes longer, ms, is not drawn while the view moves. */
+/** A picture that takes longer, ms, is not drawn while the view moves, if there is a quicker one. */
 const SMOOTH = 25;
 
 class Painter {
   constructor(view) {
     this.view = view;
-    // Not known before the first fine picture.
-    this.fineTakes = Infinity;
+    // What a picture took, ms: the fine one since the page was opened, the draft since the view moves.
+    this.takes = { fine: Infinity, draft: 0 };
   }
 
   /** Draws before the screen is next painted. */
@@ -21,8 +21,9 @@ class Painter {
     this.waits = true;
     requestAnimationFrame(() => {
       this.waits = false;
-      if (this.fineTakes < SMOOTH) return this.paint("fine");
-      this.paint("draft");
+      if (this.takes.fine < SMOOTH) return this.paint("fine");
+      if (this.takes.draft < SMOOTH) this.takes.draft = this.time(() => this.paint("draft"));
+      else this.paint("rough");
       this.rest = setTimeout(() => this.finish(), STILL);
     });
   }
@@ -33,11 +34,16 @@ class Painter {
       this.rest = setTimeout(() => this.finish(), STILL);
       return;
     }
+    this.takes = { fine: this.time(() => this.paint("fine")), draft: 0 };
+  }
+
+  /** How long a picture takes, ms. */
+  time(paint) {
     this.wait();
     const began = performance.now();
-    this.paint("fine");
+    paint();
     this.wait();
-    this.fineTakes = performance.now() - began;
+    return performance.now() - began;
   }
 
   /** Waits until all that was asked for is drawn: a pixel that is read comes after it. */

@@ -3,7 +3,7 @@
 const SIDES = 10;
 const SCALE = 1e3;
 /** What is drawn of a tube: every so many of its sides and nodes. */
-const DETAIL = { fine: { sides: 1, nodes: 1 }, draft: { sides: 2, nodes: 2 } };
+const DETAIL = { fine: { sides: 1, nodes: 1 }, draft: { sides: 2, nodes: 2 }, rough: { sides: 2, nodes: 6 } };
 /** Colours of the screen as light, by the curve of sRGB. */
 const LIGHT = Float32Array.from({ length: 256 }, (_, k) => {
   const c = k / 255;
@@ -30,7 +30,7 @@ function tubeIndex(nodes, every) {
   return new Vendor.BufferAttribute(index, 1);
 }
 
-/** A tube along a wire: geometry whose colours can be set per node, drawn in full or with a quarter of its corners. */
+/** A tube along a wire: geometry whose colours can be set per node, drawn in full or with fewer corners. */
 class Tube {
   constructor(points, radius) {
     this.nodes = points.length / 3;
@@ -65,7 +65,7 @@ class Tube {
     this.detail("draft");
   }
 
-  /** Draws all of it, or a draft. */
+  /** Draws all of it, or less. */
   detail(name) {
     this.drawn = name;
     this.index[name] ??= tubeIndex(this.nodes, DETAIL[name]);

@@ -1,0 +1,12 @@
+"""examples/layers.py: layers by the FMU's own traverse, with nothing but the speed sent."""
+
+import re
+
+
+def test_the_second_layer_begins_where_the_scene_plans_it(script, fmu):
+    code, said = script("examples/layers.py", "--fmu", fmu, "--turns", "21.5")
+    assert code == 0, said
+    begins = {int(layer): float(turn) for layer, turn in re.findall(r"layer (\d): from turn ([\d.]+) on", said)}
+    assert set(begins) == {1, 2}, said
+    assert 19.0 < begins[2] < 21.0, said
+    assert said.rstrip().endswith(" 0 defects"), said
