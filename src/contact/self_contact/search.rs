@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 const SKIN: f64 = 0.25;
 /// ... and this many times the way by which the step's guess moves them.
 const FOLLOW: f64 = 1.5;
-/// How far from whole turns back along the wire a partner may lie, rad.
+/// How far from whole turns back along the wire a partner may lie, rad, beside half of what its segment takes up.
 const WINDOW: f64 = 0.6;
 /// Pairs of one point whose segments are nearer along the wire than this are one pair at successive steps.
 const SAME_PASSAGE: u32 = 6;
@@ -49,6 +49,12 @@ impl SelfContact {
         let mut known = 0;
         reached.clear();
         let way_of = |node: usize| (guess[node] - q[node]).norm();
+        // on a core a few edges wide a segment takes up much of a turn
+        let window = |segment: usize| {
+            let around = [segment.saturating_sub(1), (segment + 1).min(q.len() - 1)];
+            let [before, after] = around.map(|node| angle[node]);
+            WINDOW + 0.5 * (after - before).abs()
+        };
         let mut fastest = 0;
         if folded {
             blocks.build(q);
@@ -57,7 +63,11 @@ impl SelfContact {
         for contact_point in ContactPoint::all(q.len() - 1) {
             let point = contact_point.number() as u32;
             let i = point as usize / 2;
-            if !folded && angle[i] - TAU < -WINDOW {
+            let at = match contact_point {
+                ContactPoint::Node(i) => angle[i],
+                ContactPoint::Edge(i) => 0.5 * (angle[i] + angle[i + 1]),
+            };
+            if !folded && at - TAU < -window(0) {
                 continue;
             }
             let weights = contact_point.weights();
@@ -77,7 +87,8 @@ impl SelfContact {
                 let foot = curve.foot(p, near);
                 let gap = -foot.depth(diameter);
                 let other = foot.segment as usize;
-                let elsewhere = back.is_some_and(|back| (angle[other] - back).abs() > WINDOW);
+                let elsewhere =
+                    back.is_some_and(|back| (angle[other] - back).abs() > window(other));
                 if arc[other] > own || elsewhere {
                     return None;
                 }
@@ -135,8 +146,8 @@ impl SelfContact {
             }
             // from every whole turn back along the wire to the closest point
             for turns in 1.. {
-                let back = angle[i] - turns as f64 * TAU;
-                if back < -WINDOW {
+                let back = at - turns as f64 * TAU;
+                if back < -window(0) {
                     break;
                 }
                 if reached.len() < turns {
@@ -262,6 +273,43 @@ mod tests {
             let back = f64::from(point) * 0.01 - f64::from(segment) * 0.02;
             assert!((back - TAU).abs() < 0.05, "{point} {segment}");
         }
+    }
+
+    /// A segment took up more of a turn than partners were looked for in: wire touched that had no partner.
+    #[test]
+    fn wire_on_a_core_of_few_edges_meets_itself_a_turn_back() {
+        // five edges a turn, and a half more
+        let at = |k: i32| {
+            let angle = f64::from(k) * TAU / 5.5;
+            V3::new(20.0 * angle.cos(), 0.18 * f64::from(k), 20.0 * angle.sin())
+        };
+        let q: Vec<V3> = (0..13).map(at).collect();
+        let rest: Vec<f64> = q.windows(2).map(|e| (e[1] - e[0]).norm()).collect();
+        let mut scratch = PairScratch::default();
+        scratch.measure_wire(&q, &rest);
+        assert!(!scratch.is_folded(&q, DIAMETER));
+        let curve = crate::geometry::Curve {
+            points: &q,
+            seams: [false; 2],
+        };
+        let found = pairs(&q);
+        let mut near = 0;
+        for point in ContactPoint::all(q.len() - 1) {
+            let p = point.weights().sum(&q);
+            let own = point.number() as u32 / 2;
+            for segment in 1..own.saturating_sub(3) {
+                let foot = curve.foot(p, segment);
+                if foot.segment == segment && foot.distance < 1.2 * DIAMETER {
+                    let is_paired = |pair: &(u32, u32)| *pair == (point.number() as u32, segment);
+                    assert!(
+                        found.iter().any(is_paired),
+                        "{point:?} {segment}: {found:?}"
+                    );
+                    near += 1;
+                }
+            }
+        }
+        assert!(near > 8, "{near} places where wire is near wire");
     }
 
     /// Wire on a long flat goes round the axis slowly: it counted as folded, and was sought by place.

@@ -233,3 +233,18 @@ pub(super) fn within(most: f64, rolls: impl Iterator<Item = f64>) -> f64 {
     }
     most / largest
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rolls that nothing held were continued from step to step, to a million turns.
+    #[test]
+    fn no_joint_twists_by_more_than_the_share() {
+        let rolls = [0.0, 0.5, 0.4, -3.6, -3.5];
+        let share = within(1.0, rolls.into_iter());
+        assert_eq!(share, 0.25);
+        assert_eq!(within(1.0, [1.0, 2.0, 3.0].into_iter()), 1.0);
+        assert!(within(1.0, [0.0; 4].into_iter()) > 1.0);
+    }
+}

@@ -11,6 +11,8 @@ use std::f64::consts::{PI, TAU};
 
 /// Wire may be deeper in wire by this share of the diameter. There its centreline lies in the surface of the other.
 const CROSSED: f64 = 0.5;
+/// By what share of the diameter a chord may miss its curve.
+const STRAIGHT: f64 = 0.02;
 /// Edges in a chunk. Chosen: a quarter of a turn at most.
 const CHUNK: usize = 16;
 
@@ -91,11 +93,7 @@ impl Behind {
                 if behind < PI {
                     continue;
                 }
-                let (a, b) = (
-                    (self.nodes[j - 1] + self.nodes[j]) * 0.5,
-                    (self.nodes[j] + self.nodes[j + 1]) * 0.5,
-                );
-                let distance = distance_to_segment(p, a, b);
+                let distance = self.distance_to_piece(p, j, reach);
                 if distance < best {
                     best = distance;
                     found = Some((distance, behind / TAU));
@@ -103,6 +101,26 @@ impl Behind {
             }
         }
         found
+    }
+
+    /// Distance (m) of `p` from the curve of the wire at node `j`, as chords that miss it by next to nothing of a `diameter`, m.
+    ///
+    /// On a sharp corner one chord for all of it would be off by more than a diameter.
+    fn distance_to_piece(&self, p: V3, j: usize, diameter: f64) -> f64 {
+        let (a, b) = (
+            (self.nodes[j - 1] + self.nodes[j]) * 0.5,
+            (self.nodes[j] + self.nodes[j + 1]) * 0.5,
+        );
+        let bulge = self.nodes[j] * 2.0 - a - b;
+        let pieces = (0.25 * bulge.norm() / (STRAIGHT * diameter)).sqrt().ceil();
+        let at = |share: f64| a + (b - a) * share + bulge * (share * (1.0 - share));
+        let count = pieces.max(1.0) as usize;
+        let shares = (0..=count).map(|k| k as f64 / count as f64);
+        let places: Vec<V3> = shares.map(at).collect();
+        let distances = places
+            .windows(2)
+            .map(|ends| distance_to_segment(p, ends[0], ends[1]));
+        distances.fold(f64::INFINITY, f64::min)
     }
 }
 
@@ -121,10 +139,9 @@ mod tests {
     /// Slow twin of [`Behind::nearest`].
     fn nearest(wire: &Behind, i: usize, p: V3, reach: f64) -> Option<f64> {
         let half_a_turn = |j: &usize| (wire.turned[i] - wire.turned[*j]).abs() >= PI;
-        let all = (1..i).filter(half_a_turn).map(|j| {
-            let middle = |k: usize| (wire.nodes[k] + wire.nodes[k + 1]) * 0.5;
-            distance_to_segment(p, middle(j - 1), middle(j))
-        });
+        let all = (1..i)
+            .filter(half_a_turn)
+            .map(|j| wire.distance_to_piece(p, j, reach));
         let least = all.fold(f64::INFINITY, f64::min);
         (least < reach).then_some(least)
     }
@@ -144,6 +161,20 @@ mod tests {
             near += usize::from(quick.is_some());
         }
         assert!((100..390).contains(&near), "{near} near");
+    }
+
+    /// Wire round a sharp corner in long edges was a chord, and wire beside it counted as in it.
+    #[test]
+    fn wire_round_a_corner_is_a_curve() {
+        let [a, corner, b] = [[0.0, 8.0], [0.0, 0.0], [8.0, 0.0]].map(|[x, z]| V3::new(x, 0.0, z));
+        let wire = Behind::new(vec![a, corner, b]);
+        for share in [0.1, 0.3, 0.5] {
+            let (first, last) = ((a + corner) * 0.5, (corner + b) * 0.5);
+            let on = first
+                .lerp(&corner, share)
+                .lerp(&corner.lerp(&last, share), share);
+            assert!(wire.distance_to_piece(on, 1, 1.0) < STRAIGHT, "{share}");
+        }
     }
 
     #[test]
