@@ -120,11 +120,12 @@ fn all_that_is_wrong_with_a_table_is_told() {
             &["line 3: share is 0", "line 4: share is 1.5"][..],
         ),
         (
-            "turns,share\n1,0.5\n1,x\n0.5,1\n",
+            "turns,share\n1,0.5\n1,x\n0.5,7\n",
             &[
                 "line 2: the first angle",
                 "line 3: \"x\"",
                 "line 4: the angle does not rise",
+                "line 4: share is 7",
             ][..],
         ),
         ("turns,rpm\n0,0.5\n", &["its columns are turns, rpm"][..]),

@@ -23,6 +23,8 @@ pub(super) struct Form<'a> {
     pub(super) file: &'a str,
     /// columns of values, one of which is there
     pub(super) columns: &'a [Column],
+    /// what is wrong with a value of a column, in words
+    pub(super) wrong: fn(&str, f64) -> Option<String>,
     /// what is allowed, in words
     pub(super) allowed: &'static str,
 }
@@ -34,8 +36,6 @@ pub(super) struct AngleTable {
     pub(super) column: &'static str,
     /// turns and value (SI) of every row, two at least, by rising turns from 0
     pub(super) rows: Vec<[f64; 2]>,
-    /// lines of the rows in the file
-    pub(super) lines: Vec<u64>,
 }
 
 impl SceneSettings {
@@ -56,7 +56,6 @@ impl SceneSettings {
         let mut table = AngleTable {
             column: value.0,
             rows: Vec::new(),
-            lines: Vec::new(),
         };
         let mut wrong: Vec<SceneError> = Vec::new();
         for record in reader.records() {
@@ -94,8 +93,10 @@ impl SceneSettings {
                 ))),
                 _ => {}
             }
+            if let Some(reason) = (form.wrong)(table.column, value) {
+                wrong.push(problem(format!("line {line}: {reason}")));
+            }
             table.rows.push([turns, value]);
-            table.lines.push(line);
         }
         if wrong.is_empty() && table.rows.len() < 2 {
             wrong.push(problem("the table has less than two rows".to_owned()));
@@ -103,24 +104,13 @@ impl SceneSettings {
         if wrong.is_empty() {
             return Some(table);
         }
-        self.tell_lines(form, wrong, problems);
-        None
-    }
-
-    /// Adds errors of single lines; of many only the first, and how many more there are.
-    pub(super) fn tell_lines(
-        &self,
-        form: Form<'_>,
-        mut wrong: Vec<SceneError>,
-        problems: &mut Problems,
-    ) {
         if wrong.len() > MOST_TOLD {
             let more = wrong.len() - MOST_TOLD;
             wrong.truncate(MOST_TOLD);
-            let reason = format!("{more} more mistakes in the table");
-            wrong.push(self.impossible(form.key, reason, form.allowed));
+            wrong.push(problem(format!("{more} more mistakes in the table")));
         }
         wrong.into_iter().for_each(|error| problems.add(error));
+        None
     }
 
     /// Opens a table and finds its columns, or says what is wrong.

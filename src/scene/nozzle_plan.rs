@@ -429,6 +429,7 @@ impl SceneSettings {
             key: "traverse.file",
             file: &self.traverse.file,
             columns: &[("y", "m")],
+            wrong: |_, _| None,
             allowed: "a CSV file, relative to the scene file, with the columns angle_deg (or angle_rad, turns) and y_mm (or y_m)",
         };
         if form.file.is_empty() {

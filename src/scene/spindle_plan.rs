@@ -55,33 +55,11 @@ impl SceneSettings {
             key: "spindle.file",
             file: &s.file,
             columns: &[("share", ""), ("speed", "rad/s")],
+            wrong: no_speed,
             allowed: "a CSV file, relative to the scene file, with the columns turns (or angle_deg, angle_rad) and share of spindle.speed (or speed_rpm, speed)",
         };
-        let AngleTable {
-            column,
-            rows,
-            lines,
-        } = self.angle_table(form, problems)?;
+        let AngleTable { column, rows } = self.angle_table(form, problems)?;
         let of_share = column == "share";
-        let mut wrong = Vec::new();
-        for ([_, value], line) in rows.iter().zip(&lines) {
-            let allowed = match of_share {
-                true => *value > 0.0 && *value <= 1.0,
-                false => *value > 0.0,
-            };
-            if !allowed {
-                let range = if of_share { "above 0 to 1" } else { "above 0" };
-                let reason = format!(
-                    "line {line}: {column} is {}; {range} is allowed",
-                    si(*value)
-                );
-                wrong.push(self.impossible(form.key, reason, form.allowed));
-            }
-        }
-        if !wrong.is_empty() {
-            self.tell_lines(form, wrong, problems);
-            return None;
-        }
         let speed = |value: f64| if of_share { value * s.speed } else { value };
         let once: Points = rows
             .iter()
@@ -117,6 +95,15 @@ impl SceneSettings {
         problems.add(self.impossible("spindle.repeat_turns", reason, allowed));
         None
     }
+}
+
+/// What is wrong with a share of the speed, or a speed, rad/s.
+fn no_speed(column: &str, value: f64) -> Option<String> {
+    let (most, range) = match column {
+        "share" => (1.0, "above 0 to 1"),
+        _ => (f64::INFINITY, "above 0"),
+    };
+    (value <= 0.0 || value > most).then(|| format!("{column} is {}; {range} is allowed", si(value)))
 }
 
 /// The lower of two laws at every angle from 0 on.
