@@ -13,7 +13,7 @@ from winder import wind
 
 SPEED, RAMP_TURNS, PER_LAYER = 100.0, 0.25, 20   # rad/s; turns of a layer of the scene
 SLOW_TURNS = 1.0                                  # from so many turns before a climb to as many after it
-OUTPUTS = ["spindle_angle", "layer", "turn_in_layer", "turns_settled", "wire_tension", "defect_count"]
+OUTPUTS = ["spindle_angle", "layer", "turns_settled", "defect_count"]
 
 
 def speed_at(turns, share):

@@ -171,9 +171,9 @@ impl Coil {
         }
         let layers: Vec<u32> = turns.iter().map(|turn| turn.layer).collect();
         let is_last = |k: usize| layers.get(k + 1) != Some(&layers[k]);
-        for (k, turn) in turns.iter_mut().enumerate() {
-            if turn.turn_in_layer > 1 && !is_last(k) {
-                turn.flange_gap = None;
+        for (k, (turn, records)) in turns.iter_mut().zip(self.records.chunks()).enumerate() {
+            if turn.turn_in_layer == 1 || is_last(k) {
+                turn.flange_gap = room_at_flange(records);
             }
         }
         // The station at the end of a turn says how loose it is.
@@ -202,7 +202,6 @@ impl Coil {
             ..TurnMeasures::default()
         };
         let mut gaps = GapSums::default();
-        let mut rooms = Vec::new();
         let mut runs = [Run::default(); MEASURED];
         let mut has = [false; MEASURED];
         for record in records {
@@ -225,7 +224,6 @@ impl Coil {
             if let Some(neighbour) = station.neighbour.filter(|_| !station.crosses) {
                 gaps.add(neighbour.gap, neighbour.axial, ALIGNED_GAP * d);
             }
-            rooms.extend(station.flange_gap);
             let face = &mut result.bulge_faces[self.face(station.angle)];
             *face = face.max(station.bulge);
             result.bulge_max = result.bulge_max.max(station.bulge);
@@ -237,8 +235,6 @@ impl Coil {
             result.layer_max = result.layer_max.max(station.layer);
         }
         gaps.write(&mut result);
-        rooms.sort_by(f64::total_cmp);
-        result.flange_gap = rooms.get(rooms.len() / 2).copied();
         result.verdict = gaps.verdict(&result, has, d);
         result
     }
@@ -254,6 +250,17 @@ impl Coil {
             .filter(|&&edge| from_corner >= edge)
             .count()
     }
+}
+
+/// Median room to the flange beside a turn over its measured stations, m; none without a flange.
+fn room_at_flange(records: &[Record]) -> Option<f64> {
+    let measured = records
+        .iter()
+        .map(|record| &record.station)
+        .filter(|s| s.measured);
+    let mut rooms: Vec<f64> = measured.filter_map(|station| station.flange_gap).collect();
+    rooms.sort_by(f64::total_cmp);
+    rooms.get(rooms.len() / 2).copied()
 }
 
 /// The layer that most stations have, the lowest of several; 1 without any.

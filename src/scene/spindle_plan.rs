@@ -70,30 +70,36 @@ impl SceneSettings {
             return Some(once);
         }
         let [last, ended] = rows[rows.len() - 1];
-        let reason = if last > period {
-            format!("the table of spindle.file goes on to {} turns", si(last))
+        let wrong = if last > period {
+            Some(format!(
+                "the table of spindle.file goes on to {} turns",
+                si(last)
+            ))
         } else if last == period && ended != rows[0][1] {
-            format!(
+            Some(format!(
                 "at {} turns the table of spindle.file is not where it begins",
                 si(last)
-            )
+            ))
         } else if turns / period * rows.len() as f64 > MOST_POINTS {
-            format!(
+            Some(format!(
                 "{} turns would need more than {MOST_POINTS} rows",
                 si(turns)
-            )
+            ))
         } else {
-            let rounds = 0..(turns / period).ceil() as u32;
-            let begun = rounds.flat_map(|round| {
-                let shift = f64::from(round) * period * TAU;
-                let rows = once.iter().filter(move |row| row[0] < period * TAU);
-                rows.map(move |row| [row[0] + shift, row[1]])
-            });
-            return Some(begun.collect());
+            None
         };
-        let allowed = "0, or the turns of a whole round of the table";
-        problems.add(self.impossible("spindle.repeat_turns", reason, allowed));
-        None
+        if let Some(reason) = wrong {
+            let allowed = "0, or the turns of a whole round of the table";
+            problems.add(self.impossible("spindle.repeat_turns", reason, allowed));
+            return None;
+        }
+        let rounds = 0..(turns / period).ceil() as u32;
+        let repeated = rounds.flat_map(|round| {
+            let shift = f64::from(round) * period * TAU;
+            let rows = once.iter().filter(move |row| row[0] < period * TAU);
+            rows.map(move |row| [row[0] + shift, row[1]])
+        });
+        Some(repeated.collect())
     }
 }
 

@@ -115,11 +115,8 @@ impl Behind {
         let pieces = (0.25 * bulge.norm() / (STRAIGHT * diameter)).sqrt().ceil();
         let at = |share: f64| a + (b - a) * share + bulge * (share * (1.0 - share));
         let count = pieces.max(1.0) as usize;
-        let shares = (0..=count).map(|k| k as f64 / count as f64);
-        let places: Vec<V3> = shares.map(at).collect();
-        let distances = places
-            .windows(2)
-            .map(|ends| distance_to_segment(p, ends[0], ends[1]));
+        let end = |k: usize| at(k as f64 / count as f64);
+        let distances = (0..count).map(|k| distance_to_segment(p, end(k), end(k + 1)));
         distances.fold(f64::INFINITY, f64::min)
     }
 }
