@@ -171,12 +171,27 @@ impl Winding {
         (first..rod.edges() - 1)
             .filter(|&j| {
                 rod.rest[j] > 1.5 * solver.spacing_near
-                    && (self.is_bent(j)
-                        || [rod.x[j], self.sys.centre(j), rod.x[j + 1]]
-                            .iter()
-                            .any(|x| self.sys.is_near_core(spin.to_core(*x), reach)))
+                    && (self.is_bent(j) || self.comes_near_core(j, spin, reach))
             })
             .collect()
+    }
+
+    /// Whether edge `j` comes within `reach` of the core: looked at in places so close together that where it touches between
+    /// them, one is within reach.
+    fn comes_near_core(&self, j: usize, spin: Spin, reach: f64) -> bool {
+        let rod = &self.sys.state.rod;
+        let most = self
+            .scene
+            .solver
+            .refine_distance
+            .max(self.scene.wire.radius());
+        let half = (rod.rest[j] / (4.0 * most)).ceil().max(1.0);
+        (-half as i32..=half as i32).any(|k| {
+            let from_centre = f64::from(k) / half;
+            let end = rod.x[if k < 0 { j } else { j + 1 }];
+            let place = self.sys.centre(j).lerp(&end, from_centre.abs());
+            self.sys.is_near_core(spin.to_core(place), reach)
+        })
     }
 
     /// Whether the wire bends strongly at an end of edge `j`, and the edge there is no shorter than its neighbour.
