@@ -40,13 +40,16 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         ),
         false => String::new(),
     };
+    let turns = match scene.spindle.turns {
+        1.0 => "1 turn".into(),
+        turns => format!("{} turns", rounded(turns, DIGITS)),
+    };
     print(&format!(
-        "{}: valid; {} wire of {} mm{enamel} at {} N, {} turns at {} rad/s in {seconds:.4} s\n",
+        "{}: valid; {} wire of {} mm{enamel} at {} N, {turns} at {} rad/s in {seconds:.4} s\n",
         args.scene.scene,
         scene.wire_material,
         rounded(wire.bare_diameter * 1e3, DIGITS),
         rounded(scene.tensioner.tension, DIGITS),
-        rounded(scene.spindle.turns, DIGITS),
         rounded(scene.spindle.speed, DIGITS),
     ))?;
     let Some(laws) = &scene.wire_laws else {

@@ -167,7 +167,7 @@ pub(crate) struct SavedCoil {
 impl Coil {
     /// A coil without wire.
     pub fn new(spec: CoilSpec) -> Self {
-        let passes = Passes::new(spec.traverse, CAME_BACK * spec.diameter);
+        let passes = Passes::new(spec.traverse, CAME_BACK * spec.diameter).planned(&spec.jumps);
         Self {
             spec,
             nodes: PersistentVec::default(),
@@ -230,7 +230,7 @@ impl Coil {
     /// Replaces the direction of the first pass along y, +1 or -1, while there is no other pass.
     pub fn set_first_sense(&mut self, sense: f64) {
         if self.passes.count() == 1 && self.passes.last().sense != sense {
-            self.passes = Passes::new(sense, self.passes.near);
+            self.passes.set_first_sense(sense);
             self.measure_again(0);
         }
     }
@@ -366,6 +366,11 @@ impl Coil {
         self.passes.at(angle).1.from.max(0.0)
     }
 
+    /// See [`Passes::planned`].
+    pub(crate) fn has_planned_passes(&self) -> bool {
+        self.passes.has_plan()
+    }
+
     /// See [`Passes::last_swing`].
     pub(crate) fn last_swing(&self, angle: f64) -> Option<u32> {
         self.passes.last_swing(angle)
@@ -391,9 +396,7 @@ impl Coil {
             return Err("wire was laid in no direction");
         }
         fresh.spec.direction = saved.direction;
-        let near = fresh.passes.near;
-        fresh.passes = saved.passes;
-        fresh.passes.near = near;
+        fresh.passes.take(saved.passes);
         for node in saved.nodes {
             if !node.position.iter().all(|x| x.abs() < far) {
                 return Err("settled wire is nowhere near the core");
@@ -471,7 +474,7 @@ impl Coil {
             true => 0.0,
             false => profile.at(angle),
         };
-        let (layer, other_layer) = self.layer_after(support.layer);
+        let (layer, other_layer) = self.layer_after(support.layer, row);
         let (neighbour, window) = self.neighbour(angle, position, row);
         let last_crossing = self.last_crossing(position.y);
         // Beside a double turn, in the place after it, lies the turn below that one.
@@ -542,9 +545,11 @@ impl Coil {
     }
 
     /// Layer of the next station where wire lies `below` it as it does, and for how many stations that has said
-    /// otherwise: a layer changes once it has for as many as a defect needs.
-    fn layer_after(&self, below: u32) -> (u32, u32) {
+    /// otherwise: a layer changes once it has for as many as a defect needs, or at once where a planned row begins. Layers of
+    /// a turn begin over each other, and would do so later and later.
+    fn layer_after(&self, below: u32, row: Row) -> (u32, u32) {
         match self.records.last() {
+            Some(last) if self.has_planned_passes() && row.number > last.row.number => (below, 0),
             Some(last) if last.station.layer != below => match last.other_layer + 1 {
                 count if count < stations_for(SHORT_RUN) => (last.station.layer, count),
                 _ => (below, 0),

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// A nozzle that goes the other way for less wire than this, rad, and on again has hung back: its way is that of one pass.
 /// Chosen: a turn, and the quarter in which wire follows from one place to the next.
@@ -35,7 +36,10 @@ pub(crate) struct Passes {
     passes: Vec<Pass>,
     /// how near the nozzle has to come to a place to have come back to it, m
     #[serde(skip)]
-    pub(crate) near: f64,
+    near: f64,
+    /// winding angles at which the second pass and those after it begin by plan, rad; empty: the nozzle's way says so
+    #[serde(skip)]
+    planned: Arc<[f64]>,
 }
 
 impl Passes {
@@ -49,7 +53,38 @@ impl Passes {
         Self {
             passes: vec![first],
             near,
+            planned: Arc::new([]),
         }
+    }
+
+    /// The same where wire is meant to climb to each next layer between these winding angles, rad.
+    ///
+    /// A nozzle that lays a single turn and goes back cannot be told from one that hangs back, or does not move at all. Where a layer
+    /// is that short, the passes are those of the plan.
+    pub(crate) fn planned(self, jumps: &[[f64; 2]]) -> Self {
+        let ends = jumps.iter().map(|jump| jump[1]);
+        let mut short = ends.clone().zip([0.0].into_iter().chain(ends));
+        let planned: Arc<[f64]> = match short.any(|(end, start)| end - start < HUNG_BACK) {
+            true => jumps.iter().map(|jump| jump[0]).collect(),
+            false => Arc::new([]),
+        };
+        Self { planned, ..self }
+    }
+
+    /// Whether passes are those of a plan.
+    pub(crate) fn has_plan(&self) -> bool {
+        !self.planned.is_empty()
+    }
+
+    /// The same for a first pass in this direction along y.
+    pub(crate) fn set_first_sense(&mut self, sense: f64) {
+        let first = Self::new(sense, self.near);
+        self.passes = first.passes;
+    }
+
+    /// The passes of a saved state, under the same plan.
+    pub(crate) fn take(&mut self, saved: Self) {
+        self.passes = saved.passes;
     }
 
     /// Number from 1 and pass of the wire at this winding angle, rad.
@@ -66,7 +101,12 @@ impl Passes {
     /// The passes without those in which the nozzle hung back.
     fn judged(&self) -> impl Iterator<Item = Pass> {
         let mut rest = &self.passes[..];
+        let mut number = 0;
         std::iter::from_fn(move || {
+            if self.has_plan() {
+                number += 1;
+                return self.planned_pass(number - 1);
+            }
             let (first, mut after) = rest.split_first()?;
             while let [back, on, ..] = after
                 && on.from - back.from < HUNG_BACK
@@ -81,9 +121,30 @@ impl Passes {
         })
     }
 
+    /// A pass of the plan, by its number from 0: each goes the other way.
+    fn planned_pass(&self, number: usize) -> Option<Pass> {
+        let first = self.passes[0];
+        let from = match number {
+            0 => first.from,
+            _ => *self.planned.get(number - 1)?,
+        };
+        let sense = match number % 2 {
+            0 => first.sense,
+            _ => -first.sense,
+        };
+        Some(Pass {
+            from,
+            sense,
+            turned_at: None,
+        })
+    }
+
     /// Number of the last pass of a nozzle that swings past its places, where less wire than a swing takes has been laid in it up
     /// to this winding angle, rad: what it turned for shows once it goes on.
     pub(crate) fn last_swing(&self, angle: f64) -> Option<u32> {
+        if self.has_plan() {
+            return None;
+        }
         let judged: Vec<Pass> = self.judged().collect();
         let swings = judged.len() < self.passes.len() && judged.last() == self.passes.last();
         (swings && angle - self.last().from < HUNG_BACK).then_some(judged.len() as u32)

@@ -43,7 +43,8 @@ impl Coil {
         // Once the nozzle has turned, wire of the row itself may be what the next one lies on.
         let least = row.number + u32::from(row.is_over_in(pass));
         let climbed = row.is_over_in(pass)
-            && self.support(least, at).layer > last.map_or(1, |last| last.station.layer);
+            && (self.support(least, at).layer > last.map_or(1, |last| last.station.layer)
+                || self.climbs_by_plan(row, at));
         let climbs_at_flange = !row.is_over_in(pass)
             && row.sense == pass.sense
             && at.has_no_room_in(row, self.spec.diameter)
@@ -53,6 +54,13 @@ impl Coil {
             false => row.next(pass, angle, y, climbed, self.spec.diameter),
         };
         (row, self.support(row.number, at))
+    }
+
+    /// Whether wire climbs on its own row where a layer is a turn long by plan: there each turn lies on the one before.
+    fn climbs_by_plan(&self, row: Row, at: &RowPlace) -> bool {
+        let on = || self.support(row.number, at).own_row;
+        self.has_planned_passes()
+            && on().is_some_and(|rise| rise >= NEXT_LAYER * self.spec.diameter)
     }
 
     /// Layer that wire of this row, the row of the last station, leaves where it climbs: that of the station, or of the turn

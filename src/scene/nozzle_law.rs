@@ -201,6 +201,25 @@ impl NozzleLaw {
         })
     }
 
+    /// How often it passes a place at most, as wire of diameter `d` (m) is laid turn by turn: a way that turns back goes over the
+    /// turns that it has laid. Where it stands nothing is counted.
+    pub(super) fn passes(&self, d: f64) -> u32 {
+        let mut turned = 0;
+        let mut last = (self.start(), 0.0);
+        for turn in 0..self.turns.floor() as u32 {
+            let y = self.position((f64::from(turn) + 0.5) * TAU);
+            let step = y - last.0;
+            if step.abs() < 0.5 * d {
+                continue;
+            }
+            if step * last.1 < 0.0 {
+                turned += 1;
+            }
+            last = (y, step);
+        }
+        turned + 1
+    }
+
     /// The same law for so many turns.
     pub(super) fn for_turns(self, turns: f64) -> Self {
         Self { turns, ..self }

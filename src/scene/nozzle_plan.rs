@@ -58,9 +58,13 @@ impl Layers {
         ends
     }
 
-    /// How far a layer rises over the one below, in whose grooves it lies, m, for wire of this diameter.
+    /// How far a layer rises over the one below, m, for wire of this diameter: it lies in the grooves, or turn on turn.
     fn rise(&self, d: f64) -> f64 {
-        (d * d - 0.25 * self.pitch * self.pitch).max(0.0).sqrt()
+        let aside = match self.layers[..] {
+            [below, next, ..] => next.first - below.last,
+            _ => 0.5 * self.pitch,
+        };
+        (d * d - aside * aside).max(0.0).sqrt()
     }
 
     /// From where to where a nozzle goes that leads wire with these trails through crossovers of so many rad, m.
@@ -237,7 +241,7 @@ impl SceneSettings {
     }
 
     /// Layers over each other, each half a pitch aside of the one below. Where there is no room for half a pitch more, every
-    /// other layer has a turn less.
+    /// other layer has a turn less. Where a single turn has no such room, turn lies on turn.
     fn stacked(&self, turns: u32, pitch: f64, has_half: bool) -> Layers {
         let mut layers = Vec::new();
         let mut first = self.nozzle.y_start;
@@ -246,12 +250,10 @@ impl SceneSettings {
         } else {
             1.0
         };
+        let aside = if turns > 1 || has_half { 0.5 } else { 0.0 };
         for number in 0..self.winding.layers as u32 {
-            let between_flanges = number % 2 == 1 && !has_half;
+            let between_flanges = number % 2 == 1 && !has_half && turns > 1;
             let turns = turns - u32::from(between_flanges);
-            if turns == 0 {
-                break;
-            }
             let last = first + sense * f64::from(turns - 1) * pitch;
             layers.push(Layer {
                 first,
@@ -259,10 +261,9 @@ impl SceneSettings {
                 turns,
                 sense,
             });
-            let on = if number % 2 == 0 && !has_half {
-                -0.5
-            } else {
-                0.5
+            let on = match has_half || number % 2 == 1 {
+                true => aside,
+                false => -aside,
             };
             first = last + on * pitch * sense;
             sense = -sense;

@@ -153,9 +153,22 @@ impl SceneSettings {
             let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
             warn("traverse.per_turn", message);
         }
-        if self.winds_layers() {
+        let table = self.traverse.mode == "table";
+        if self.winds_layers() || table {
+            let layers = match self.plans_layers() {
+                true => self.winding.layers,
+                false => f64::from(law.passes(wire.diameter)),
+            };
             // each layer but the first lies in the grooves of the one below
-            let coil = wire.diameter * (1.0 + (self.winding.layers - 1.0) * 0.75_f64.sqrt());
+            let coil = wire.diameter * (1.0 + (layers - 1.0) * 0.75_f64.sqrt());
+            // where turns are planned in layers, a nozzle that they meet is refused
+            if table && extent.winding_radius + coil >= self.nozzle.distance {
+                let message = format!(
+                    "the coil meets the nozzle: the table goes over it {layers} times, and the wire stands up to {} m from the axis then",
+                    si(extent.winding_radius + coil)
+                );
+                warn("nozzle.distance", message);
+            }
             if core.flange().is_some_and(|flange| coil > flange.height) {
                 let message = format!("the coil stands {} m high, above the flanges", si(coil));
                 warn("core.flange.height", message);

@@ -2,7 +2,7 @@
 
 use crate::coils::{D, on_cylinder, spec, wound};
 use coilwind::measure::{
-    Coil, DefectFlags, DefectKind, STATIONS_PER_TURN, SettledNode, Station, Verdict,
+    Coil, CoilSpec, DefectFlags, DefectKind, STATIONS_PER_TURN, SettledNode, Station, Verdict,
 };
 use std::f64::consts::TAU;
 
@@ -42,6 +42,41 @@ fn coil_of(layers: u32) -> Coil {
         coil.begin_pass((f64::from(layer) * TURNS - 0.05) * TAU, sense);
     }
     coil
+}
+
+/// Turns of a coil of single turns: one on the other, or from flange to flange `aside` (m) and back. Each climbs over the last
+/// `climb` turns before the clamp's angle comes round again, earlier by a hundredth turn by turn.
+fn single_turns(turns: u32, aside: f64) -> Coil {
+    let rise = (D * D - aside * aside).sqrt();
+    let place = |angle: f64| {
+        let turn = (angle / TAU).floor();
+        let climb = ((angle / TAU - turn - 0.95 + 0.01 * turn) / 0.05).clamp(0.0, 1.0);
+        let at = |turn: f64| aside * (turn % 2.0);
+        let y = at(turn) + climb * (at(turn + 1.0) - at(turn));
+        (y, rise * (turn + climb))
+    };
+    let jumps = (1..turns).map(|turn| {
+        let end = f64::from(turn) * TAU;
+        [end - 0.2 * TAU, end]
+    });
+    let spec = CoilSpec {
+        jumps: jumps.collect(),
+        ..spec()
+    };
+    wound(spec, &on_cylinder(f64::from(turns) - 0.15, 1.0, place))
+}
+
+/// The nozzle of a window that holds one turn does not move, or goes back after a turn as if it had hung back: from the third turn on
+/// all of them were double turns, overlaps and bulges.
+#[test]
+fn layers_of_one_turn_are_layers() {
+    for aside in [0.0, 0.4 * D, 0.6 * D] {
+        let coil = single_turns(7, aside);
+        assert_eq!(coil.flags(), DefectFlags::default(), "{:?}", coil.defects());
+        assert_eq!(coil.layers(), 7, "{aside}");
+        let layers: Vec<u32> = coil.turns().iter().map(|turn| turn.layer).collect();
+        assert_eq!(layers, [1, 2, 3, 4, 5, 6, 7]);
+    }
 }
 
 /// What a layer leaves free beside a flange was not measured.

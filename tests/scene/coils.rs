@@ -80,6 +80,28 @@ fn without_room_for_half_a_turn_every_other_layer_has_a_turn_less() {
     assert!((second - (6.7e-3 - 0.5 * pitch)).abs() < 1e-12, "{second}");
 }
 
+/// A window of one turn without room for half a turn more had one layer, whatever the scene asked for, and nothing said so.
+#[test]
+fn one_turn_a_layer_lies_turn_on_turn() {
+    let slot = BOBBIN
+        .replace("inner_distance_mm = 14.5", "inner_distance_mm = 0.75")
+        .replace("-6.9", "0");
+    let settings = parse(&format!("{slot}mode = 'orthocyclic'")).unwrap();
+    let law = settings.build().unwrap().nozzle_law;
+    assert_eq!(law.turns(), 3.0);
+    for turn in 0..30 {
+        assert_eq!(law.position(f64::from(turn) / 10.0 * TAU), 0.0);
+    }
+    // a climb a turn, over the last part of it
+    let ends: Vec<_> = law.jumps().iter().map(|jump| jump[1] / TAU).collect();
+    assert_eq!(ends, [1.0, 2.0]);
+    // with room for half a turn, the layers lie side by side
+    let wide = slot.replace("0.75", "1.1");
+    let wide = parse(&format!("{wide}mode = 'orthocyclic'")).unwrap();
+    let refused = wide.build().unwrap_err().to_string();
+    assert_says(&refused, &["nozzle.y_start"]);
+}
+
 #[test]
 fn an_even_traverse_goes_to_and_fro_and_dwells() {
     let law = law("mode = 'helical'\ndwell_turns = 0.5");
@@ -174,6 +196,40 @@ fn a_table_gives_the_way() {
     }
     let missing = scene("none.csv").unwrap_err().to_string();
     assert_says(&missing, &["traverse.file", "cannot be opened"]);
+}
+
+/// What a table winds was held against the nozzle and the flanges with `[winding]` only.
+#[test]
+fn a_coil_of_a_table_that_grows_into_the_nozzle_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut way = "turns,y_mm\n".to_owned();
+    for pass in 0..=9 {
+        way += &format!("{},{}\n", pass * 20, if pass % 2 == 0 { -6.9 } else { 6.9 });
+    }
+    std::fs::write(folder.path().join("way.csv"), way).unwrap();
+    let keys = |distance: &str| {
+        let text = BOBBIN
+            .replace("[winding]\nlayers = 3\n", "")
+            .replace("[nozzle]", &format!("[nozzle]\ndistance_mm = {distance}"));
+        let text = format!("{text}mode = 'table'\nfile = 'way.csv'\n");
+        let settings = SceneSettings::from_toml_str(&text, "scene.toml", folder.path()).unwrap();
+        let (_, warnings) = settings.build_with_warnings().unwrap();
+        warnings
+            .iter()
+            .map(|w| (w.key, w.message.clone()))
+            .collect::<Vec<_>>()
+    };
+    // nine layers of 0.7 mm over a radius of 8 mm stand up to 13.5 mm from the axis, above flanges of 4 mm
+    let far = keys("14");
+    assert!(
+        far.iter().all(|(key, _)| *key != "nozzle.distance"),
+        "{far:?}"
+    );
+    let near = keys("13.2");
+    let told = near.iter().find(|(key, _)| *key == "nozzle.distance");
+    let (_, message) = told.expect("the coil meets the nozzle");
+    assert_says(message, &["9 times", "0.01354"]);
+    assert!(near.iter().any(|(key, _)| *key == "core.flange.height"));
 }
 
 #[test]
