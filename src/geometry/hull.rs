@@ -10,7 +10,7 @@ const SAME: f64 = 1e-6;
 
 /// Corners of a convex section round the axis as (x, z), m, from +x towards +z.
 #[derive(Clone, Debug)]
-pub(super) struct Hull {
+pub(crate) struct Hull {
     corners: Vec<[f64; 2]>,
 }
 
@@ -30,7 +30,7 @@ fn turns_left(before: [f64; 2], corner: [f64; 2], after: [f64; 2]) -> bool {
 
 impl Hull {
     /// The hull of points as (x, z), m; none unless the axis goes through it.
-    pub(super) fn of(mut points: Vec<[f64; 2]>) -> Option<Self> {
+    pub(crate) fn of(mut points: Vec<[f64; 2]>) -> Option<Self> {
         let size = points
             .iter()
             .flatten()
@@ -74,7 +74,7 @@ impl Hull {
     ///
     /// A corner that bends by one such chord or less is one mitred point. Its share `1 / cos(turn / 2) - 1` of `out` too far
     /// outside is to fourth order that by which the chord would be inside.
-    pub(super) fn outline(&self, out: f64, chords: usize) -> Vec<[f64; 2]> {
+    pub(crate) fn outline(&self, out: f64, chords: usize) -> Vec<[f64; 2]> {
         let normals: Vec<[f64; 2]> = self
             .edges()
             .map(|[a, b]| {

@@ -44,6 +44,7 @@ pub use error::MeshError;
 pub use feature::Nearest;
 pub use flange::Flanges;
 pub(crate) use flank::FLANGE_FACE;
+pub(crate) use hull::Hull;
 pub use mesh::TriMesh;
 pub use rounded_rod::RoundedRod;
 pub use shape::{Nearness, Shape};

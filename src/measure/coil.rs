@@ -33,7 +33,7 @@ pub struct CoilSpec {
     pub diameter: f64,
     /// limits of the defect flags
     pub limits: DefectLimits,
-    /// quasi-static height of this wire at this tension; without one the bulge is judged against
+    /// quasi-static height over the polar angle of this wire at this tension; without one the bulge is judged against
     /// `limits.bulge_absolute`, or a diameter where that is 0
     pub profile: Option<Profile>,
     /// tension that wire is meant to be laid with, N; 0: not known, and no turn is loose for its tension
@@ -472,7 +472,7 @@ impl Coil {
         // A drawn loop lies close on wire that itself stands off the core as it would alone.
         let at_rest = |profile: &Profile| match support.is_wire {
             true => 0.0,
-            false => profile.at(angle),
+            false => profile.at(self.polar_at(angle)),
         };
         let (layer, other_layer) = self.layer_after(support.layer, row);
         let (neighbour, window) = self.neighbour(angle, position, row);

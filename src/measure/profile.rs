@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-/// Quasi-static height of the wire over the core by winding angle.
+/// Quasi-static height of the wire over the core by polar angle.
 ///
 /// A stiff wire stands off a flat face even when it is wound slowly. Only the height that a fast
 /// run adds is a defect.
@@ -12,14 +12,14 @@ pub struct Profile {
 }
 
 impl Profile {
-    /// From heights in m at equal winding angles `k 2 pi / n` from the clamp, one turn, periodic.
+    /// From heights in m at equal polar angles `k 2 pi / n` from +x, one turn, periodic.
     ///
     /// `None` for no values or one that is not finite.
     pub fn new(heights: Vec<f64>) -> Option<Self> {
         (!heights.is_empty() && heights.iter().all(|h| h.is_finite())).then_some(Self { heights })
     }
 
-    /// Height at a winding angle from the clamp (rad, any turn), linear between values, m.
+    /// Height at a polar angle (rad, any turn), linear between values, m.
     pub fn at(&self, angle: f64) -> f64 {
         let n = self.heights.len();
         let place = (angle / TAU).rem_euclid(1.0) * n as f64;
@@ -29,7 +29,7 @@ impl Profile {
         self.heights[low] + share * (self.heights[(low + 1) % n] - self.heights[low])
     }
 
-    /// The values at equal winding angles, m.
+    /// The values at equal polar angles, m.
     pub fn heights(&self) -> &[f64] {
         &self.heights
     }

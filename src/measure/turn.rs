@@ -239,9 +239,14 @@ impl Coil {
         result
     }
 
+    /// Polar angle at this winding angle, rad, not wrapped.
+    pub(crate) fn polar_at(&self, angle: f64) -> f64 {
+        self.spec.start_angle + self.spec.direction * angle
+    }
+
     /// Face at a winding angle: 0 on +x, 1 on +z, 2 on -x, 3 on -z.
     fn face(&self, angle: f64) -> usize {
-        let polar = self.spec.start_angle + self.spec.direction * angle;
+        let polar = self.polar_at(angle);
         let c = self.spec.corner_angle;
         // The hair keeps a station right at a corner from changing sides by rounding.
         let from_corner = (polar + c + 1e-6 * STATION_STEP).rem_euclid(TAU);

@@ -2,8 +2,10 @@
 //!
 //! A wire bent round a corner under tension does not lie flat on the faces beside it. The height
 //! at rest is that of a loop drawn tight round the core without friction at the set tension.
-//! A quarter of the loop is computed, from the middle of one face to the middle of the next. It
-//! has the rod, section and contact of the winding.
+//! A quarter of the loop is computed, from the middle of one face to the middle of the next; round a core
+//! without two mirror planes, a whole turn. It has the rod, section and contact of the winding.
+
+mod whole_turn;
 
 use super::core_model::core_shape;
 use crate::contact::{ContactLaw, LineModel};
@@ -44,8 +46,8 @@ const STIFFER: f64 = 2.0;
 const TOLERANCE: f64 = 1e-7;
 const TENSION: f64 = 1e-2;
 
-/// Height over the core by winding angle of wire at rest under `tension`, N. There is none without tension, for a mesh that is
-/// not the same on both sides of x and z, and where no loop is found.
+/// Height over the core by polar angle of wire at rest under `tension`, N. There is none without tension, for a mesh that its
+/// axis does not go through, and where no loop is found.
 ///
 /// On a cylinder wire has no faces to stand off from: its helix lies on the core.
 pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Profile> {
@@ -64,29 +66,37 @@ pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Op
             corner: corner_radius,
             y: 0.0,
         },
-        Core::Mesh { .. } => CoreSection::of(surface, SYMMETRIC * scene.wire.diameter)?,
+        Core::Mesh { .. } => match CoreSection::of(surface, SYMMETRIC * scene.wire.diameter) {
+            Some(section) => section,
+            None => return whole_turn::profile(scene, surface, tension),
+        },
     };
     let sys = quarter_loop(scene, surface, &section, tension)?;
+    let quarter = heights(scene, surface, &sys.state.rod.x);
+    profile_of(&quarter, |angle| {
+        // fold into the quarter from +x to +z
+        let a = angle.rem_euclid(PI);
+        a.min(PI - a)
+    })
+}
+
+/// Polar angle, rad, and height over the core, m, of wire with its centreline at these points.
+fn heights(scene: &Scene, surface: &Surface, points: &[V3]) -> Vec<(f64, f64)> {
     let radius = scene.wire.radius();
     let height = |p: V3| match scene.core.may_have_flanges() {
         true => surface.height_over_flank(p),
         false => surface.nearest(p).distance,
     };
-    let quarter: Vec<(f64, f64)> = sys
-        .state
-        .rod
-        .x
-        .iter()
-        .map(|p| (polar_angle(*p), height(*p) - radius))
-        .collect();
+    let at = |p: &V3| (polar_angle(*p), height(*p) - radius);
+    points.iter().map(at).collect()
+}
+
+/// The profile over a whole turn from angles and heights by rising angle; `folded` says where among them an angle is, rad.
+fn profile_of(known: &[(f64, f64)], folded: impl Fn(f64) -> f64) -> Option<Profile> {
     let at = |angle: f64| {
-        // fold into the quarter from +x to +z
-        let a = angle.rem_euclid(PI);
-        let a = a.min(PI - a);
-        let k = quarter
-            .partition_point(|q| q.0 < a)
-            .clamp(1, quarter.len() - 1);
-        let (p, q) = (quarter[k - 1], quarter[k]);
+        let a = folded(angle);
+        let k = known.partition_point(|q| q.0 < a).clamp(1, known.len() - 1);
+        let (p, q) = (known[k - 1], known[k]);
         p.1 + (q.1 - p.1) * ((a - p.0) / (q.0 - p.0)).clamp(0.0, 1.0)
     };
     Profile::new(
@@ -180,17 +190,36 @@ fn quarter_loop(
 ) -> Option<System> {
     let [loose, tight] = starts(scene, surface, core);
     let section = loose.model.section.clone();
-    draw_tight(loose, tension).or_else(|| stiffened(tight, &section, tension))
+    draw_tight(loose, tension, TOLERANCE).or_else(|| stiffened(tight, &section, tension, TOLERANCE))
+}
+
+/// The wire of a loop: how far it stretches does not matter for its shape, and a softer one that cannot yield so settles sooner.
+fn loop_section(scene: &Scene) -> Section {
+    Section {
+        ea: scene.wire.ea / SOFTER,
+        n_y: f64::INFINITY,
+        ..scene.wire.clone()
+    }
+}
+
+/// Lets a loop touch the core, without friction.
+fn touching_core(mut sys: System, scene: &Scene, surface: &Arc<Surface>) -> System {
+    let law = ContactLaw {
+        stiffness: scene.contact.stiffness,
+        damping_ratio: 0.0,
+        mu_static: 0.0,
+        mu_kinetic: 0.0,
+        slip_speed: scene.friction.slip_speed,
+    };
+    let shape = core_shape(&scene.core, surface);
+    sys.touch_along(LineModel::new(shape, law, scene.wire.radius()));
+    sys.refresh();
+    sys
 }
 
 /// Both loops to start with: loose and well outside, and tight on the core.
 fn starts(scene: &Scene, surface: &Arc<Surface>, core: &CoreSection) -> [System; 2] {
-    // how far the wire stretches does not matter for its shape: a softer one that cannot yield so settles sooner
-    let section = Section {
-        ea: scene.wire.ea / SOFTER,
-        n_y: f64::INFINITY,
-        ..scene.wire.clone()
-    };
+    let section = loop_section(scene);
     let r = section.radius();
     let gap = scaled(START_GAP, section.diameter);
     let [a, b] = core.half.map(|half| half + r + gap);
@@ -206,19 +235,7 @@ fn starts(scene: &Scene, surface: &Arc<Surface>, core: &CoreSection) -> [System;
         radius: core.corner + r,
         y: core.y,
     };
-    let law = ContactLaw {
-        stiffness: scene.contact.stiffness,
-        damping_ratio: 0.0,
-        mu_static: 0.0,
-        mu_kinetic: 0.0,
-        slip_speed: scene.friction.slip_speed,
-    };
-    [loose, tight].map(|outline| {
-        let mut sys = laid_out(outline, &section);
-        sys.touch_along(LineModel::new(core_shape(&scene.core, surface), law, r));
-        sys.refresh();
-        sys
-    })
+    [loose, tight].map(|outline| touching_core(laid_out(outline, &section), scene, surface))
 }
 
 /// The loop without load, held by the mirror planes at its ends.
@@ -243,12 +260,12 @@ fn laid_out(outline: Outline, section: &Section) -> System {
     sys
 }
 
-/// Draws a loop to this tension, N, by taking wire out evenly; a loose one gives way, a tight one stretches.
+/// Draws a loop to this tension, N, within this `tolerance` (m, for wire of 0.7 mm), by taking wire out evenly; a loose one gives way, a tight one stretches.
 ///
 /// A draw after which the loop finds no rest is taken back and tried by half.
-fn draw_tight(mut sys: System, tension: f64) -> Option<System> {
+fn draw_tight(mut sys: System, tension: f64, tolerance: f64) -> Option<System> {
     let section = sys.model.section.clone();
-    let tolerance = scaled(TOLERANCE, section.diameter);
+    let tolerance = scaled(tolerance, section.diameter);
     let mut method = Implicit::new(Scheme::Bdf2, tolerance, 1e-9, 1.0);
     let mut stiffness = section.ea;
     let mut before: Option<(f64, f64)> = None;
@@ -295,14 +312,14 @@ fn draw(sys: &mut System, share: f64) {
 /// Lets a limp loop that lies on the core become as stiff as `section`, at this tension, N.
 ///
 /// A step that is too large for the loop to find rest is halved.
-fn stiffened(mut sys: System, section: &Section, tension: f64) -> Option<System> {
+fn stiffened(mut sys: System, section: &Section, tension: f64, tolerance: f64) -> Option<System> {
     draw(&mut sys, tension / section.ea);
     let (mut share, mut factor) = (LIMP, STIFFER);
     let mut reached: Option<(System, f64)> = None;
     for _ in 0..MOST_DRAWS {
         sys.model.section = with_bending(section, share);
         sys.refresh();
-        match draw_tight(sys, tension) {
+        match draw_tight(sys, tension, tolerance) {
             Some(found) if share >= 1.0 => return Some(found),
             Some(found) => reached = Some((found, share)),
             None => factor = factor.sqrt(),
@@ -420,8 +437,8 @@ mod tests {
             let heights = sys.state.rod.x.iter().map(|p| surface.nearest(*p).distance);
             heights.fold(0.0, f64::max) - scene.wire.radius()
         };
-        let drawn = highest(draw_tight(one, 15.0).expect("drawn"));
-        let stiffened = highest(stiffened(other, &section, 15.0).expect("stiffened"));
+        let drawn = highest(draw_tight(one, 15.0, TOLERANCE).expect("drawn"));
+        let stiffened = highest(stiffened(other, &section, 15.0, TOLERANCE).expect("stiffened"));
         // A tenth of the excess that is a bulge: corners have few nodes, which lie elsewhere.
         let apart = (drawn - stiffened).abs();
         assert!(apart < 0.05 * section.diameter, "{drawn} {stiffened}");
