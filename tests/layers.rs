@@ -224,3 +224,30 @@ fn wire_that_passes_a_flange_is_not_wound_there() {
         before = o.turns_wound;
     }
 }
+
+/// Of a window that holds one turn and no half, a single layer was wound, whatever the scene asked for; with as many as it asked
+/// for, turns from the third on were told as double.
+#[test]
+fn a_disc_coil_lies_turn_on_turn() {
+    for (inner, first) in [(0.55, 0.0), (0.8, -0.15)] {
+        let mut sim = started(&format!(
+            "[wire]\nmaterial = 'copper'\ndiameter_mm = 0.5\n[core]\nshape = 'cylinder'\nradius_mm = 8\n\
+             [core.flange]\ninner_distance_mm = {inner}\nheight_mm = 4\nedge_radius_mm = 0.2\n\
+             [nozzle]\ndistance_mm = 40\ny_start_mm = {first}\n[start]\nclamp_y_mm = {first}\n\
+             [tensioner]\ntension = 6\n[spindle]\nspeed = 100\nramp_turns = 0.5\n\
+             [traverse]\nmode = 'orthocyclic'\n[winding]\nturns_per_layer = 1\nlayers = 5\n"
+        ));
+        wound(&mut sim, 2.6);
+        let saved = sim.to_bytes().expect("a state");
+        let mut other = Simulation::from_bytes(sim.scene(), &saved).expect("restores");
+        for sim in [&mut sim, &mut other] {
+            wound(sim, 5.0);
+        }
+        assert!(other.to_bytes().unwrap() == sim.to_bytes().unwrap());
+        let layers: Vec<u32> = sim.turns().iter().map(|turn| turn.layer).collect();
+        assert_eq!(layers, [1, 2, 3, 4, 5], "{inner} mm");
+        assert_eq!(sim.defects(), [], "{inner} mm");
+        let deepest = sim.product().coil.expect("a coil").height_m;
+        assert!(deepest > 4.0 * 0.35e-3, "{deepest}");
+    }
+}

@@ -11,6 +11,7 @@ mod communication;
 mod core_model;
 mod course;
 mod door;
+mod drawn_loop;
 mod faults;
 mod freezing;
 mod io;
@@ -41,6 +42,7 @@ mod trail;
 #[cfg(feature = "lab")]
 mod trail_keeping;
 mod traverse;
+mod whole_turn;
 mod winding;
 
 pub use crate::geometry::{Surface, TriMesh};

@@ -3,7 +3,9 @@
 //! The ends of the wire are held on the core's longest face. What that does to the height fades within a corner or two, so a turn
 //! to either side keeps it from the middle one.
 
-use super::{MOST_EDGES, SPACING, heights, loop_section, profile_of, stiffened, touching_core};
+use super::drawn_loop::{
+    MOST_EDGES, SPACING, heights, loop_section, profile_of, stiffened, touching_core,
+};
 use crate::geometry::{Hull, Surface};
 use crate::math::{V3, frame_along, scaled};
 use crate::measure::Profile;
@@ -126,11 +128,9 @@ impl Path {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::core_model::core_surface;
+    use super::super::core_model::core_surface;
     use super::*;
     use crate::geometry::TriMesh;
-    use crate::math::Spin;
-    use crate::measure::{STATION_STEP, STATIONS_PER_TURN};
     use crate::scene::Core;
     use crate::settings::SceneSettings;
 
@@ -159,24 +159,6 @@ mod tests {
 
     fn largest(heights: impl Iterator<Item = f64>) -> f64 {
         heights.fold(0.0, |largest: f64, height| largest.max(height.abs()))
-    }
-
-    /// A box turned about its axis, or off its axis, had no yardstick: wire on it was judged against a whole diameter.
-    #[test]
-    fn a_turned_box_has_the_yardstick_of_the_box_turned() {
-        let (scene, surface) = on_a_mesh();
-        let straight = Arc::new(surface);
-        let known = super::super::profile(&scene, &straight, TENSION).expect("two mirror planes");
-        let stations = 20;
-        let spin = Spin::new(f64::from(stations) * STATION_STEP);
-        let turned = moved(&straight, |p| spin.to_lab(p));
-        // about y, z turns towards x: the polar angle falls
-        let found = super::super::profile(&scene, &turned, TENSION).expect("a whole turn");
-        let at = |k: i32| known.at(f64::from(k + stations) * STATION_STEP);
-        let apart =
-            largest((0..STATIONS_PER_TURN as i32).map(|k| found.heights()[k as usize] - at(k)));
-        // a tenth of the excess that is a bulge: corners have few nodes, which lie elsewhere
-        assert!(apart < 0.05 * scene.wire.diameter, "{apart}");
     }
 
     /// Such cores had no yardstick at all.
