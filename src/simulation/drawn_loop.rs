@@ -53,9 +53,9 @@ pub(super) fn touching_core(mut sys: System, scene: &Scene, surface: &Arc<Surfac
     sys
 }
 
-/// Draws a loop to this tension, N, within this `tolerance` (m, for wire of 0.7 mm), by taking wire out evenly; a loose one gives way, a tight one stretches.
+/// Draws a loop to this tension, N, by taking wire out evenly; a loose one gives way, a tight one stretches.
 ///
-/// A draw after which the loop finds no rest is taken back and tried by half.
+/// `tolerance` is the error of its place, m, for wire of 0.7 mm. A draw after which the loop finds no rest is taken back and tried by half.
 pub(super) fn draw_tight(mut sys: System, tension: f64, tolerance: f64) -> Option<System> {
     let section = sys.model.section.clone();
     let tolerance = scaled(tolerance, section.diameter);
