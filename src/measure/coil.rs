@@ -544,9 +544,9 @@ impl Coil {
         within >= self.spec.limits.skip_angle || angle >= 2.0 * TAU - 1e-9
     }
 
-    /// Layer of the next station where wire lies `below` it as it does, and for how many stations that has said
-    /// otherwise: a layer changes once it has for as many as a defect needs, or at once where a planned row begins. Layers of
-    /// a turn begin over each other, and would do so later and later.
+    /// Layer of the next station where wire lies `below` it as it does, and for how many stations that has said otherwise.
+    /// A layer changes once it has for as many as a defect needs, or at once where a planned row begins. Layers of a turn begin
+    /// over each other, and would do so later and later.
     fn layer_after(&self, below: u32, row: Row) -> (u32, u32) {
         match self.records.last() {
             Some(last) if self.has_planned_passes() && row.number > last.row.number => (below, 0),
