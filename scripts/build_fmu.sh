@@ -5,7 +5,8 @@
 #     scripts/build_fmu.sh --portable    linux64 for glibc 2.17 or later and win64, the same bytes
 #                                        from the same sources wherever they lie
 #
-# What --portable needs besides is said by scripts/missing_tools.sh portable.
+# What --portable needs besides is said by scripts/missing_tools.sh portable. COILWIND_PACK_FMU names a pack-fmu that is
+# built already.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 target=$(mkdir -p "${CARGO_TARGET_DIR:-target}" && cd "${CARGO_TARGET_DIR:-target}" && pwd)
@@ -58,28 +59,36 @@ separated() { local IFS=$'\x1f'; echo "$*"; }
 
 build=(rustc --locked --release --package coilwind-fmu --lib --crate-type cdylib)
 
-# The two libraries share a target directory of their own, so that the flags above do not throw out
-# what other builds have left.
-export CARGO_TARGET_DIR=$target/portable CARGO_INCREMENTAL=0
+# Target directories of their own, so that the flags above do not throw out what other builds have left; one for each
+# library, so that the two are built side by side: link-time optimisation keeps a single core busy.
+export CARGO_INCREMENTAL=0
 linux=x86_64-unknown-linux-gnu
 windows=x86_64-pc-windows-gnu
 
-echo "linux64, for glibc 2.17"
+echo "linux64, for glibc 2.17, and win64"
 # zig brings the symbol tables of old glibc versions; cargo-zigbuild finds it through python's path.
-CARGO_ENCODED_RUSTFLAGS=$(separated "${flags[@]}") PATH=$tools:$PATH \
-    cargo-zigbuild "${build[@]}" --target $linux.2.17
+CARGO_TARGET_DIR=$target/portable/linux CARGO_ENCODED_RUSTFLAGS=$(separated "${flags[@]}") PATH=$tools:$PATH \
+    cargo-zigbuild "${build[@]}" --target $linux.2.17 &
+building=$!
+# An error here or Ctrl-C ends the other build too.
+trap 'kill $building 2>/dev/null || true' EXIT
 
-echo "win64"
 # Not zig: it exports what is internal. Without a time in the header the same code gives the same bytes.
 CARGO_ENCODED_RUSTFLAGS=$(separated "${flags[@]}" -Clink-arg=-Wl,--no-insert-timestamp) \
     CARGO_TARGET_X86_64_PC_WINDOWS_GNU_LINKER=$PWD/scripts/link_dll.sh \
-    COILWIND_TARGET=$CARGO_TARGET_DIR COILWIND_CRATES=$crates COILWIND_TOOLCHAIN=$(rustc --print sysroot) \
+    CARGO_TARGET_DIR=$target/portable/windows COILWIND_TARGET=$target/portable/windows \
+    COILWIND_CRATES=$crates COILWIND_TOOLCHAIN=$(rustc --print sysroot) \
     cargo "${build[@]}" --target $windows
+wait $building
+trap - EXIT
 
-so=$CARGO_TARGET_DIR/$linux/release/libCoilWinding.so
-dll=$CARGO_TARGET_DIR/$windows/release/CoilWinding.dll
+so=$target/portable/linux/$linux/release/libCoilWinding.so
+dll=$target/portable/windows/$windows/release/CoilWinding.dll
 scripts/check_library.sh --glibc 2.17 "$so"
 scripts/check_library.sh "$dll"
 
-CARGO_TARGET_DIR=$target cargo build --locked --release --package coilwind-model-description
-exec "$target/release/pack-fmu" "$out" "$so" "$dll"
+if [ -z "${COILWIND_PACK_FMU-}" ]; then
+    COILWIND_PACK_FMU=$target/release/pack-fmu
+    cargo build --locked --release --package coilwind-model-description
+fi
+exec "$COILWIND_PACK_FMU" "$out" "$so" "$dll"

@@ -19,7 +19,8 @@ ln -s "$target/venv-build" "$copy/target/venv-build"
 (
     cd "$copy"
     unset CARGO_TARGET_DIR
-    scripts/build_fmu.sh --portable
+    # The libraries are what may hold paths; the package around them is made by the same program.
+    COILWIND_PACK_FMU=$target/release/pack-fmu scripts/build_fmu.sh --portable
 )
 second=$copy/target/fmu/CoilWinding.fmu
 if ! cmp "$first" "$second"; then

@@ -92,7 +92,8 @@ lint() {
     RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps --document-private-items --quiet
 
     step layout of the sources
-    cargo test --locked --test tidy
+    # With what the Rust tests are built with, so that nothing is compiled twice.
+    cargo test --locked --workspace --test tidy
 }
 
 lab() {

@@ -61,7 +61,7 @@ pub enum OutputError {
         /// file that was to be written
         path: PathBuf,
         /// what the encoder said
-        source: image::ImageError,
+        source: png::EncodingError,
     },
     /// arrays that belong together differ in length
     #[error("cannot write {}: {name} has {got} values for {expected} nodes", path.display())]

@@ -11,7 +11,6 @@ use super::vtp::{check_mesh, turns_of_nodes};
 use super::{OutputError, write_whole};
 use crate::math::V3;
 use crate::simulation::Centreline;
-use image::{Rgb, RgbImage};
 use std::path::Path;
 
 /// Pixels drawn per pixel shown, in each direction.
@@ -83,10 +82,17 @@ pub fn render_png(path: &Path, picture: &Picture) -> Result<(), OutputError> {
     if let Some(core) = &picture.core {
         check_mesh(path, core.vertices, core.triangles)?;
     }
-    let image = render(picture);
+    let pixels = render(picture);
+    let (width, height) = picture.size;
     write_whole(path, |file| {
-        image
-            .write_to(file, image::ImageFormat::Png)
+        let mut encoder = png::Encoder::new(file, width, height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder
+            .write_header()
+            .and_then(|mut writer| {
+                writer.write_image_data(pixels.as_flattened())?;
+                writer.finish()
+            })
             .map_err(|source| OutputError::Image {
                 path: path.to_owned(),
                 source,
@@ -94,8 +100,9 @@ pub fn render_png(path: &Path, picture: &Picture) -> Result<(), OutputError> {
     })
 }
 
-/// Renders the picture. The core's triangles must name existing vertices.
-pub fn render(picture: &Picture) -> RgbImage {
+/// Renders the picture: red, green and blue of each pixel, row by row from the top. The core's triangles must name
+/// existing vertices.
+pub fn render(picture: &Picture) -> Vec<[u8; 3]> {
     let mut scene = Surface::default();
     if let Some(core) = &picture.core {
         scene.add_core(core);
@@ -131,7 +138,7 @@ pub fn render(picture: &Picture) -> RgbImage {
         reach,
     };
     let encoding = Encoding::new();
-    RgbImage::from_fn(width, height, |x, y| {
+    let pixel = |x, y| {
         let mut sum = V3::zeros();
         for sub in 0..SUPERSAMPLING * SUPERSAMPLING {
             let column = x * SUPERSAMPLING + sub % SUPERSAMPLING;
@@ -141,8 +148,12 @@ pub fn render(picture: &Picture) -> RgbImage {
             );
         }
         let mean = sum / f64::from(SUPERSAMPLING * SUPERSAMPLING);
-        Rgb([mean.x, mean.y, mean.z].map(|light| encoding.byte(light)))
-    })
+        [mean.x, mean.y, mean.z].map(|light| encoding.byte(light))
+    };
+    (0..height)
+        .flat_map(|y| (0..width).map(move |x| (x, y)))
+        .map(|(x, y)| pixel(x, y))
+        .collect()
 }
 
 /// Points that must be in the picture: the core's section over the length of the coil, and the
