@@ -87,6 +87,9 @@ pub fn render_png(path: &Path, picture: &Picture) -> Result<(), OutputError> {
     write_whole(path, |file| {
         let mut encoder = png::Encoder::new(file, width, height);
         encoder.set_color(png::ColorType::Rgb);
+        // Not by zlib, of which there are several: the bytes would depend on what other crates ask for.
+        encoder.set_compression(png::Compression::Fast);
+        encoder.set_filter(png::Filter::Adaptive);
         encoder
             .write_header()
             .and_then(|mut writer| {
