@@ -1,4 +1,5 @@
-//! Wire in the V grooves of a drum given as STL: it touches both walls of a groove, and lies in the middle between them.
+//! Wire in the grooves of a drum given as STL. It touches both walls of a V groove, and lies in the middle between them; in a
+//! flat groove of its own width it has three walls beside it.
 
 #[path = "common/stl.rs"]
 mod stl;
@@ -19,8 +20,8 @@ const GROOVES: usize = 3;
 const STRAIGHT: std::ops::Range<usize> = 60..240;
 
 /// Middle of a groove, mm.
-fn middle(groove: usize) -> f64 {
-    (groove as f64 - 0.5 * (GROOVES - 1) as f64) * PITCH_MM
+fn middle(groove: usize, pitch: f64) -> f64 {
+    (groove as f64 - 0.5 * (GROOVES - 1) as f64) * pitch
 }
 
 /// A drum with V grooves of a right angle between flanges, as (y, radius) from end to end, mm.
@@ -30,18 +31,36 @@ fn outline() -> Vec<[f64; 2]> {
     let rim = RADIUS_MM + 3.0;
     let mut points = vec![[-end - 1.5, rim], [-end, rim], [-end, crest]];
     for groove in 0..GROOVES {
-        let y = middle(groove);
+        let y = middle(groove, PITCH_MM);
         points.extend([[y, RADIUS_MM], [y + 0.5 * PITCH_MM, crest]]);
     }
     points.extend([[end, rim], [end + 1.5, rim]]);
     points
 }
 
-#[test]
-fn wire_lies_on_both_walls_of_a_groove() {
+/// A drum with flat grooves between flanges, which leave `play` (mm) beside the wire's middle; walls lean by 10 degrees.
+fn flat_grooves(pitch: f64, play: f64) -> Vec<[f64; 2]> {
+    let lean = 10_f64.to_radians().tan();
+    let depth = 0.45 * DIAMETER_MM;
+    let bottom = 0.5 * (DIAMETER_MM + play) - 0.5 * DIAMETER_MM * lean;
+    let top = bottom + depth * lean;
+    let (crest, rim) = (RADIUS_MM + depth, RADIUS_MM + 3.0);
+    let end = 0.5 * GROOVES as f64 * pitch;
+    let mut points = vec![[-end - 1.5, rim], [-end, rim], [-end, crest]];
+    for groove in 0..GROOVES {
+        let y = middle(groove, pitch);
+        points.extend([[y - top, crest], [y - bottom, RADIUS_MM]]);
+        points.extend([[y + bottom, RADIUS_MM], [y + top, crest]]);
+    }
+    points.extend([[end, crest], [end, rim], [end + 1.5, rim]]);
+    points
+}
+
+/// Winds a turn into each groove of a drum, up to 2.9 turns.
+fn wound(outline: &[[f64; 2]], pitch: f64) -> Simulation {
     let folder = tempfile::tempdir().expect("a folder");
-    write_revolved(&folder.path().join("drum.stl"), &outline(), SIDES);
-    let start = middle(0);
+    write_revolved(&folder.path().join("drum.stl"), outline, SIDES);
+    let start = middle(0, pitch);
     let text = format!(
         "
 [core]
@@ -64,7 +83,7 @@ crossover_deg = 60
 advance_deg = 60
 [winding]
 turns_per_layer = {GROOVES}
-pitch_mm = {PITCH_MM}
+pitch_mm = {pitch}
 "
     );
     let settings =
@@ -72,7 +91,12 @@ pitch_mm = {PITCH_MM}
     let mut sim = Simulation::new(&settings.build().expect("a scene")).expect("starts");
     let end = sim.motion_profile().time_at(2.9 * TAU);
     sim.advance_profile(end).expect("winds");
+    sim
+}
 
+#[test]
+fn wire_lies_on_both_walls_of_a_groove() {
+    let sim = wound(&outline(), PITCH_MM);
     let seat = RADIUS_MM + 0.5 * DIAMETER_MM * SQRT_2;
     // a facet is that much nearer to the axis in its middle
     let sagitta = RADIUS_MM * (1.0 - (0.5 * TAU / SIDES as f64).cos());
@@ -85,7 +109,7 @@ pitch_mm = {PITCH_MM}
         }
         seen += 1;
         let p = station.position * 1e3;
-        let aside = (p.y - middle(turn)).abs();
+        let aside = (p.y - middle(turn, PITCH_MM)).abs();
         assert!(
             aside < 0.01 * DIAMETER_MM,
             "{turn} {degree}: {aside} mm aside"
@@ -97,4 +121,48 @@ pitch_mm = {PITCH_MM}
         );
     }
     assert_eq!(seen, 2 * STRAIGHT.len());
+}
+
+/// With two of the three walls held at a time, wire between the sides of its groove went 5 % of its dissipation up and down in
+/// splits of edges, and 1 % was not explained: the side that was left out came in where wire was deep in it already.
+#[test]
+fn a_groove_that_fits_the_wire_holds_it_by_three_walls() {
+    let pitch = 1.0;
+    for play in [0.05, 0.02] {
+        let sim = wound(&flat_grooves(pitch, play), pitch);
+        let mut seen = 0;
+        for (index, station) in sim.coil().stations().enumerate() {
+            let (turn, degree) = (index / STATIONS_PER_TURN, index % STATIONS_PER_TURN);
+            if turn > 1 || !STRAIGHT.contains(&degree) {
+                continue;
+            }
+            seen += 1;
+            let p = station.position * 1e3;
+            let aside = (p.y - middle(turn, pitch)).abs();
+            // a wall that leans by 10 degrees is touched 1.5 % of its play later, and gives way to the wire's push
+            let most = 0.508 * play + 0.003 * DIAMETER_MM;
+            assert!(aside < most, "{play} {turn} {degree}: {aside} mm aside");
+            let over = p.x.hypot(p.z) - RADIUS_MM - 0.5 * DIAMETER_MM;
+            assert!(over.abs() < 0.03, "{play} {turn} {degree}: {over} mm above");
+        }
+        assert_eq!(seen, 2 * STRAIGHT.len());
+        let energy = sim.energy();
+        let dissipated = energy.plastic_J + energy.friction_J + energy.damping_J;
+        for (part, most) in [
+            (energy.numerical_J, 0.005),
+            (energy.remeshing_J, 0.001),
+            (energy.residual_J, 0.002),
+        ] {
+            assert!(part.abs() < most * dissipated, "{play}: {energy:?}");
+        }
+    }
+}
+
+/// Walls of grooves wider than their pitch cross each other. The wire fell through them, and the run was called a break.
+#[test]
+fn a_drum_whose_walls_cross_leaves_the_coil_in_doubt() {
+    let pitch = 1.0;
+    let sim = wound(&flat_grooves(pitch, 0.4), pitch);
+    let doubt = sim.doubt().expect("a doubt");
+    assert!(doubt.contains("walls of a core from a file"), "{doubt}");
 }

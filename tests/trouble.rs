@@ -544,3 +544,37 @@ fn an_interval_may_end_where_the_ramp_does() {
     }
     assert!((sim.outputs().spindle_angle - TAU).abs() < 1e-9);
 }
+
+/// A run that left four times its dissipation unexplained was judged like any other.
+#[test]
+fn a_run_whose_balance_does_not_close_is_in_doubt() {
+    let mut machine = Machine::new(&[("spindle.speed", "100")]);
+    machine.turn(0.5, 100.0);
+    assert_eq!(machine.sim.doubt(), None);
+    let balance = &mut machine.sim.system_mut().state.balance;
+    balance.inflow += 0.1 * (balance.spindle.abs() + balance.nozzle.abs());
+    machine.turn(0.1, 100.0);
+    let doubt = machine.sim.doubt().expect("a doubt");
+    assert!(
+        doubt.contains("J unexplained") && doubt.contains("solver.tolerance"),
+        "{doubt}"
+    );
+    let events = machine.events.iter();
+    let told =
+        events.filter(|event| event.kind == EventKind::Judgement && doubt.ends_with(&event.text));
+    assert_eq!(told.count(), 1, "{:?}", machine.events);
+}
+
+#[test]
+fn a_run_with_wire_deep_in_what_it_touches_is_in_doubt() {
+    let mut machine = Machine::new(&[("spindle.speed", "100")]);
+    machine.turn(0.2, 100.0);
+    let d = machine.sim.scene().wire.diameter;
+    machine.sim.system_mut().state.deepest = 0.49 * d;
+    machine.wait(1);
+    assert_eq!(machine.sim.doubt(), None);
+    machine.sim.system_mut().state.deepest = 0.51 * d;
+    machine.wait(1);
+    let doubt = machine.sim.doubt().expect("a doubt");
+    assert!(doubt.contains("(0.51 d) deep"), "{doubt}");
+}

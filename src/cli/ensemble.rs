@@ -7,7 +7,7 @@ use super::members;
 use super::run::{Judged, RunArgs, wind_one};
 use super::shell::begin_again;
 use super::terminal::{print, stop_flag};
-use coilwind::measure::{DefectKind, Verdict};
+use coilwind::measure::{DefectKind, UNJUDGED, Verdict};
 use coilwind::settings::SceneSettings;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
@@ -153,6 +153,13 @@ fn judged(directory: &Path) -> Result<Judged, Failure> {
             let defect = any || verdict.is_defect();
             Ok(Judged { verdict, defect })
         }
+        ("done", None) if word("verdict") == UNJUDGED => Err(Failure::Doubt {
+            reason: summary["reasons"][0]
+                .as_str()
+                .unwrap_or_default()
+                .to_owned(),
+            directory: place,
+        }),
         ("failed", _) => Err(Failure::MemberFailed {
             reason: word("reason").to_owned(),
             directory: place,

@@ -86,6 +86,14 @@ pub(super) enum Failure {
         /// where the results are
         directory: String,
     },
+    /// The run's own numbers contradict each other.
+    #[error("not judged: {reason}; what was computed is in {directory}")]
+    Doubt {
+        /// how, since when, and what to do
+        reason: String,
+        /// where the results are
+        directory: String,
+    },
     /// Ctrl-C.
     #[error(
         "interrupted at t = {} s; what was computed so far is in {directory}; {}",
@@ -208,7 +216,7 @@ impl Failure {
         Self::Sweep { reason }
     }
 
-    /// 1 defect, wrong number or no answer, 2 bad input, 3 solver or a full disk on the way, 130 interrupted (128 + SIGINT, as shells have it).
+    /// 1 defect, wrong number or no answer, 2 bad input, 3 solver or a full disk on the way, or a run in doubt, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
             Self::Defect { .. }
@@ -229,6 +237,7 @@ impl Failure {
             | Self::Sweep { .. }
             | Self::Draw { .. } => 2,
             Self::Solver { .. }
+            | Self::Doubt { .. }
             | Self::Stuck { .. }
             | Self::MemberFailed { .. }
             | Self::BenchStopped { .. }

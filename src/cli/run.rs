@@ -356,7 +356,8 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     })
 }
 
-/// Tells the end of a run that was wound as planned; exit code 1 where defects were asked to fail.
+/// Tells the end of a run that was wound as planned. It fails where the run's own numbers are in doubt, and where defects were
+/// asked to fail.
 fn conclude(
     args: &RunArgs,
     simulation: &Simulation,
@@ -373,6 +374,12 @@ fn conclude(
         }
     }
     tell(args, simulation, &Ending::Done, page, directory)?;
+    if let Some(reason) = simulation.doubt() {
+        return Err(Failure::Doubt {
+            reason,
+            directory: directory.display().to_string(),
+        });
+    }
     let defect = !defects.is_empty() || verdict.is_defect();
     if args.fail_on_defect && defect {
         return Err(Failure::Defect {

@@ -68,6 +68,8 @@ fn judge(
     let count = |kind| defects.iter().filter(|defect| defect.kind == kind).count();
     let gaps = turns.iter().filter_map(|turn| turn.gap_mean);
     let bulges = turns.iter().filter_map(|turn| turn.bulge_excess_max);
+    let failed = failed.map(|reason| reason.to_string());
+    let failed = failed.or_else(|| simulation.doubt());
     Row {
         member,
         verdict: match failed {
@@ -76,7 +78,7 @@ fn judge(
         },
         defect: !defects.is_empty() || simulation.verdict().is_defect(),
         outcome: if failed.is_some() { "failed" } else { "done" }.to_owned(),
-        reason: failed.map_or_else(String::new, |reason| reason.to_string()),
+        reason: failed.unwrap_or_default(),
         gap_mean_d: gaps.reduce(f64::max).map(|gap| gap / d),
         bulge_excess_d: bulges.reduce(f64::max).map(|bulge| bulge / d),
         defects_bulge: count(DefectKind::Bulge),

@@ -82,9 +82,17 @@ fn about_bulges(judged: BulgeLimit, diameter: f64) -> Option<String> {
 
 /// Why a run that failed is [`UNJUDGED`]: what it failed with, then the defects found until then, the gravest first.
 pub fn reasons_unjudged(failure: &str, defects: &[Defect]) -> Vec<String> {
-    let mut reasons = vec![format!(
-        "Not judged, because the run failed before its planned end: {failure}"
-    )];
+    let why = format!("because the run failed before its planned end: {failure}");
+    not_judged(&why, defects)
+}
+
+/// The same for a run whose own numbers contradict each other: `doubt` says how.
+pub fn reasons_doubted(doubt: &str, defects: &[Defect]) -> Vec<String> {
+    not_judged(&format!("because the run is in doubt: {doubt}"), defects)
+}
+
+fn not_judged(why: &str, defects: &[Defect]) -> Vec<String> {
+    let mut reasons = vec![format!("Not judged, {why}")];
     let found = of_all_kinds(defects);
     reasons.extend(
         found
@@ -199,6 +207,8 @@ mod tests {
             said,
             ["Not judged, because the run failed before its planned end: at t = 0.1 s: not finite"]
         );
+        let said = reasons_doubted("too deep", &[]);
+        assert_eq!(said, ["Not judged, because the run is in doubt: too deep"]);
         let said = reasons_unjudged("", &[gap(2, 0.14e-3)]);
         assert!(
             said[1].starts_with("Found until then: Gap of 0.140 mm"),

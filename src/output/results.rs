@@ -6,7 +6,7 @@ use super::{
 };
 use crate::geometry::Surface;
 use crate::math::V3;
-use crate::measure::{Station, UNJUDGED, reasons_unjudged};
+use crate::measure::{Station, UNJUDGED, reasons_doubted, reasons_unjudged};
 use crate::simulation::{Centreline, SimError, Simulation, Summary};
 use serde::Serialize;
 use std::path::Path;
@@ -30,11 +30,15 @@ pub enum Ending {
 impl Ending {
     /// The word for the verdict on a run that ended so, and why, the gravest first.
     ///
-    /// A coil that the program could not wind to its planned end is not judged: what is missing may hold a defect.
+    /// A coil that the program could not wind to its planned end is not judged: what is missing may hold a defect. Nor is one
+    /// whose own numbers are in doubt.
     pub fn judgement(&self, simulation: &Simulation) -> (&'static str, Vec<String>) {
         match self {
             Self::Failed { reason } => (UNJUDGED, reasons_unjudged(reason, &simulation.defects())),
-            Self::Done | Self::Interrupted => (simulation.verdict().as_str(), simulation.reasons()),
+            Self::Done | Self::Interrupted => match simulation.doubt() {
+                Some(doubt) => (UNJUDGED, reasons_doubted(&doubt, &simulation.defects())),
+                None => (simulation.verdict().as_str(), simulation.reasons()),
+            },
         }
     }
 }

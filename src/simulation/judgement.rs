@@ -1,5 +1,6 @@
-//! What bulges are judged by: the height of wire at rest, or a limit of their own.
+//! What bulges are judged by: the height of wire at rest, or a limit of their own. And whether the run can be judged at all.
 
+use super::doubt::{Cause, DEEPEST, Doubt, UNEXPLAINED};
 use super::{Winding, quasi_static};
 use crate::measure::BulgeLimit;
 use crate::signals::EventKind;
@@ -41,6 +42,48 @@ impl Winding {
                 "the wire is laid under {set:.1} N, and bulges are judged by its height at rest under {meant:.1} N, which is larger; set tensioner.tension to the largest tension of the run, or defects.bulge_absolute"
             ),
         );
+    }
+
+    /// Looks for the first doubt at a communication point, where the energy balance leaves `residual`, J, and tells it.
+    pub(super) fn watch_for_doubt(&mut self, residual: f64) {
+        let b = self.sys.state.balance;
+        self.run.throughput.add([b.spindle, b.nozzle]);
+        if self.run.doubt.is_some() {
+            return;
+        }
+        let Some(cause) = self.cause_for_doubt(residual) else {
+            return;
+        };
+        let time = self.run.time;
+        self.run.doubt = Some(Doubt { time, cause });
+        self.report(EventKind::Judgement, cause.to_string());
+    }
+
+    fn cause_for_doubt(&self, residual: f64) -> Option<Cause> {
+        let d = self.scene.wire.diameter;
+        let depth = self.sys.state.deepest;
+        if depth > DEEPEST * d {
+            let share = depth / d;
+            return Some(Cause::Depth { depth, share });
+        }
+        let pull = self.sys.state.set_tension.max(self.scene.tensioner.tension);
+        let through = self.run.throughput.sum + pull * d;
+        if residual.abs() <= UNEXPLAINED * through {
+            return None;
+        }
+        // (what the wire holds is asked for only where it may decide)
+        let share = residual.abs() / (through + self.sys.stored() + self.sys.kinetic());
+        let unexplained = residual;
+        (share > UNEXPLAINED).then_some(Cause::Energy { unexplained, share })
+    }
+
+    /// Why the verdict on this run, and its numbers, are not to be trusted, if they are not.
+    ///
+    /// The energy balance leaves more than 5 % of what went through it unexplained, or wire was more than half a diameter deep in
+    /// what it touches.
+    pub fn doubt(&self) -> Option<String> {
+        let since = |doubt: Doubt| format!("at t = {:.6} s {}", doubt.time, doubt.cause);
+        self.run.doubt.map(since)
     }
 
     /// What bulges are judged by.

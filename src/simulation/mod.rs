@@ -11,6 +11,7 @@ mod communication;
 mod core_model;
 mod course;
 mod door;
+mod doubt;
 mod drawn_loop;
 mod faults;
 mod freezing;
@@ -48,6 +49,8 @@ mod winding;
 pub use crate::geometry::{Surface, TriMesh};
 pub use crate::integrate::SolverStatistics;
 pub use core_model::core_surface;
+#[cfg(feature = "lab")]
+pub(crate) use doubt::{DEEPEST, UNEXPLAINED};
 pub use freezing::{FreezePolicy, Watch};
 pub use io::{Centreline, SimError};
 pub use motion_profile::MotionProfile;

@@ -217,6 +217,7 @@ impl Winding {
         o.live_nodes = rod.nodes() as i32;
         o.penetration_max = self.sys.state.deepest;
         o.energy_residual = residual;
+        self.watch_for_doubt(residual);
     }
 
     /// The whole wire in the core frame.

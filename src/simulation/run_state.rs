@@ -1,5 +1,6 @@
 //! What a run remembers besides wire, coil and method.
 
+use super::doubt::{Doubt, Throughput};
 use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_way::Traverse;
 use crate::measure::Defect;
@@ -36,6 +37,10 @@ pub(super) struct RunState {
     pub(super) rest_depth: f64,
     /// no wire moves any more: it broke, ran away, or the coil met the nozzle
     pub(super) over: bool,
+    /// of the energy balance
+    pub(super) throughput: Throughput,
+    /// the first, which has been told
+    pub(super) doubt: Option<Doubt>,
     /// wire was laid tighter than bulges are judged by, which has been told
     pub(super) told_tighter: bool,
     /// outputs have told so

@@ -2,6 +2,7 @@
 
 use super::core_model::{core_flanges, core_shape, core_surface};
 use super::door::check_finite;
+use super::doubt::Throughput;
 use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_place::nozzle_of;
 use super::nozzle_way::Traverse;
@@ -330,6 +331,8 @@ impl Winding {
             events: Vec::new(),
             rest_depth: 0.0,
             over: false,
+            throughput: Throughput::default(),
+            doubt: None,
             told_tighter: false,
             told_over: false,
             was_slack: false,

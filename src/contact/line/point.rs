@@ -11,12 +11,12 @@ use serde::{Deserialize, Serialize};
 /// one to spare.
 pub(super) const PASSAGES: usize = 4;
 
-/// Slot of the touch with what wire is wound on, and of that with the flange nearer to the point. On a concave mesh they are
-/// the two walls nearest to the point, in any order.
+/// Slot of the touch with what wire is wound on, and of that with the flange nearer to the point. On a concave mesh these and
+/// one more are the three walls nearest to the point, in any order: bottom and sides of a groove that fits the wire.
 pub(super) const CORE: usize = 0;
 pub(super) const FLANGE: usize = 1;
-/// Slot of the first passage, and number of all slots.
-pub(super) const WIRE: usize = 2;
+/// Slot of the first passage, after those of walls, and number of all slots.
+pub(super) const WIRE: usize = 3;
 pub(super) const SLOTS: usize = WIRE + PASSAGES;
 
 /// State of a contact point, core frame.
@@ -34,13 +34,11 @@ pub(super) struct PointState {
     pub(super) clear_at: V3,
     /// how far from `clear_at` it touches nothing, m; 0: not known
     pub(super) clear_within: f64,
-    /// the core, a flange, then passages of frozen wire
+    /// the core, a flange, a third wall, then passages of frozen wire
     #[serde(with = "saved_touches")]
     pub(super) touch: [TouchState; SLOTS],
-    /// whether the touch with the core is in use
-    pub(super) core_near: bool,
-    /// whether the touch with a flange is in use
-    pub(super) flange_near: bool,
+    /// whether the touches with core, flange and third wall are in use
+    pub(super) near: [bool; WIRE],
     /// number of passages in use
     pub(super) passages: usize,
 }
@@ -55,15 +53,14 @@ impl PointState {
         clear_at: V3::new(0.0, 0.0, 0.0),
         clear_within: 0.0,
         touch: [TouchState::UNUSED; SLOTS],
-        core_near: false,
-        flange_near: false,
+        near: [false; WIRE],
         passages: 0,
     };
 
     /// Whether core or frozen wire is near.
     #[inline]
     pub(super) fn has_surroundings(&self) -> bool {
-        self.core_near || self.flange_near || self.passages > 0
+        self.near != [false; WIRE] || self.passages > 0
     }
 
     /// Whether its surroundings have to be looked up at `p`, m.
@@ -81,15 +78,11 @@ impl PointState {
     /// The slots of what is near the point.
     #[inline]
     pub(super) fn slots(&self) -> impl Iterator<Item = usize> + use<> {
-        let (core, flange) = (self.core_near, self.flange_near);
-        (0..WIRE + self.passages).filter(move |&slot| match slot {
-            CORE => core,
-            FLANGE => flange,
-            _ => true,
-        })
+        let near = self.near;
+        (0..WIRE + self.passages).filter(move |&slot| slot >= WIRE || near[slot])
     }
 
-    /// The touches with core and flange, used or not, and those with the passages near the point.
+    /// The touches with core, flange and third wall, used or not, and those with the passages near the point.
     #[inline]
     pub(super) fn touches(&self) -> &[TouchState] {
         &self.touch[..WIRE + self.passages]
@@ -107,23 +100,19 @@ impl PointState {
     /// edge between them ends.
     #[inline]
     pub(super) fn has_before(&self, slot: usize, segment: u32) -> bool {
-        match slot {
-            CORE => false,
-            FLANGE => {
-                let one = &self.touch[CORE];
-                self.core_near && one.start == segment && segment != TouchState::UNUSED.start
-            }
-            _ => self.touch[WIRE..slot].iter().any(|t| t.start == segment),
+        if slot >= WIRE {
+            return self.touch[WIRE..slot].iter().any(|t| t.start == segment);
         }
+        let mut before = self.touch[..slot].iter().zip(&self.near);
+        segment != TouchState::UNUSED.start && before.any(|(t, &near)| near && t.start == segment)
     }
 
-    /// Gives the two nearest walls of a concave core a slot each, from their feet at `p` (m), the nearest first. A wall keeps the
+    /// Gives the nearest walls of a concave core a slot each, from their feet at `p` (m), the nearest first. A wall keeps the
     /// slot that it has, and the friction in it.
     pub(super) fn keep_walls(&mut self, p: V3, surface: &Surface, feet: &[WallFoot]) {
-        let mut left = [feet.first(), feet.get(1)];
-        let mut kept = [false; 2];
-        for slot in [CORE, FLANGE] {
-            let touch = &mut self.touch[slot];
+        let mut left: [_; WIRE] = std::array::from_fn(|k| feet.get(k));
+        self.near = [false; WIRE];
+        for (touch, near) in self.touch.iter_mut().zip(&mut self.near) {
             let Some(here) = surface.wall_foot(p, touch.start) else {
                 continue;
             };
@@ -131,20 +120,19 @@ impl PointState {
             if let Some(found) = left.iter().position(same) {
                 touch.start = here.triangle;
                 left[found] = None;
-                kept[slot] = true;
+                *near = true;
             }
         }
         let mut left = left.into_iter().flatten();
-        for slot in [CORE, FLANGE] {
-            if kept[slot] {
+        for (touch, near) in self.touch.iter_mut().zip(&mut self.near) {
+            if *near {
                 continue;
             }
-            self.touch[slot] = TouchState::UNUSED;
+            *touch = TouchState::UNUSED;
             if let Some(foot) = left.next() {
-                self.touch[slot].start = foot.triangle;
-                kept[slot] = true;
+                touch.start = foot.triangle;
+                *near = true;
             }
         }
-        (self.core_near, self.flange_near) = (kept[CORE], kept[FLANGE]);
     }
 }

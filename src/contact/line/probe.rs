@@ -1,6 +1,6 @@
 //! What holds each touch by friction, for a judge that computes the force itself.
 
-use super::point::{CORE, FLANGE};
+use super::point::{CORE, FLANGE, WIRE};
 use super::state::LineState;
 use super::touch::TouchState;
 use crate::math::V3;
@@ -59,7 +59,9 @@ impl LineState {
                 point,
                 anchor: t.anchor,
                 with: match slot {
-                    CORE | FLANGE if t.start != TouchState::UNUSED.start => HeldBy::Wall(t.start),
+                    wall if wall < WIRE && t.start != TouchState::UNUSED.start => {
+                        HeldBy::Wall(t.start)
+                    }
                     CORE => HeldBy::Core,
                     FLANGE => HeldBy::Flange,
                     _ => HeldBy::Wire(t.start),

@@ -1,6 +1,6 @@
 //! Contact state of frozen nodes, kept for the case that they thaw.
 
-use super::point::{CORE, FLANGE, PointState, SLOTS, WIRE};
+use super::point::{PointState, SLOTS, WIRE};
 use super::touch::TouchState;
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
@@ -55,8 +55,7 @@ impl ContactRecord {
             for &(slot, t) in touches {
                 p.touch[slot as usize] = t;
                 match slot as usize {
-                    CORE => p.core_near = true,
-                    FLANGE => p.flange_near = true,
+                    slot if slot < WIRE => p.near[slot] = true,
                     slot => p.passages = p.passages.max(slot + 1 - WIRE),
                 }
             }

@@ -255,26 +255,26 @@ impl LineContact<'_> {
             (near.distance, triangle)
         };
         let core_room = core - self.model.radius;
-        point.core_near = core_room < skin;
+        point.near[CORE] = core_room < skin;
         let flange_room = match self.model.flange(p) {
             Some(flange) => flange.distance - self.model.radius,
             None => f64::INFINITY,
         };
-        point.flange_near = flange_room < skin;
+        point.near[FLANGE] = flange_room < skin;
         if let Some(surface) = self.model.shape.with_walls() {
             let LineScratch { found, feet, .. } = &mut *self.scratch;
             feet.clear();
-            if point.core_near {
+            if point.near[CORE] {
                 surface.walls(p, self.model.radius + skin, found, feet);
             }
             point.keep_walls(p, surface, feet);
         } else {
-            if point.core_near {
+            if point.near[CORE] {
                 point.touch[CORE].start = triangle;
             } else {
                 point.touch[CORE] = TouchState::UNUSED;
             }
-            if !point.flange_near {
+            if !point.near[FLANGE] {
                 point.touch[FLANGE] = TouchState::UNUSED;
             }
         }
@@ -313,9 +313,9 @@ impl LineContact<'_> {
         point.touch[WIRE..].copy_from_slice(&next);
         point.passages = count;
         let wire_room = nearest.min(reach);
-        let solids_room = match point.core_near || point.flange_near {
-            true => 0.0,
-            false => core_room.min(flange_room),
+        let solids_room = match point.near == [false; WIRE] {
+            true => core_room.min(flange_room),
+            false => 0.0,
         };
         let room = solids_room.min(if count > 0 { 0.0 } else { wire_room });
         point.reach = if room > 0.0 { room } else { skin };

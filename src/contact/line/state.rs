@@ -1,7 +1,7 @@
 //! What contact along the wire remembers, and how it follows changes of the wire.
 
 use super::model::LineModel;
-use super::point::{CORE, FLANGE, PointState, WIRE};
+use super::point::{FLANGE, PointState, WIRE};
 use super::record::ContactRecord;
 use crate::contact::friction::LimitFrom;
 use crate::contact::law::ContactLoss;
@@ -124,8 +124,8 @@ impl LineState {
         let point = &mut self.points[k];
         if point.placed {
             let way = p - point.last;
-            for t in &mut point.touch {
-                t.anchor += way;
+            for slot in point.slots() {
+                point.touch[slot].anchor += way;
             }
             point.last = p;
         }
@@ -185,8 +185,7 @@ impl LineState {
                 touches.any(|(slot, t)| {
                     let flange = match slot {
                         FLANGE if by_key => true,
-                        CORE | FLANGE if !by_key => t.normal.y.abs() > FLANGE_FACE,
-                        _ => false,
+                        wall => !by_key && wall < WIRE && t.normal.y.abs() > FLANGE_FACE,
                     };
                     t.depth > 0.0 && !flange
                 })

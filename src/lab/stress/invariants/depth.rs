@@ -4,14 +4,11 @@ use super::broken::{Broken, Found};
 use crate::lab::stress::{Invariant, Measures};
 use crate::math::Spin;
 use crate::scene::{Core, Scene};
-use crate::simulation::Simulation;
+use crate::simulation::{DEEPEST, Simulation};
 
 /// Centreline may be deeper in the core than its contact says by this share of the diameter: it is
 /// looked at between the points that touch.
 const SUNK: f64 = 0.3;
-/// Deepest contact of an accepted step, as a share of the diameter. At half a diameter the centreline lies in the surface
-/// it touches: from there on the normal of a smooth surface turns round, and contact pushes the wire through.
-const DEEPEST: f64 = 0.5;
 
 pub(super) fn look(sim: &Simulation, m: &mut Measures) -> Found {
     let sys = sim.system();

@@ -2,13 +2,7 @@
 
 use super::broken::{Broken, Found};
 use crate::lab::stress::{Invariant, Measures};
-use crate::simulation::Simulation;
-
-/// Energy that the balance may leave unexplained, as a share of the energy that went through it.
-///
-/// The work that draws in a diameter of wire is added to that energy, because it is near 0 in the
-/// first steps of a run.
-const UNEXPLAINED: f64 = 0.05;
+use crate::simulation::{Simulation, UNEXPLAINED};
 
 /// Share of what went through and what was dissipated that a line of the method's own may have.
 const OWN: f64 = 0.05;
