@@ -19,10 +19,10 @@ stages=(lint lab docs rust fmu)
 # with nothing built before, on two cores
 minutes_of() {
     case $1 in
-        lint) echo 4 ;;
-        lab) echo 8 ;;
+        lint) echo 6 ;;
+        lab) echo 16 ;;
         docs) echo 9 ;;
-        rust) echo 12 ;;
+        rust) echo 10 ;;
         fmu) echo 11 ;;
     esac
 }
