@@ -153,7 +153,7 @@ fn judged(directory: &Path) -> Result<Judged, Failure> {
             let defect = any || verdict.is_defect();
             Ok(Judged { verdict, defect })
         }
-        ("done", None) if word("verdict") == UNJUDGED => Err(Failure::Doubt {
+        ("done", None) if word("verdict") == UNJUDGED => Err(Failure::MemberFailed {
             reason: summary["reasons"][0]
                 .as_str()
                 .unwrap_or_default()
