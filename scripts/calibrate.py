@@ -13,26 +13,31 @@ turns) and one or more of
 
 Every parameter starts from the value behind its name, or from the scene's, and stays within a factor of ten of it. Least
 squares in the logarithms of the parameters, with derivatives by central differences; each run is `coilwind run` and all
-cores work. DIR gets calibration.json, residuals.csv and residuals.png.
+cores work. DIR gets calibration.json, residuals.csv and residuals.png. After Ctrl-C and SIGTERM they hold the best parameters so far.
 
-Exit codes: 0 fitted, 1 a parameter ended at an end of its range, so that nothing is fitted, 2 a mistake that can be mended.
+Exit codes: 0 fitted, 1 nothing is fitted: a parameter ended at an end of its range, or the measurement does not determine it,
+2 a mistake that can be mended, 3 a full disk, 130 stopped.
 """
 
 import argparse
 import csv
 import json
 import os
+import shlex
 import subprocess
 import sys
 import tempfile
 import tomllib
+import threading
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
+import folder as folders
+from failure import Interrupted, Mistake, told
+
 ANGLES = {"angle_deg": np.radians(1.0), "angle_rad": 1.0, "turns": 2.0 * np.pi}
 LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
 UNITS = {
@@ -57,10 +62,8 @@ FOREIGN = 8.0
 # Of 1: above it, residuals are not noise, or two parameters cannot be told apart.
 CORRELATED = 0.95
 AUTOCORRELATED = 0.5
-
-
-class Mistake(Exception):
-    """What the user can mend, in a line."""
+# Of the sum of squares: less than this is no gain over the start.
+GAIN = 0.01
 
 
 @dataclass
@@ -124,6 +127,7 @@ class Model:
         self.command, self.scene, self.sets = command, scene, sets
         self.names, self.curves, self.folder = names, curves, Path(folder)
         self.runs = 0
+        self.going, self.stopped, self.lock = set(), False, threading.Lock()
         listed = subprocess.run([command, "variables", "--json"], capture_output=True, text=True, check=True).stdout
         self.table = {row["name"]: row for row in json.loads(listed)}
 
@@ -142,12 +146,36 @@ class Model:
         words = [f"{name}={value!r}" for name, value in zip(self.names, map(float, values))]
         words = [word for setting in [*self.sets, *words] for word in ("--set", setting)]
         files = ["--no-geometry", "--no-report", "--quiet", "--force", "--out", out]
-        done = subprocess.run([self.command, "run", self.scene, *words, *files], capture_output=True, text=True, check=False)
+        code, said = self.start([self.command, "run", self.scene, *words, *files])
         self.runs += 1
-        if done.returncode:
-            reason = (done.stderr.strip().splitlines() or ["the run failed"])[0]
+        if code:
+            reason = (said.strip().splitlines() or ["the run failed"])[0]
             raise Mistake(f"with {', '.join(words[1::2]) or self.scene}: {reason}")
         return out
+
+    def start(self, line):
+        """Exit code of a command and what it said. `stop` ends it."""
+        with self.lock:
+            if self.stopped:
+                raise Mistake("stopped")
+            # In a session of its own: Ctrl-C on a terminal would have it write its results, which nobody reads.
+            child = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
+            self.going.add(child)
+        try:
+            said = child.communicate()[1]
+        except BaseException:
+            child.kill()
+            raise
+        with self.lock:
+            self.going.remove(child)
+        return child.returncode, said
+
+    def stop(self):
+        """Ends the runs that go on; none begins after it."""
+        with self.lock:
+            self.stopped = True
+            for child in self.going:
+                child.kill()
 
     def compare(self, curve, out):
         if curve.quantity == "height":
@@ -206,9 +234,23 @@ class Fit:
         """Curves at several points at once."""
         keys = [tuple(point) for point in points]
         fresh = [key for key in dict.fromkeys(keys) if key not in self.seen]
-        runs = self.pool.map(lambda key: self.model.wind(self.starts * np.exp(key)), fresh)
-        self.seen.update(zip(fresh, runs))
+        # Kept as they come, so that a fit that is stopped has them.
+        for key in self.pool.map(self.look, fresh):
+            assert key in self.seen
         return [self.seen[key] for key in keys]
+
+    def look(self, key):
+        self.seen[key] = self.model.wind(self.starts * np.exp(key))
+        return key
+
+    def stop(self):
+        """Ends the runs that go on, and waits for their end."""
+        self.model.stop()
+        self.pool.shutdown(cancel_futures=True)
+
+    def best(self):
+        """The best point so far and its curves; `None` before the first run has ended."""
+        return min(self.seen.items(), key=lambda item: np.sum(self.weighed(item[1]) ** 2), default=None)
 
     def weighed(self, computed):
         pieces = [np.nan_to_num((values - curve.values) / curve.sigma) for curve, values in zip(self.model.curves, computed)]
@@ -245,28 +287,42 @@ class Fit:
         return found
 
 
-def calibrate(model, starts, threads):
-    """The solution, and standard deviations and correlations of the logarithms."""
-    fit = Fit(model, starts, threads)
-    start = fit.computed([np.zeros(len(starts))])[0]
+@dataclass
+class Answer:
+    """What a fit says: the solution, and standard deviations and correlations of the logarithms."""
+
+    found: object
+    deviation: np.ndarray
+    correlation: np.ndarray
+    freedom: int
+    computed: list
+    # sum of squares at the start over that at the solution
+    gain: float
+
+
+def calibrate(fit):
+    model, parameters = fit.model, len(fit.starts)
+    start = fit.computed([np.zeros(parameters)])[0]
     check_levels(model.curves, start)
     for curve in model.curves:
         curve.sigma = np.std(curve.values) or 1.0
-    found = fit.settle(fit.solve(np.zeros(len(starts))))
+    found = fit.settle(fit.solve(np.zeros(parameters)))
     if len(model.curves) > 1:
         # Each curve counts by its own noise, which is known once it has been fitted.
         for curve, values in zip(model.curves, fit.computed([found.x])[0]):
             curve.sigma = max(rms(values - curve.values), 1e-9 * curve.sigma)
         found = fit.settle(fit.solve(found.x))
-    freedom = np.count_nonzero(found.fun) - len(starts)
+    freedom = np.count_nonzero(found.fun) - parameters
     jacobian = fit.jacobian(found.x)
-    covariance = np.linalg.pinv(jacobian.T @ jacobian) * np.sum(found.fun**2) / freedom
+    square = np.sum(found.fun**2)
+    covariance = np.linalg.pinv(jacobian.T @ jacobian) * square / freedom
     deviation = np.sqrt(np.diag(covariance))
     blind = np.linalg.norm(jacobian, axis=0) < 1e-9
     deviation[blind] = np.inf
     with np.errstate(invalid="ignore"):
         correlation = covariance / np.outer(deviation, deviation)
-    return found, deviation, correlation, freedom, fit.computed([found.x])[0]
+    gain = np.sum(fit.weighed(start) ** 2) / square if square > 0.0 else np.inf
+    return Answer(found, deviation, correlation, freedom, fit.computed([found.x])[0], gain)
 
 
 def rms(residual):
@@ -287,7 +343,16 @@ def ends_of(names, found):
     return {name: "lower" if x < 0.0 else "upper" for name, x in at.items()}
 
 
-def warnings_of(names, found, deviation, correlation, curves, computed):
+def explains_nothing(answer, curves):
+    """Whether the solution is no better than its start, and leaves as much as was measured, which is no noise."""
+    left = [curve.values - values for curve, values in zip(curves, answer.computed)]
+    return answer.gain < 1.0 + GAIN and all(
+        rms(rest) >= np.std(curve.values) and autocorrelation(rest) > AUTOCORRELATED for curve, rest in zip(curves, left)
+    )
+
+
+def warnings_of(names, answer, curves):
+    found, deviation, correlation, computed = answer.found, answer.deviation, answer.correlation, answer.computed
     for k, name in enumerate(names):
         if not deviation[k] < 0.5:
             yield f"{name} hardly shows in what was measured: measure something else, or leave it out"
@@ -320,7 +385,7 @@ def draw(path, curves, computed):
         below.plot(turns, (curve.values - values) / curve.unit, ".", color=COLOURS[0], markersize=2.5)
         below.set_ylabel("measured - fitted")
         below.set_xlabel("turns of the spindle")
-    figure.savefig(path)
+    figure.savefig(path, format="png")
     plt.close(figure)
 
 
@@ -328,27 +393,29 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", help="scene file, or the name of a packed scene")
     parser.add_argument("--measured", action="append", required=True, type=Path, metavar="FILE.csv", help="may be given several times")
-    parser.add_argument("--fit", action="append", required=True, metavar="NAME[=START]", help="parameter, in SI; may be given several times")
+    parser.add_argument("--fit", action="append", required=True, metavar="NAME[=START]", help="parameter, in SI; starts from START, else from --set, else from the scene; may be given several times")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="as for coilwind run")
     parser.add_argument("--out", type=Path, default=Path("calibration"), metavar="DIR", help="where results go (default: calibration)")
     parser.add_argument("--confidence", type=float, default=0.95, metavar="P", help="of the intervals (default: 0.95)")
     parser.add_argument("--threads", type=int, default=os.cpu_count(), metavar="N", help="runs at a time (default: all cores)")
-    parser.add_argument("--command", default=os.environ.get("COILWIND_COMMAND") or str(ROOT / "target/release/coilwind"), help=argparse.SUPPRESS)
+    parser.add_argument("--force", action="store_true", help="write into a DIR that holds a calibration, a run or a sweep")
+    parser.add_argument("--command", type=Path, default=folders.COMMAND, help=argparse.SUPPRESS)
     args = parser.parse_args()
-    try:
-        run(args)
-    except Mistake as mistake:
-        print(f"calibrate.py: {mistake}", file=sys.stderr)
-        sys.exit(2)
+    with told(parser.prog):
+        sys.exit(run(args))
 
 
 def starts_of(model, wanted):
-    """Starting values: those given, else those of the scene."""
+    """Starting values: those given, else those of the scene with its settings."""
     names, starts, scene = [], [], None
     for text in wanted:
         name, _, value = text.partition("=")
+        if name in names:
+            raise Mistake(f"--fit {name} is given twice; leave one out")
         if name not in model.table:
             raise Mistake(f"--fit {name}: there is no such parameter; `coilwind variables` lists them, without units in their names")
+        if value and (twice := set_of(model, name)):
+            raise Mistake(f"--fit {text} and --set {twice} both say where {name} starts; leave one out")
         if not value:
             scene = scene or model.settings()
             value = scene
@@ -366,69 +433,146 @@ def starts_of(model, wanted):
     return names, starts
 
 
+def set_of(model, name):
+    """The --set of this parameter, in whatever unit; `None` without one."""
+    keys = {name, *(f"{name}_{unit}" for unit in model.table[name]["keySuffixes"])}
+    return next((text for text in model.sets if text.partition("=")[0] in keys), None)
+
+
 def run(args):
-    if not Path(args.command).is_file():
-        raise Mistake(f"{args.command} is missing; build it with cargo build --release")
+    """Fits, tells and writes; the exit code."""
+    folders.need(args.command, folders.COMMAND_BUILD)
     if not 0.5 <= args.confidence < 1.0:
         raise Mistake(f"--confidence {args.confidence:g} has to be at least 0.5 and below 1")
+    if args.threads < 1:
+        raise Mistake(f"--threads {args.threads} has to be at least 1")
+    folders.refuse_occupied(args.out, args.force)
     curves = [curve for path in args.measured for curve in read_curves(path)]
     points = sum(curve.angle.size for curve in curves)
     if points <= len(args.fit):
         raise Mistake(f"{points} measured values are too few for {len(args.fit)} parameters")
     with tempfile.TemporaryDirectory() as folder:
         model = Model(args.command, args.scene, args.set, [], curves, folder)
-        model.names, starts = starts_of(model, args.fit)
-        found, deviation, correlation, freedom, computed = calibrate(model, starts, args.threads)
-    best = np.array(starts) * np.exp(found.x)
+        names, starts = starts_of(model, args.fit)
+        model.names = names
+        fit = Fit(model, starts, args.threads)
+        try:
+            answer = calibrate(fit)
+        except KeyboardInterrupt:
+            fit.stop()
+            raise Interrupted(keep_best(args, fit)) from None
+    return tell(args, model, starts, answer)
+
+
+def tell(args, model, starts, answer):
+    """Prints the outcome, then writes it: a full disk takes nothing from who reads along. The exit code."""
     from scipy import stats
 
-    width = stats.t.ppf(0.5 + 0.5 * args.confidence, freedom) * deviation
+    names, curves, computed = model.names, model.curves, answer.computed
+    best = np.array(starts) * np.exp(answer.found.x)
+    width = stats.t.ppf(0.5 + 0.5 * args.confidence, answer.freedom) * answer.deviation
     with np.errstate(over="ignore"):
         low, high = best * np.exp(-width), best * np.exp(width)
-    told = list(warnings_of(model.names, found, deviation, correlation, curves, computed))
-    ends = ends_of(model.names, found)
+    ends = ends_of(names, answer.found)
+    open_ = [name for name, wide in zip(names, width) if not wide < np.log(REACH) and name not in ends]
+    nothing = explains_nothing(answer, curves)
+    told_of = list(warnings_of(names, answer, curves))
 
-    args.out.mkdir(parents=True, exist_ok=True)
+    print(f"{'parameter':32} {'start':>11} {'fitted':>11}   {100 * args.confidence:g} % interval")
+    for name, start, value, a, b in zip(names, starts, best, low, high):
+        interval = f"at the {ends[name]} end of its range" if name in ends else "not determined" if name in open_ else f"{a:.5g} to {b:.5g}"
+        print(f"{name:32} {start:11.5g} {value:11.5g}   {interval}")
+    for curve, values in zip(curves, computed):
+        print(f"{curve.column}: rms {rms(curve.values - values) / curve.unit:.3g} over {values.size} points")
+    for sentence in told_of:
+        print(f"warning: {sentence}")
+    reasons = []
+    if ends:
+        which = ", ".join(f"{name} ended at the {end} end of its range" for name, end in ends.items())
+        reasons.append(
+            f"{which}, a factor of {REACH:g} from its start; do the columns have the units of their names "
+            "(angle_deg, angle_rad, turns)? If so, give another start with --fit NAME=START"
+        )
+    if open_:
+        reasons.append(
+            f"what was measured does not determine {', '.join(open_)}; measure something that depends on it, leave it out, "
+            "or give another start with --fit NAME=START"
+        )
+    if nothing and not reasons:
+        reasons.append(
+            "the solution is no better than its start, and what it leaves is as large as what was measured; "
+            "mend the scene with --set, or give other starts with --fit NAME=START"
+        )
+    if reasons:
+        print(f"calibrate.py: no fit: {'; '.join(reasons)}", file=sys.stderr)
+    else:
+        print(f"wind with: {' '.join(f'--set {name}={value:.6g}' for name, value in zip(names, best))}", flush=True)
+
     finite = lambda value: float(value) if np.isfinite(value) else None
+    parameters = {
+        name: {
+            "start": start, "value": float(value), "low": finite(a), "high": finite(b), "at_end": ends.get(name),
+            "determined": name not in open_ and not nothing,
+        }
+        for name, start, value, a, b in zip(names, starts, best, low, high)
+    }
     result = {
-        "scene": args.scene, "runs": model.runs, "confidence": args.confidence, "fitted": not ends, "warnings": told,
-        "parameters": {
-            name: {"start": start, "value": float(value), "low": finite(a), "high": finite(b), "at_end": ends.get(name)}
-            for name, start, value, a, b in zip(model.names, starts, best, low, high)
-        },
-        "correlation": [[finite(cell) for cell in row] for row in correlation],
+        "fitted": not reasons, "stopped": False, "confidence": args.confidence, "warnings": told_of, "parameters": parameters,
+        "correlation": [[finite(cell) for cell in row] for row in answer.correlation],
+    }
+    write(args, model, result, computed)
+    print(f"{model.runs} runs; residuals: {args.out / 'residuals.png'}")
+    return 1 if reasons else 0
+
+
+def keep_best(args, fit):
+    """Writes the best parameters of a fit that was stopped; what there is to tell."""
+    if (kept := fit.best()) is None:
+        return "interrupted before the first run ended; nothing is kept"
+    point, computed = kept
+    names, best = fit.model.names, fit.starts * np.exp(point)
+    parameters = {
+        name: {"start": float(start), "value": float(value), "low": None, "high": None, "at_end": None, "determined": False}
+        for name, start, value in zip(names, fit.starts, best)
+    }
+    write(args, fit.model, {"fitted": False, "stopped": True, "parameters": parameters}, computed)
+    return f"interrupted after {len(fit.seen)} runs; the best values so far are in {args.out / 'calibration.json'}; go on from them with: {go_on(args, fit.model, best)}"
+
+
+def go_on(args, model, best):
+    """The command that starts from these values."""
+    started = {set_of(model, name) for name in model.names}
+    words = [args.scene]
+    for option, values in (
+        ("--measured", args.measured), ("--set", [text for text in args.set if text not in started]),
+        ("--fit", [f"{name}={value:.6g}" for name, value in zip(model.names, best)]), ("--out", [args.out]),
+        ("--confidence", [args.confidence]), ("--threads", [args.threads]),
+    ):
+        words += [str(word) for value in values for word in (option, value)]
+    return shlex.join([sys.executable, sys.argv[0], *words, "--force"])
+
+
+def write(args, model, result, computed):
+    """The files of a calibration. Others in the folder stay, since the scene may be one of them."""
+    folders.make(args.out)
+    curves = model.curves
+    result = {"scene": args.scene, "runs": model.runs} | result | {
         "curves": {
             curve.column: {"rms": rms(curve.values - values) / curve.unit, "autocorrelation": autocorrelation(curve.values - values)}
             for curve, values in zip(curves, computed)
         },
     }
-    (args.out / "calibration.json").write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
-    with open(args.out / "residuals.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["column", "angle_rad", "measured", "fitted"])
-        for curve, values in zip(curves, computed):
-            writer.writerows(zip([curve.column] * values.size, curve.angle, curve.values / curve.unit, values / curve.unit))
-    draw(args.out / "residuals.png", curves, computed)
 
-    print(f"{'parameter':32} {'start':>11} {'fitted':>11}   {100 * args.confidence:g} % interval")
-    for name, start, value, a, b in zip(model.names, starts, best, low, high):
-        interval = f"at the {ends[name]} end of its range" if name in ends else f"{a:.5g} to {b:.5g}"
-        print(f"{name:32} {start:11.5g} {value:11.5g}   {interval}")
-    for curve, values in zip(curves, computed):
-        print(f"{curve.column}: rms {rms(curve.values - values) / curve.unit:.3g} over {values.size} points")
-    for sentence in told:
-        print(f"warning: {sentence}")
-    settings = " ".join(f"--set {name}={value:.6g}" for name, value in zip(model.names, best))
-    print(f"{model.runs} runs; residuals: {args.out / 'residuals.png'}")
-    if ends:
-        which = ", ".join(f"{name} ended at the {end} end of its range" for name, end in ends.items())
-        print(
-            f"calibrate.py: no fit: {which}, a factor of {REACH:g} from its start; do the columns have the units of their names "
-            "(angle_deg, angle_rad, turns)? If so, give another start with --fit NAME=START",
-            file=sys.stderr,
-        )
-        sys.exit(1)
-    print(f"wind with: {settings}")
+    def table(path):
+        with open(path, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["column", "angle_rad", "measured", "fitted"])
+            for curve, values in zip(curves, computed):
+                writer.writerows(zip([curve.column] * values.size, curve.angle, curve.values / curve.unit, values / curve.unit))
+
+    folders.write_whole(args.out / "calibration.json", lambda path: path.write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8"))
+    folders.write_whole(args.out / "residuals.csv", table)
+    folders.write_whole(args.out / "residuals.png", lambda path: draw(path, curves, computed))
 
 
 if __name__ == "__main__":

@@ -10,11 +10,19 @@ flanges it shows the part between them; --flanges shows it whole.
 """
 
 import argparse
-import sys
+import contextlib
+import logging
+import re
+import warnings
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
 import pyvista as pv
+from vtkmodules.vtkCommonCore import vtkLogger
+
+import folder as folders
+from failure import Mistake, told
 
 # Columns that colour the wire: array, factor to the unit, title.
 COLOURS = {
@@ -31,10 +39,8 @@ COLOURS = {
 VIEWS = {"corner": (1.0, 0.55, 0.8), "x": (1.0, 0.0, 0.0), "z": (0.0, 0.0, 1.0), "axis": (0.001, 1.0, 0.0)}
 COPPER, CORE, PAPER = "#c87941", "#9aa3ad", "white"
 SIDES = 20
-
-
-class Mistake(Exception):
-    """What the user can mend, in a line."""
+# The last bytes of a whole file of VTK hold it.
+END = b"</VTKFile>"
 
 
 def main():
@@ -49,11 +55,11 @@ def main():
     parser.add_argument("--size", default="1280x960", metavar="WxH", help="pixels (default: 1280x960)")
     parser.add_argument("--rate", type=float, default=20.0, metavar="FPS", help="frames a second of the film (default: 20)")
     args = parser.parse_args()
-    try:
+    # It warns that there is no screen.
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+    with told(parser.prog):
+        refuse_stopped(args.run)
         print(f"wrote {film(args) if args.film else picture(args)}")
-    except Mistake as mistake:
-        print(f"render.py: {mistake}", file=sys.stderr)
-        sys.exit(2)
 
 
 def size_of(text):
@@ -67,13 +73,52 @@ def size_of(text):
     return width, height
 
 
-def read(path, what):
+def check(run, name, what, *words):
+    """A mistake where a file of a run is missing or cut short; `what` gives it, `words` are the options that wind it again."""
+    path = run / name
     if not path.is_file():
         raise Mistake(f"{path} is missing; {what}")
+    with open(path, "rb") as file:
+        file.seek(max(path.stat().st_size - 64, 0))
+        if END not in file.read():
+            raise broken(run, name, "it ends too early", *words)
+
+
+def read(run, name, what, *words):
+    """A surface or a line of a run, which has passed `check`."""
+    check(run, name, what, *words)
     try:
-        return pv.read(path)
+        with quiet(), pv.VtkErrorCatcher(raise_errors=True, send_to_logging=False):
+            return pv.read(run / name)
     except Exception as error:
-        raise Mistake(f"{path} cannot be read ({error}); wind the run again") from None
+        # VTK says who noticed, in a first line or in front of the second one, and then what.
+        reason = (str(error).splitlines() or ["no file of VTK"])[:2][-1]
+        raise broken(run, name, re.sub(r"^\w+ \(0x\w+\): ", "", reason).strip('\t."'), *words) from None
+
+
+@contextlib.contextmanager
+def quiet():
+    """Keeps VTK and pyvista from telling in their own ways what is raised; an error of a reader, of which pyvista only warns, is raised too."""
+    logging.disable()
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            warnings.filterwarnings("error", message="The VTK reader")
+            yield
+    finally:
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
+        logging.disable(logging.NOTSET)
+
+
+def broken(run, name, reason, *words):
+    return Mistake(f"{run}: {name} is not whole ({reason}); {folders.wind_again(run, *words)}")
+
+
+def refuse_stopped(run):
+    """A mistake where the folder holds a run that was killed before it wrote its results."""
+    if (run / "scene.toml").exists() and not (run / "summary.json").exists():
+        raise Mistake(f"{run}: the run was stopped before it wrote its results; {folders.wind_again(run)}")
 
 
 def picture(args):
@@ -88,19 +133,25 @@ def picture(args):
 def film(args):
     if args.film.suffix not in (".mp4", ".gif"):
         raise Mistake(f"--film {args.film}: the ending has to be .mp4 or .gif")
-    series = args.run / "frames.pvd"
-    if not series.is_file():
-        raise Mistake(f"{series} is missing; wind the run with --frames N, such as --frames 100")
+    frames = frames_of(args.run)
     coil = Coil(args)
-    frames = pv.get_reader(series)
+    words = ["--frames", str(len(frames))]
+    files = [(name, folders.wind_again(args.run, *words), *words) for _, name in frames]
+    # Before the film begins, since half of one is of no use.
+    for file in files:
+        check(args.run, *file)
     plotter = coil.stage()
     if args.film.suffix == ".mp4":
         plotter.open_movie(args.film, framerate=args.rate, quality=7)
     else:
         plotter.open_gif(args.film, fps=args.rate, loop=0)
-    for time in frames.time_values:
-        frames.set_active_time_value(time)
-        wire = frames.read()[0]
+    for (time, _), file in zip(frames, files):
+        try:
+            wire = read(args.run, *file)
+        except Mistake:
+            plotter.close()
+            args.film.unlink(missing_ok=True)
+            raise
         if wire.n_points < 2:
             continue
         plotter.add_mesh(coil.tube(wire), name="wire", reset_camera=False, **coil.look)
@@ -110,6 +161,17 @@ def film(args):
     return args.film
 
 
+def frames_of(run):
+    """Time and file of every frame."""
+    series = run / "frames.pvd"
+    if not series.is_file():
+        raise Mistake(f"{series} is missing; wind the run with --frames N, such as --frames 100")
+    try:
+        return [(float(frame.attrib["timestep"]), frame.attrib["file"]) for frame in ElementTree.parse(series).iter("DataSet")]
+    except (ElementTree.ParseError, KeyError, ValueError) as error:
+        raise broken(run, series.name, error, "--frames", "100") from None
+
+
 class Coil:
     """What does not change in a film: core, camera and colours."""
 
@@ -117,7 +179,7 @@ class Coil:
         self.args, self.size = args, size_of(args.size)
         if not args.run.is_dir():
             raise Mistake(f"{args.run} is no folder; name that of a run (coilwind run SCENE --out DIR)")
-        surface = read(args.run / "coil.vtp", "wind the run without --no-geometry")
+        surface = read(args.run, "coil.vtp", "wind the run without --no-geometry")
         if surface.n_points == 0:
             raise Mistake(f"{args.run / 'coil.vtp'} holds no wire; wind for longer")
         self.end = centreline(surface)
@@ -150,7 +212,8 @@ class Coil:
     def tube(self, wire):
         """The surface of a wire, with the numbers that colour it."""
         array, factor, _ = COLOURS[self.args.colour]
-        line = pv.lines_from_points(wire.points)
+        # One line through all nodes: a tube of each edge for itself would show a seam at every node.
+        line = pv.MultipleLines(points=wire.points)
         if array is not None:
             line["shown"] = factor * wire[array].astype(float)
         return line.tube(radius=self.radius, n_sides=SIDES)
@@ -162,7 +225,7 @@ class Coil:
         plotter.enable_anti_aliasing("ssaa")
         points = self.end.points[self.rest]
         low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
-        core = None if self.args.no_core else read(self.args.run / "core.vtp", "wind the run without --no-geometry")
+        core = None if self.args.no_core else read(self.args.run, "core.vtp", "wind the run without --no-geometry")
         if core is not None:
             if not self.args.flanges:
                 core = between(core, low[1] + 0.3 * self.radius, high[1] - 0.3 * self.radius)

@@ -8,11 +8,16 @@ The Python is that of `scripts/venv.sh study`. Without --scheduler the workers a
 scene travel to the workers; they need fmpy and dask, and no coilwind. Each run follows the scene's own motion, as `coilwind
 motion` samples it. A run whose worker dies is wound again elsewhere.
 
-DIR gets sweep.csv, a row a run in the order of the grid, the same bytes for any number of workers; and times.csv, which says
-where and how long each run was wound.
+DIR gets sweep.csv, a row a run in the order of the grid, the same bytes for any number of workers; times.csv, which says
+where and how long each run was wound; and sweep.json, which says what the sweep is. Rows are written as runs end. After Ctrl-C,
+SIGTERM, a kill or a full disk the same command goes on with the runs that have no row.
+
+Exit codes: 0 every run has its row, 2 a mistake that can be mended, 3 a full disk or a lost scheduler on the way, 130 stopped.
 """
 
 import argparse
+import asyncio
+import contextlib
 import csv
 import hashlib
 import io
@@ -20,6 +25,7 @@ import itertools
 import json
 import math
 import os
+import queue
 import statistics
 import subprocess
 import sys
@@ -27,7 +33,10 @@ import tempfile
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+import folder as folders
+from failure import Interrupted, Mistake, Stuck, same_command, told
+from sweep_ledger import ROWS, TIMES, Ledger
+
 # Spread of the members' nozzle distance about the scene's, wire diameters, as in `coilwind sweep`.
 SPREAD = 0.5
 # Deaths of its worker that a run survives.
@@ -36,17 +45,19 @@ UNITS = {
     "m": 1.0, "mm": 1e-3, "um": 1e-6, "kg": 1.0, "g": 1e-3, "Pa": 1.0, "MPa": 1e6, "GPa": 1e9,
     "rad": 1.0, "deg": math.pi / 180.0, "rad_per_s": 1.0, "rpm": math.pi / 30.0,
 }
-# Files of a sweep, this script's first; the others are those of `coilwind sweep`.
-FILES = ["sweep.csv", "times.csv", "sweep.json", "ensemble.csv", "map.svg", "map.html"]
+# Within this time a scheduler answers, s.
+ANSWER = 5.0
+# Time between two looks at the scheduler while no run ends, and how long it may take to answer while it works, s.
+LOOK, BUSY = 1.0, 30.0
+# Code that workers of this machine run first: Ctrl-C on a terminal reaches them as well, and the script is what ends them.
+DEAF = "import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)"
+# Without a worker for so long, the script says that it waits, s.
+SILENT = 3.0
 COUNTS = ["bulge", "gap", "overlap", "break", "slack"]
 RESULTS = [
     "outcome", "reason", "defect", *(f"defects_{kind}" for kind in COUNTS),
     "gap_max_m", "bulge_max_m", "tension_min_N", "tension_max_N", "turns_settled",
 ]
-
-
-class Mistake(Exception):
-    """What the user can mend, in a line."""
 
 
 # What workers do. It is sent to them whole, so it imports what it needs.
@@ -233,44 +244,108 @@ def wind_on_worker(plugin, task):
     return {**wind(worker.plugins[plugin].unpacked, task), "worker": worker.address}
 
 
-def wind_all(client, fmu, tasks, ended=lambda count: None):
-    """Winds the tasks on a cluster; their reports in the order of the tasks. `ended` hears how many have ended."""
-    from distributed import KilledWorker, as_completed
+def connect(address):
+    """A client of the scheduler at `address`; a mistake where there is none."""
+    from distributed import Client
+    from distributed.core import rpc
 
+    async def kind():
+        async with rpc(address, timeout=ANSWER) as there:
+            return (await asyncio.wait_for(there.identity(n_workers=0), ANSWER + 1.0))["type"]
+
+    # The client of Dask itself waits for ever for an answer that is not Dask's.
+    try:
+        if asyncio.run(kind()) == "Scheduler":
+            return Client(address, timeout=ANSWER)
+        reason = "there is a part of Dask, but no scheduler"
+    except TimeoutError:
+        reason = f"no answer of Dask within {ANSWER:g} s"
+    except OSError as error:
+        reason = f"there is no scheduler: {error}"
+    except ValueError as error:
+        reason = str(error)
+    except Exception as error:
+        # Bytes of another program can make anything of the protocol, such as a message of exabytes.
+        reason = f"what answers is no scheduler of Dask ({type(error).__name__})"
+    raise Mistake(f"--scheduler {address}: {reason}; start one with dask scheduler, and give the address that it prints")
+
+
+def wind_all(client, fmu, tasks, keep, wait=60.0):
+    """Winds the tasks on a cluster, and gives each with its report to `keep` as it ends.
+
+    Raises `Stuck` where the scheduler is lost or has no worker for `wait` seconds; `Mistake` where no worker can wind.
+    """
     plugin = plugin_of(fmu)
-    client.register_plugin(plugin)
-    futures = {client.submit(wind_on_worker, plugin.name, task, pure=False, retries=2): task["run"] for task in tasks}
-    reports = {}
-    for future in as_completed(futures):
+    address = client.scheduler.address
+    lost = Stuck(f"the scheduler {address} was lost")
+    ended = queue.SimpleQueue()
+    try:
+        client.register_plugin(plugin)
+        futures = {client.submit(wind_on_worker, plugin.name, task, pure=False, retries=2): task for task in tasks}
+    except OSError:
+        raise lost from None
+    except Exception as error:
+        raise cannot_wind(error) from None
+    for future in futures:
+        future.add_done_callback(ended.put)
+    seen = time.monotonic()
+    told_so = False
+    while futures:
         try:
-            reports[futures[future]] = future.result()
-        except KilledWorker:
-            result = {name: "" for name in RESULTS} | {"outcome": "failed", "reason": f"its worker died {DEATHS} times"}
-            reports[futures[future]] = {"result": result, "began": 0.0, "ended": 0.0, "worker": ""}
-        ended(len(reports))
-    return [reports[task["run"]] for task in tasks]
+            future = ended.get(timeout=LOOK)
+        except queue.Empty:
+            try:
+                workers = client.sync(client.scheduler.identity, n_workers=1, callback_timeout=BUSY)["workers"]
+            except (OSError, TimeoutError):
+                raise lost from None
+            without = time.monotonic() - seen
+            if workers:
+                seen, told_so = time.monotonic(), False
+            elif without > wait:
+                raise Stuck(f"the scheduler {address} had no worker for {wait:g} s; start some with: dask worker {address}") from None
+            elif without > SILENT and not told_so:
+                told_so = True
+                print(f"waiting up to {wait:g} s for a worker; start some with: dask worker {address}", file=sys.stderr, flush=True)
+            continue
+        seen = time.monotonic()
+        task = futures.pop(future)
+        if future.status not in ("finished", "error"):
+            raise lost
+        keep(task, report_of(future))
 
 
-def refuse_occupied(folder, force):
-    """A mistake where the folder holds a sweep, unless `force` says otherwise."""
-    if not force and any((folder / name).exists() for name in FILES):
-        raise Mistake(f"{folder} holds another sweep; add --force to overwrite it, or --out for another folder")
+def report_of(future):
+    from distributed import KilledWorker
+
+    try:
+        return future.result()
+    except KilledWorker:
+        result = {name: "" for name in RESULTS} | {"outcome": "failed", "reason": f"its worker died {DEATHS} times"}
+        return {"result": result, "began": 0.0, "ended": 0.0, "worker": ""}
+    except Exception as error:
+        raise cannot_wind(error) from None
 
 
-def write(folder, names, tasks, reports):
-    folder.mkdir(parents=True, exist_ok=True)
-    for name in FILES:
-        (folder / name).unlink(missing_ok=True)
-    with open(folder / "sweep.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow([*names, "member", *RESULTS])
-        for task, report in zip(tasks, reports):
-            writer.writerow([*task["columns"], *(report["result"][name] for name in RESULTS)])
-    with open(folder / "times.csv", "w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(["run", "worker", "began", "wound_s"])
-        for task, report in zip(tasks, reports):
-            writer.writerow([task["run"], report["worker"], report["began"], report["ended"] - report["began"]])
+def cannot_wind(error):
+    return Mistake(f"a worker cannot wind ({type(error).__name__}: {error}); its Python needs the packages of requirements-study.txt")
+
+
+def ledger_of(folder, names, tasks, plan, force=False):
+    return Ledger(folder, plan, [*names, "member", *RESULTS], [task["columns"] for task in tasks], force)
+
+
+def keep_in(ledger, task, report):
+    row = [*task["columns"], *(report["result"][name] for name in RESULTS)]
+    ledger.add(task["run"], row, [report["worker"], report["began"], report["ended"] - report["began"]])
+
+
+def plan_of(args, tasks, fmu):
+    """What makes a sweep the same sweep."""
+    motions = json.dumps([task["motion"] for task in tasks]).encode()
+    return {
+        "over": args.over, "ensemble": args.ensemble, "set": args.set, "step": args.step, "scene": tasks[0]["scene"],
+        "motion": hashlib.sha256(motions).hexdigest(), "fmu": hashlib.sha256(fmu).hexdigest(),
+    }
 
 
 def overhead(reports):
@@ -283,16 +358,19 @@ def overhead(reports):
 
 
 class Progress:
-    def __init__(self, count, quiet):
-        self.count, self.quiet, self.began = count, quiet, time.monotonic()
+    """Tells how many runs have ended, `before` of them earlier."""
 
-    def __call__(self, ended):
+    def __init__(self, count, before, quiet):
+        self.count, self.before, self.ended, self.quiet, self.began = count, before, before, quiet, time.monotonic()
+
+    def step(self):
+        self.ended += 1
         if self.quiet:
             return
         took = time.monotonic() - self.began
-        left = took / ended * (self.count - ended)
-        end = "\n" if ended == self.count or not sys.stderr.isatty() else "\r"
-        print(f"{ended} of {self.count} runs, {took:.0f} s, {left:.0f} s left   ", end=end, file=sys.stderr, flush=True)
+        left = took / (self.ended - self.before) * (self.count - self.ended)
+        end = "\n" if self.ended == self.count or not sys.stderr.isatty() else "\r"
+        print(f"{self.ended} of {self.count} runs, {took:.0f} s, {left:.0f} s left   ", end=end, file=sys.stderr, flush=True)
 
 
 def main():
@@ -302,61 +380,100 @@ def main():
     parser.add_argument("--ensemble", type=int, default=1, metavar="K", help="runs a point, with the nozzle moved as in coilwind sweep")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     parser.add_argument("--out", type=Path, default=Path("sweep"), metavar="DIR")
-    parser.add_argument("--force", action="store_true", help="overwrite the sweep that DIR holds")
+    parser.add_argument("--force", action="store_true", help="overwrite the sweep or the run that DIR holds")
     parser.add_argument("--step", type=float, default=5e-4, metavar="H", help="communication step, s (default: 5e-4)")
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a cluster, such as tcp://host:8786 (default: workers on this machine)")
+    parser.add_argument("--wait", type=float, default=60.0, metavar="S", help="give up after so long without a worker, s (default: 60)")
     parser.add_argument("--workers", type=int, default=os.cpu_count(), metavar="N", help="without --scheduler (default: all cores)")
-    parser.add_argument("--fmu", type=Path, default=ROOT / "target/fmu/CoilWinding.fmu")
+    parser.add_argument("--fmu", type=Path, default=folders.FMU)
     parser.add_argument("--quiet", action="store_true")
-    parser.add_argument("--command", default=os.environ.get("COILWIND_COMMAND") or str(ROOT / "target/release/coilwind"), help=argparse.SUPPRESS)
+    parser.add_argument("--command", type=Path, default=folders.COMMAND, help=argparse.SUPPRESS)
     args = parser.parse_args()
-    try:
+    with told(parser.prog):
         run(args)
-    except Mistake as mistake:
-        print(f"sweep_dask.py: {mistake}", file=sys.stderr)
-        sys.exit(2)
 
 
 def run(args):
+    if args.workers < 1:
+        raise Mistake(f"--workers {args.workers} has to be at least 1")
+    if not 0.0 < args.wait < math.inf:
+        raise Mistake(f"--wait {args.wait:g} has to be above 0 s")
+    folders.need(args.command, folders.COMMAND_BUILD)
+    folders.need(args.fmu, folders.FMU_BUILD)
+    folders.refuse_occupied(args.out, args.force, "another sweep")
+    if args.force and args.out.resolve() in Path(args.scene).resolve().parents:
+        raise Mistake(f"{args.scene} lies in {args.out}, which --force empties; give another folder with --out")
+    names, tasks = tasks_of(args)
+    fmu = args.fmu.read_bytes()
+    ledger = ledger_of(args.out, names, tasks, plan_of(args, tasks, fmu), args.force)
+    fresh = [task for task in tasks if task["run"] not in ledger.rows]
+    began, reports = time.monotonic(), []
+    if fresh:
+        reports = wind_fresh(args, fmu, fresh, ledger, Progress(len(tasks), len(ledger.rows), args.quiet))
+    took = time.monotonic() - began
+    defects, done = ledger.count("defect", "true"), ledger.count("outcome", "done")
+    workers = len({report["worker"] for report in reports})
+    print(
+        f"{len(tasks)} runs, {len(fresh)} of them new; {defects} with a defect, {len(tasks) - done} that failed; "
+        f"{took:.1f} s on {workers} workers"
+    )
+    if reports:
+        wound = sum(report["ended"] - report["began"] for report in reports)
+        between = overhead(reports)
+        more = "" if math.isnan(between) else f" and {1e3 * between:.0f} ms more between runs"
+        print(f"a run took {wound / len(reports):.3f} s{more}")
+    print(f"tables: {args.out / ROWS}, {args.out / TIMES}")
+
+
+def wind_fresh(args, fmu, tasks, ledger, progress):
+    """The reports of these tasks, whose rows the ledger keeps as they come."""
+    reports = []
+
+    def keep(task, report):
+        reports.append(report)
+        keep_in(ledger, task, report)
+        progress.step()
+
+    with cluster_of(args) as client:
+        ledger.begin()
+        try:
+            wind_all(client, fmu, tasks, keep, args.wait)
+            ledger.write()
+        except (KeyboardInterrupt, Mistake) as stop:
+            # A full disk may have room again for what came meanwhile; if not, the table of before stays.
+            with contextlib.suppress(Stuck):
+                ledger.write()
+            kept = f"{len(ledger.rows)} runs are kept; go on with: {same_command()}"
+            if isinstance(stop, KeyboardInterrupt):
+                raise Interrupted(f"interrupted; {kept}") from None
+            raise type(stop)(f"{stop}; {kept}") from None
+    return reports
+
+
+@contextlib.contextmanager
+def cluster_of(args):
+    """A client of the scheduler that is named, or of processes of this machine."""
     import logging
 
     import dask
     from distributed import Client, LocalCluster
 
-    for path, build in ((Path(args.command), "cargo build --release"), (args.fmu, "scripts/build_fmu.sh")):
-        if not path.is_file():
-            raise Mistake(f"{path} is missing; build it with {build}")
-    refuse_occupied(args.out, args.force)
-    names, tasks = tasks_of(args)
-    fmu = args.fmu.read_bytes()
     # Dask tells of dead workers at length; the runs are wound again all the same.
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    for name in ("distributed", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     dask.config.set({"distributed.scheduler.allowed-failures": DEATHS})
-    cluster = None
-    try:
+    with contextlib.ExitStack() as stack:
         if args.scheduler is None:
-            cluster = LocalCluster(n_workers=args.workers, threads_per_worker=1, processes=True, dashboard_address=None)
-        client = Client(cluster or args.scheduler, timeout=5)
-    except (OSError, ValueError, TimeoutError) as error:
-        raise Mistake(f"--scheduler {args.scheduler}: there is no scheduler ({error}); start one with: dask scheduler") from None
-    try:
-        began = time.monotonic()
-        reports = wind_all(client, fmu, tasks, Progress(len(tasks), args.quiet))
-        took = time.monotonic() - began
-    finally:
-        client.close()
-        if cluster is not None:
-            cluster.close()
-    write(args.out, names, tasks, reports)
-    defects = sum(report["result"]["defect"] == "true" for report in reports)
-    failed = sum(report["result"]["outcome"] != "done" for report in reports)
-    wound = sum(report["ended"] - report["began"] for report in reports)
-    workers = len({report["worker"] for report in reports})
-    print(f"{len(tasks)} runs, {defects} with a defect, {failed} that failed; {took:.1f} s on {workers} workers")
-    between = overhead(reports)
-    more = "" if math.isnan(between) else f" and {1e3 * between:.0f} ms more between runs"
-    print(f"a run took {wound / len(tasks):.3f} s{more}")
-    print(f"tables: {args.out / 'sweep.csv'}, {args.out / 'times.csv'}")
+            cluster = LocalCluster(
+                n_workers=args.workers, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=logging.CRITICAL,
+                preload=[DEAF],
+            )
+            stack.callback(cluster.close)
+            client = Client(cluster)
+        else:
+            client = connect(args.scheduler)
+        stack.callback(client.close, timeout=ANSWER)
+        yield client
 
 
 if __name__ == "__main__":

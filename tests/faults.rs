@@ -112,6 +112,33 @@ fn a_full_disk_is_named() {
     }
 }
 
+/// A sweep told a full disk as bad input, and an ensemble named the member alone that had met it.
+#[test]
+fn sweeps_and_ensembles_say_how_to_go_on_after_a_full_disk() {
+    let folder = tempfile::tempdir().unwrap();
+    let said_by = |out: &str, start: &[&str]| {
+        let mut inner = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+        inner.args(start).args(["--set", "spindle.turns=0.4"]);
+        inner.arg("--out").arg(folder.path().join(out));
+        let inner = as_typed(&inner);
+        let line = format!("trap '' XFSZ; ulimit -f 8; {inner}");
+        let output = Command::new("bash").args(["-c", &line]).output().unwrap();
+        assert_eq!(output.status.code(), Some(3), "{out}: {}", said(&output));
+        said(&output)
+    };
+    let place = |out: &str| folder.path().join(out).display().to_string();
+    let over = ["sweep", "fig8", "--over", "tensioner.tension=10:20:120"];
+    let told = said_by("sweep", &over);
+    let goes_on = format!("make room, then go on with: coilwind {}", over.join(" "));
+    assert!(told.contains(&goes_on), "{told}");
+    let told = said_by(
+        "ensemble",
+        &["run", "fig8", "--ensemble", "3", "--no-geometry"],
+    );
+    let goes_on = format!("go on with: coilwind run --resume {}", place("ensemble"));
+    assert!(told.trim_end().ends_with(&goes_on), "{told}");
+}
+
 /// A command as one types it, for a shell to run under limits.
 fn as_typed(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());

@@ -136,6 +136,39 @@ fn a_body_that_reaches_into_the_coil_ends_the_winding() {
     assert!(collisions.is_empty(), "{collisions:?}");
 }
 
+/// A point of a nozzle that is sent 3 mm from the axis of a core of 6 mm.
+#[test]
+fn a_nozzle_in_the_circle_of_the_core_is_a_collision_and_no_failed_run() {
+    let text = "[core]\nshape = 'cylinder'\nradius_mm = 6\n[nozzle]\ndistance_mm = 20\n[solver]\ntolerance_um = 5\n";
+    let mut sim = Simulation::new(&settings(text).build().expect("a scene")).expect("starts");
+    let turning = Inputs {
+        spindle_speed: 100.0,
+        ..sim.inputs()
+    };
+    go(&mut sim, turning, 0.05);
+    let inside = Inputs {
+        nozzle_offset_x: -17e-3,
+        ..turning
+    };
+    sim.advance_ramped(inside, Inputs::HELD, STEP)
+        .expect("goes on");
+    assert_eq!(sim.verdict(), Verdict::Collision);
+    let texts = told(&mut sim);
+    assert!(
+        texts.len() == 1
+            && texts[0].contains("into the circle of 6.000 mm")
+            && texts[0].contains("nozzle_offset_x"),
+        "{texts:?}"
+    );
+    let wound = sim.outputs().turns_wound;
+    go(&mut sim, turning, 0.02);
+    assert_eq!(
+        sim.outputs().turns_wound,
+        wound,
+        "nothing is wound after it"
+    );
+}
+
 /// The place of the exit along z, mm, in the text of an event.
 fn exit_z(text: &str) -> f64 {
     let exit = text.split("exit at (").nth(1).expect("the exit");

@@ -107,6 +107,7 @@ fn wire(turns: f64) -> Centreline {
     Centreline {
         frames: vec![nalgebra::Quaternion::identity(); count],
         arc: (0..count).map(|node| node as f64 * step).collect(),
+        plastic_stretch: vec![0.0; count],
         plastic_strain: (0..count).map(|node| 1e-5 * node as f64).collect(),
         tension: vec![15.0; count],
         frozen: laid - (0.5 * AROUND / step) as usize,
@@ -149,7 +150,7 @@ fn coil(wire: &Centreline) -> Coil {
             position: wire.points[node],
             arc: wire.arc[node],
             height: 0.0,
-            plastic_strain: wire.plastic_strain[node],
+            plastic_strain: wire.plastic_stretch[node],
             tension: wire.tension[node],
             time: 0.0,
         });

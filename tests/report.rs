@@ -218,6 +218,12 @@ fn a_folder_without_a_whole_run_is_named_with_what_to_do() {
         assert!(said(&output).contains(part), "{part}: {}", said(&output));
     };
     refused("wind one with: coilwind run SCENE");
+    std::fs::create_dir_all(out.join("1")).unwrap();
+    std::fs::write(out.join("1/summary.json"), "{}").unwrap();
+    refused(out.join("1").to_str().unwrap());
+    std::fs::write(out.join("sweep.json"), "{}").unwrap();
+    refused("map.html");
+    std::fs::remove_dir_all(&out).unwrap();
     wind(&out, &["--no-report"]);
     for name in [
         "summary.json",

@@ -277,6 +277,9 @@ fn what_is_wound_is_not_wound_again() {
     std::fs::write(&table, again.replace("60,1,", "61,1,")).unwrap();
     let said = complaint(coilwind("sweep", out, &over), 2);
     assert!(said.contains("sweep.csv:2: no row of this sweep"), "{said}");
+    std::fs::write(&table, &again[..12]).unwrap();
+    let said = complaint(coilwind("sweep", out, &over), 2);
+    assert!(said.contains("sweep.csv:1: not the header"), "{said}");
     let force = ["--force", "--over", "spindle.speed=60:60:1"];
     finished(coilwind("sweep", out, &force), 0);
     assert_eq!(rows(&table).len(), 1);
@@ -366,8 +369,8 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
     let folder = tempfile::tempdir().unwrap();
     let (all, some) = (folder.path().join("all"), folder.path().join("some"));
     let wound = |out: &Path, more: &[&str]| {
-        // Long enough for wire at rest, without which nothing is judged.
-        let set = ["--set", "spindle.speed=300", "--set", "spindle.turns=1.4"];
+        // Long enough for turns at rest beside each other, without which nothing is judged.
+        let set = ["--set", "spindle.speed=300", "--set", "spindle.turns=2.6"];
         let ensemble = ["--ensemble", "2"];
         finished(
             coilwind("sweep", out, &[&set[..], &ensemble, more].concat()),
@@ -429,6 +432,18 @@ fn a_maximum_among_values_that_are_not_judged_or_failed_is_no_answer() {
     ] {
         assert!(said.contains(part), "{part}: {said}");
     }
+    // A turn and a bit: that turn lies beside none, and was told as free of gaps.
+    let (told, said) = find_max(
+        "single",
+        "spindle.speed=100:102:2",
+        &["spindle.turns=1.3"],
+        1,
+    );
+    assert!(told.contains("single 1"), "{told}");
+    assert!(
+        said.contains("in 1 of 1 runs no turn came to rest beside another"),
+        "{said}"
+    );
     let sets = ["solver.step_us=400", "spindle.turns=1.2"];
     let (told, said) = find_max("failed", "spindle.speed=300:400:2", &sets, 3);
     assert!(told.contains("failed 1"), "{told}");

@@ -5,7 +5,7 @@ use super::failure::Failure;
 use super::folder;
 use super::members;
 use super::run::{Judged, RunArgs, wind_one};
-use super::shell::begin_again;
+use super::shell::{begin_again, resume_command};
 use super::terminal::{print, stop_flag};
 use coilwind::measure::{DefectKind, UNJUDGED, Verdict};
 use coilwind::settings::SceneSettings;
@@ -205,13 +205,21 @@ fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failur
     }
     let words = words(&ended);
     let defective = ended.iter().flatten().any(|judged| judged.defect);
+    let place = directory.display();
     if !args.quiet {
-        let place = directory.display();
         print(&format!(
             "verdicts: {words}\nresults: {place}/1 to {place}/{count}\n"
         ))?;
     }
-    ended.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let first = ended.into_iter().collect::<Result<Vec<_>, _>>();
+    first.map_err(|failure| match failure {
+        // All members go on together, and not the one that met the full disk.
+        Failure::Stuck { failure, .. } => Failure::Stuck {
+            failure,
+            next: format!("make room, then go on with: {}", resume_command(place)),
+        },
+        other => other,
+    })?;
     match args.fail_on_defect && defective {
         true => Err(Failure::Defect { what: words }),
         false => Ok(()),

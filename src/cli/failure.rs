@@ -22,21 +22,11 @@ pub(super) enum Failure {
         /// why
         reason: SimError,
     },
-    /// A cell of an input file is wrong.
-    #[error("{file}:{line}: {column} = {value}: {reason}; allowed: {allowed}")]
-    Cell {
-        /// as given
-        file: String,
-        /// from 1
-        line: u64,
-        /// name in the header
-        column: String,
-        /// as given
-        value: String,
-        /// what is wrong
-        reason: &'static str,
-        /// what would do
-        allowed: String,
+    /// Cells of an input file are wrong.
+    #[error("{}", cells.join("\n"))]
+    Cells {
+        /// a line for each: file, line, column, value, what is wrong and what would do
+        cells: Vec<String>,
     },
     /// An input file as a whole is wrong.
     #[error("{file}: {reason}")]
@@ -225,7 +215,7 @@ impl Failure {
             | Self::SweepOpen { failed: false, .. } => 1,
             Self::Scene(_)
             | Self::Start { .. }
-            | Self::Cell { .. }
+            | Self::Cells { .. }
             | Self::Signals { .. }
             | Self::Write { .. }
             | Self::Output(_)

@@ -7,7 +7,7 @@ use super::shell::begin_again;
 use super::terminal::print;
 use clap::Args;
 use coilwind::output::{ReportError, write_report};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of `report`.
 #[derive(Args, Debug)]
@@ -41,10 +41,36 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
     print(&format!("report: {}\n", page.display()))
 }
 
+/// What a folder without a run holds, if that has pages.
+fn other_results(directory: &Path) -> Option<Failure> {
+    let member = directory.join("1");
+    let reason = if directory.join("sweep.json").exists() {
+        format!(
+            "holds a sweep; its page is {}",
+            directory.join("map.html").display()
+        )
+    } else if member.join("summary.json").exists() {
+        format!(
+            "holds an ensemble; name a member, such as {}",
+            member.display()
+        )
+    } else {
+        return None;
+    };
+    Some(Failure::Resume {
+        directory: directory.display().to_string(),
+        reason,
+    })
+}
+
 /// The failure with what would mend it: a run that has ended cannot go on, so its scene is wound again.
 fn what_would_do(error: ReportError) -> Failure {
-    let ReportError::Broken { path, reason } = &error else {
-        return error.into();
+    let (path, reason) = match &error {
+        ReportError::Broken { path, reason } => (path, reason),
+        ReportError::NoRun { directory, .. } => {
+            return other_results(directory).unwrap_or_else(|| error.into());
+        }
+        _ => return error.into(),
     };
     let directory = path.parent().unwrap_or(path);
     if directory.join(checkpoint::FILE).exists() {

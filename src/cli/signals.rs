@@ -25,6 +25,9 @@ pub(super) struct Signals {
     columns: Vec<Column>,
 }
 
+/// Wrong cells that are told, at most.
+const MOST_TOLD: usize = 20;
+
 /// Python's `math.isclose` with its default tolerance.
 fn is_close(a: f64, b: f64) -> bool {
     a == b || (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
@@ -53,31 +56,40 @@ impl Signals {
         let rows = columns(&header, file)?;
 
         let mut samples = vec![Vec::new(); header.len()];
+        let mut wrong = Vec::new();
         for record in reader.records() {
             let record = record.map_err(|e| whole(e.to_string()))?;
             let line = record.position().map_or(0, csv::Position::line);
             for (column, cell) in record.iter().enumerate() {
-                let bad = |reason, allowed| Failure::Cell {
-                    file: file.to_owned(),
-                    line,
-                    column: header[column].to_owned(),
-                    value: cell.to_owned(),
-                    reason,
-                    allowed,
-                };
                 let allowed =
                     || rows[column].map_or("a finite number".to_owned(), Variable::allowed);
-                let x: f64 = cell.parse().map_err(|_| bad("not a number", allowed()))?;
-                if !rows[column].map_or(x.is_finite(), |v| v.admits(&Value::Real(x))) {
-                    return Err(bad("out of range", allowed()));
-                }
-                if let (None, Some(&last)) = (rows[column], samples[column].last())
-                    && x < last
-                {
-                    return Err(bad("time runs backwards", format!("at least {last} s")));
-                }
-                samples[column].push(x);
+                let admits =
+                    |x: f64| rows[column].map_or(x.is_finite(), |v| v.admits(&Value::Real(x)));
+                let last = samples[column].last().filter(|_| rows[column].is_none());
+                let (reason, allowed) = match (cell.parse::<f64>(), last) {
+                    (Err(_), _) => ("not a number", allowed()),
+                    (Ok(x), _) if !admits(x) => ("out of range", allowed()),
+                    (Ok(x), Some(&last)) if x < last => {
+                        ("time runs backwards", format!("at least {last} s"))
+                    }
+                    (Ok(x), _) => {
+                        samples[column].push(x);
+                        continue;
+                    }
+                };
+                let name = &header[column];
+                wrong.push(format!(
+                    "{file}:{line}: {name} = {cell}: {reason}; allowed: {allowed}"
+                ));
             }
+        }
+        if !wrong.is_empty() {
+            let more = wrong.len().saturating_sub(MOST_TOLD);
+            wrong.truncate(MOST_TOLD);
+            if more > 0 {
+                wrong.push(format!("{file}: and {more} more cells"));
+            }
+            return Err(Failure::Cells { cells: wrong });
         }
 
         let mut signals = Self {
@@ -291,6 +303,22 @@ mod tests {
                 .tension_setpoint,
             7.0
         );
+    }
+
+    /// Only the first wrong cell was told, so that a table with seven took seven runs.
+    #[test]
+    fn all_wrong_cells_are_told_at_once() {
+        let said = error("time,spindle_speed,tension_setpoint\n0,fast,15\n0.2,9e9,-1\n0.1,30,15\n");
+        for part in [
+            "in.csv:2: spindle_speed = fast: not a number",
+            "in.csv:3: spindle_speed = 9e9: out of range",
+            "in.csv:3: tension_setpoint = -1: out of range",
+            "in.csv:4: time = 0.1: time runs backwards; allowed: at least 0.2 s",
+        ] {
+            assert!(said.contains(part), "{part}: {said}");
+        }
+        let many = format!("time\n{}", "x\n".repeat(30));
+        assert!(error(&many).ends_with("in.csv: and 10 more cells"));
     }
 
     #[test]

@@ -89,9 +89,9 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         None => work.all(),
     };
     work.bar.finish_and_clear();
-    work.ledger.write(&work.grid)?;
-    let told = told?;
-    let mapped = map::write(&args.out, &work.grid, work.ledger.rows())?;
+    work.ledger.write(&work.grid).map_err(stuck)?;
+    let told = told.map_err(stuck)?;
+    let mapped = map::write(&args.out, &work.grid, work.ledger.rows()).map_err(stuck)?;
     if work.stop.load(Ordering::SeqCst) {
         return Err(Failure::SweepInterrupted {
             done: work.ledger.count(),
@@ -110,15 +110,15 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         .filter(|row| row.failed())
         .count();
     let defects = work.ledger.rows().values().filter(|row| row.defect).count();
-    let unsettled = work
+    let unjudged = work
         .ledger
         .rows()
         .values()
-        .filter(|row| row.is_unsettled())
+        .filter(|row| row.is_unjudged())
         .count();
-    if unsettled > 0 {
+    if unjudged > 0 {
         eprintln!(
-            "warning: in {unsettled} of {total} runs no wire came to rest, so nothing could be measured; wind more turns with --set spindle.turns=N"
+            "warning: in {unjudged} of {total} runs no turn came to rest beside another, so nothing could be compared; wind more turns with --set spindle.turns=N"
         );
     }
     let map = match mapped {
@@ -136,6 +136,17 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         args.out.join(files::STATISTICS).display(),
     ))?;
     open
+}
+
+/// A failure on the way, with what to do where a file could not be written.
+fn stuck(failure: Failure) -> Failure {
+    match failure {
+        Failure::Write { .. } | Failure::Output(_) => Failure::Stuck {
+            failure: Box::new(failure),
+            next: format!("make room, then go on with: {}", again()),
+        },
+        other => other,
+    }
 }
 
 /// An error where `--set` gives a value to what `--over` varies: it would not count.

@@ -53,7 +53,7 @@ impl Look {
     /// What the rows at a value say together. A defect that was found counts, whatever came after it.
     pub(super) fn at(rows: &[&Row]) -> Self {
         let count = |is: fn(&Row) -> bool| rows.iter().filter(|row| is(row)).count();
-        let (unjudged, failed) = (count(Row::is_unsettled), count(Row::failed));
+        let (unjudged, failed) = (count(Row::is_unjudged), count(Row::failed));
         match (count(|row| row.defect), unjudged + failed) {
             (0, 0) => Self::Free,
             (0, _) => Self::Unknown {
@@ -119,7 +119,7 @@ pub(super) fn open_question(name: &str, value: f64, look: Look, known: &Known) -
     };
     let what = match failed {
         0 => format!(
-            "is not judged: in {unjudged} of {of} runs no wire came to rest; wind more turns with --set spindle.turns=N"
+            "is not judged: in {unjudged} of {of} runs no turn came to rest beside another; wind more turns with --set spindle.turns=N"
         ),
         _ => format!(
             "failed: the solver gave up {failed} of {of} runs, and column reason of sweep.csv says why; leave the value out with another bracket, or wind with a smaller solver.tolerance"

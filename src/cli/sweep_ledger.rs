@@ -90,13 +90,19 @@ impl Ledger {
                 path.display()
             ))
         };
-        let mut reader = csv::Reader::from_path(&path).map_err(|_| damaged(1))?;
+        let headless = || {
+            Failure::sweep(format!(
+                "{}:1: not the header of this sweep; begin again with --force",
+                path.display()
+            ))
+        };
+        let mut reader = csv::Reader::from_path(&path).map_err(|_| headless())?;
         let columns = grid.ranges.len();
         let names = csv::StringRecord::from(COLUMNS.to_vec());
         let runs = (0..grid.runs()).map(|run| ((grid.values(run), grid.member(run)), run));
         let runs: BTreeMap<_, _> = runs.collect();
         if reader.headers().ok() != Some(&csv::StringRecord::from(header(grid))) {
-            return Err(damaged(1));
+            return Err(headless());
         }
         for (index, record) in reader.records().enumerate() {
             let line = index as u64 + 2;

@@ -112,8 +112,9 @@ impl Row {
         self.outcome != "done"
     }
 
-    /// It ended as planned, and nothing could be measured.
-    pub(super) fn is_unsettled(&self) -> bool {
-        !self.failed() && self.verdict == Verdict::Unsettled.as_str()
+    /// It ended as planned, and no turn could be measured, or none against another.
+    pub(super) fn is_unjudged(&self) -> bool {
+        let without = [Verdict::Unsettled, Verdict::Single].map(Verdict::as_str);
+        !self.failed() && without.contains(&self.verdict.as_str())
     }
 }

@@ -64,6 +64,12 @@ impl Hull {
         round_axis.then_some(hull)
     }
 
+    /// Largest distance of a corner from the axis, m.
+    pub(crate) fn radius(&self) -> f64 {
+        let far = self.corners.iter().map(|&[x, z]| libm::hypot(x, z));
+        far.fold(0.0, f64::max)
+    }
+
     /// Both ends of each edge, the edge before the first corner first.
     fn edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
         let before = self.corners.iter().cycle().skip(self.corners.len() - 1);

@@ -27,6 +27,7 @@ mod grid;
 mod hull;
 mod level;
 mod mesh;
+mod room;
 mod rounded_rod;
 mod shape;
 mod spline;
@@ -46,6 +47,7 @@ pub use flange::Flanges;
 pub(crate) use flank::FLANGE_FACE;
 pub(crate) use hull::Hull;
 pub use mesh::TriMesh;
+pub use room::Room;
 pub use rounded_rod::RoundedRod;
 pub use shape::{Nearness, Shape};
 #[cfg(feature = "lab")]

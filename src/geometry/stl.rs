@@ -55,8 +55,8 @@ pub enum StlError {
 
 /// Reads a mesh; `unit` is metres per file unit (0.001 for mm).
 ///
-/// Vertices with equal coordinates become one; triangles that have two equal vertices then are
-/// dropped, which leaves no hole. Normals in the file are ignored: the order of the vertices
+/// Vertices with equal coordinates become one, and where that leaves the surface open, also those nearer to each other than a
+/// millionth of the core's size. Triangles that have two equal vertices then are dropped, which leaves no hole. Normals in the file are ignored: the order of the vertices
 /// says what is outside. Triangle indices in errors count what is left. The reader is rewound
 /// first.
 pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlError> {
@@ -82,7 +82,19 @@ pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlErr
         let triangle = triangle.map_err(|e| broken(index, e))?;
         welded.push(triangle.vertices.map(|v| v.0), unit);
     }
-    Ok(TriMesh::new(welded.vertices, welded.triangles)?)
+    let apart = welded.clone();
+    match TriMesh::new(welded.vertices, welded.triangles) {
+        // Seams whose two sides were rounded differently look open.
+        Err(open @ MeshError::Open { .. }) => {
+            let Welded {
+                vertices,
+                triangles,
+                ..
+            } = apart.pulled_together();
+            TriMesh::new(vertices, triangles).map_err(|_| open.into())
+        }
+        mesh => Ok(mesh?),
+    }
 }
 
 /// Brings the bytes into the form that the parser recognises; says which form that is.
@@ -120,8 +132,12 @@ fn is_binary(bytes: &[u8]) -> bool {
     count.checked_mul(BINARY_TRIANGLE) == Some(body.len())
 }
 
+/// Share of the size of a core by which two vertices may differ that are meant to be one: a few units in the last place of
+/// single precision.
+const SAME: f64 = 1e-6;
+
 /// Vertices numbered in the order in which they first occur.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Welded {
     vertices: Vec<V3>,
     triangles: Vec<[u32; 3]>,
@@ -144,6 +160,45 @@ impl Welded {
         if a != b && b != c && c != a {
             self.triangles.push(triangle);
         }
+    }
+}
+
+impl Welded {
+    /// The same, where of vertices that are nearly at one place only the first is left.
+    fn pulled_together(self) -> Self {
+        let size = self.vertices.iter().flat_map(|v| v.iter().copied());
+        let near = SAME * size.fold(0.0, |size: f64, x| size.max(x.abs()));
+        // Two places that near lie in one cell, or in cells side by side.
+        let cell = |place: &V3, aside: [f64; 3]| {
+            [0, 1, 2].map(|k| ((place[k] + near * aside[k]) / (2.0 * near)).floor() as i64)
+        };
+        let mut left = Self::default();
+        let mut known: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
+        let stand_in: Vec<u32> = self
+            .vertices
+            .iter()
+            .map(|place| {
+                let at = |&v: &u32| (left.vertices[v as usize] - place).norm() <= near;
+                let corners =
+                    (0..8).map(|k| [1, 2, 4].map(|bit| if k & bit > 0 { 1.0 } else { -1.0 }));
+                let mut beside = corners.filter_map(|aside| known.get(&cell(place, aside)));
+                if let Some(first) = beside.find_map(|cell| cell.iter().copied().find(at)) {
+                    return first;
+                }
+                let next = left.vertices.len() as u32;
+                left.vertices.push(*place);
+                known.entry(cell(place, [0.0; 3])).or_default().push(next);
+                next
+            })
+            .collect();
+        let triangles = self
+            .triangles
+            .iter()
+            .map(|t| t.map(|v| stand_in[v as usize]));
+        left.triangles = triangles
+            .filter(|[a, b, c]| a != b && b != c && c != a)
+            .collect();
+        left
     }
 }
 
@@ -191,6 +246,26 @@ mod tests {
 
     fn read_bytes(bytes: impl Into<Vec<u8>>) -> Result<TriMesh, StlError> {
         read(&mut Cursor::new(bytes.into()), 1e-3)
+    }
+
+    /// Corners that an exporter has rounded differently in each triangle.
+    #[test]
+    fn a_seam_whose_sides_were_rounded_differently_is_closed() {
+        let mut torn = soup();
+        for (k, triangle) in torn.iter_mut().enumerate() {
+            for corner in &mut triangle.vertices {
+                for (axis, x) in corner.0.iter_mut().enumerate() {
+                    *x += 5e-7 * ((7 * k + 3 * axis) % 5) as f32 - 1e-6;
+                }
+            }
+        }
+        check(&read_bytes(ascii(&torn)).unwrap());
+        // A gap of a hundredth of a millimetre stays one.
+        torn[0].vertices[0].0[0] += 0.01;
+        assert!(matches!(
+            read_bytes(ascii(&torn)),
+            Err(StlError::Mesh(MeshError::Open { .. }))
+        ));
     }
 
     fn check(mesh: &TriMesh) {

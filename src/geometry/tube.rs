@@ -64,6 +64,8 @@ pub struct Tube {
     pub tension: Vec<f64>,
     /// plastic stretch of the edge leaving each node
     pub plastic_strain: Vec<f64>,
+    /// plastic curvature at each node, 1/m
+    pub plastic_bend: Vec<f64>,
     /// unit normal of the plane at which segments meet, zero at the ends
     mitre: Vec<V3>,
     /// cosine and sine of the vertex angles
@@ -84,6 +86,8 @@ pub struct FrozenNode {
     pub tension: f64,
     /// plastic stretch of that edge
     pub plastic_strain: f64,
+    /// plastic curvature at the node, 1/m
+    pub plastic_bend: f64,
 }
 
 /// A [`Tube`] in a saved state.
@@ -120,6 +124,7 @@ impl Tube {
             arc: Vec::new(),
             tension: Vec::new(),
             plastic_strain: Vec::new(),
+            plastic_bend: Vec::new(),
             mitre: Vec::new(),
             circle: (0..SIDES)
                 .map(|k| {
@@ -144,6 +149,7 @@ impl Tube {
             arc: self.arc[i],
             tension: self.tension[i],
             plastic_strain: self.plastic_strain[i],
+            plastic_bend: self.plastic_bend[i],
         })
     }
 
@@ -175,6 +181,7 @@ impl Tube {
         self.arc.push(node.arc);
         self.tension.push(node.tension);
         self.plastic_strain.push(node.plastic_strain);
+        self.plastic_bend.push(node.plastic_bend);
         self.mitre.push(V3::zeros());
         let n = self.points.len();
         if n > 2 {
@@ -203,6 +210,7 @@ impl Tube {
             arc: self.arc.pop()?,
             tension: self.tension.pop()?,
             plastic_strain: self.plastic_strain.pop()?,
+            plastic_bend: self.plastic_bend.pop()?,
         };
         self.mitre.pop();
         let n = self.points.len();
@@ -475,6 +483,7 @@ mod tests {
                 arc: i as f64 * step,
                 tension: 0.0,
                 plastic_strain: 0.0,
+                plastic_bend: 0.0,
             });
         }
         tube

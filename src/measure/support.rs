@@ -10,7 +10,8 @@ use super::station::Station;
 /// which wire that rests on it stands half a diameter above it.
 const BELOW: f64 = 0.866_025_403_784_438_6;
 
-/// The same for wire of the same row, which a wire can only have climbed on, diameters.
+/// The same for wire of the same row, which a wire can only have climbed on, diameters. In a groove of its own row, between two
+/// turns of it, a wire is as far from them as that is wide.
 const CLIMBED: f64 = 0.5;
 
 /// Rise over a wire from which on another lies in the layer above it, diameters: half of a wire on a wire. In the
@@ -102,6 +103,8 @@ impl Coil {
             own_row: None,
             highest: 0.0,
         };
+        // layers of the highest wire of its own row below it, towards -y and +y
+        let mut groove = [0; 2];
         for bin in bucket.1 - 1..=bucket.1 + 1 {
             let mut next = self.buckets.get((bucket.0, bin));
             while let Some(index) = next {
@@ -127,6 +130,9 @@ impl Coil {
                 let below = aside <= if earlier { BELOW } else { CLIMBED };
                 if below && rise >= NEXT_LAYER * d {
                     support.layer = support.layer.max(lower.layer + 1);
+                } else if aside <= BELOW && rise >= NEXT_LAYER * d {
+                    let side = &mut groove[usize::from(lower.position.y > y)];
+                    *side = lower.layer.max(*side);
                 }
                 let level = match aside <= BELOW {
                     true => Some(level),
@@ -140,6 +146,9 @@ impl Coil {
                     support.row = Some(of.number);
                 }
             }
+        }
+        if groove[0].min(groove[1]) > 0 {
+            support.layer = support.layer.max(groove[0].min(groove[1]) + 1);
         }
         support
     }

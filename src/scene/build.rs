@@ -9,6 +9,7 @@ use super::problems::Problems;
 use super::{
     Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver, Window,
 };
+use crate::geometry::Room;
 use crate::geometry::stl::{self, StlError};
 use crate::rod::Twist;
 use crate::settings::{SceneSettings, SolverSettings, Spindle};
@@ -111,8 +112,8 @@ impl SceneSettings {
         let round = (bend, cylinder);
         let solver = self.solver_for(integrator, twist, (wire.diameter, span), round);
         self.check_spacing(&solver, &wire, &extent, &mut problems);
-        let window = self.window(core.flange(), &mut problems);
-        let mut warnings = self.warnings(&solver, &wire, &core, &extent, &nozzle_law);
+        let window = self.window(extent.window, &mut problems);
+        let mut warnings = self.warnings(&solver, &wire, &core, (&extent, window), &nozzle_law);
         warnings.extend(laws.and_then(|laws| self.rough_laws(&laws)));
         warnings.extend(self.yielding_exit(&wire, &extent));
 
@@ -203,14 +204,17 @@ impl SceneSettings {
     }
 
     /// The room that the coil may take, where the scene says it.
-    fn window(&self, flange: Option<Flange>, problems: &mut Problems) -> Option<Window> {
+    fn window(&self, room: Option<Room>, problems: &mut Problems) -> Option<Window> {
         let c = &self.core;
-        let height = match c.window_height {
-            0.0 => flange?.height,
-            height => height,
+        let window = Window {
+            faces: room.map(|room| room.faces),
+            height: match c.window_height {
+                0.0 => room?.height,
+                height => height,
+            },
+            taper: c.window_taper,
         };
-        let width = flange.map(|f| f.inner_distance);
-        let lowest = height - 0.5 * width.unwrap_or(0.0) * libm::tan(c.window_taper).abs();
+        let (height, lowest) = (window.height, window.lowest());
         if lowest <= 0.0 {
             let reason = "the limit line meets the core between the flanges";
             let least = format!(
@@ -219,11 +223,7 @@ impl SceneSettings {
             );
             problems.add(self.impossible("core.window_height", reason, least));
         }
-        Some(Window {
-            width,
-            height,
-            taper: c.window_taper,
-        })
+        Some(window)
     }
 
     fn core(&self, problems: &mut Problems) -> Result<(Core, Extent), SceneError> {
@@ -255,6 +255,16 @@ impl SceneSettings {
                         "core.flange.inner_distance",
                         "the mesh ends before the flanges",
                         format!("at most {} m, or 0 for no flanges", si(2.0 * reach)),
+                    ));
+                }
+                let wire = self.wire.outer_diameter();
+                if let Some(room) = extent.window
+                    && room.widest[1] - room.widest[0] < wire
+                {
+                    problems.add(self.impossible(
+                        "wire.diameter",
+                        "the wire is wider than the flanges of core.file are apart",
+                        format!("at most {} m", si(room.widest[1] - room.widest[0])),
                     ));
                 }
                 let core = Core::Mesh {
@@ -315,7 +325,13 @@ impl SceneSettings {
             extent.y_min = extent.y_min.min(vertex.y);
             extent.y_max = extent.y_max.max(vertex.y);
         }
-        extent.winding_radius = extent.turning_radius;
+        // Wire that is no wider than they are high lies between flanges; what is lower are ribs.
+        if self.core.flange.inner_distance == 0.0 {
+            extent.window = mesh.room(self.start.clamp_y, self.wire.outer_diameter());
+        }
+        extent.winding_radius = extent
+            .window
+            .map_or(extent.turning_radius, |room| room.radius);
         Ok(extent)
     }
 

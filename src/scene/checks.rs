@@ -1,7 +1,7 @@
 //! Leaves that contradict each other, each told with the leaf to change.
 
 use super::build::{COARSEST, FINEST};
-use super::extent::Extent;
+use super::extent::{Extent, ROUNDING};
 use super::impossible::si;
 use super::problems::Problems;
 use super::{Integrator, NozzleLaw, SceneError, Solver};
@@ -48,10 +48,19 @@ impl SceneSettings {
         if wire.diameter > length {
             let reason = "the wire is wider than the core is long";
             let blamed = match self.core.shape.as_str() {
-                "mesh" => "wire.diameter",
+                "mesh" => "core.unit",
                 _ => self.given(&["wire.diameter", "core.length_y"]),
             };
             problems.add(match blamed {
+                "core.unit" => self.impossible(
+                    blamed,
+                    format!(
+                        "core.file is then {} m long along y, and the wire {} m wide",
+                        si(length),
+                        si(wire.diameter)
+                    ),
+                    "the unit in which the file was written, m for instance, or thinner wire",
+                ),
                 "core.length_y" => {
                     self.impossible(blamed, reason, format!("at least {} m", si(wire.diameter)))
                 }
@@ -60,16 +69,14 @@ impl SceneSettings {
             return;
         }
         let (mut low, mut high) = (extent.y_min, extent.y_max);
-        if let Some(width) = extent.window {
-            (low, high) = (-0.5 * width, 0.5 * width);
+        if let Some(room) = extent.window {
+            [low, high] = room.widest;
         }
-        let rounding = 1e-9 * wire.diameter;
-        let (low, high) = (
-            low + wire.radius() - rounding,
-            high - wire.radius() + rounding,
-        );
+        let rounding = ROUNDING * length;
+        let (low, high) = (low + wire.radius(), high - wire.radius());
         // (between flanges that leave the wire no room no place would do: their distance has been refused)
-        if low <= high && !(low..=high).contains(&self.start.clamp_y) {
+        let within = (low - rounding..=high + rounding).contains(&self.start.clamp_y);
+        if low <= high && !within {
             problems.add(self.impossible(
                 "start.clamp_y",
                 match extent.window {

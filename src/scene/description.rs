@@ -109,12 +109,31 @@ pub enum Core {
 /// The winding window over one flank of the core: from flange to flange, and up to the limit line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// distance of the flanges, m; `None` without flanges
-    pub width: Option<f64>,
+    /// inner faces of the flanges along y, m; `None` without flanges
+    pub faces: Option<[f64; 2]>,
     /// height of the limit line over the core at y = 0, m
     pub height: f64,
     /// angle of the limit line to the axis, rad; it rises towards +y
     pub taper: f64,
+}
+
+impl Window {
+    /// Height of the limit line over the core at `y`, m.
+    fn height_at(&self, y: f64) -> f64 {
+        self.height + y * libm::tan(self.taper)
+    }
+
+    /// Height of the limit line at its lowest place between the flanges, m; without flanges that at y = 0.
+    pub(super) fn lowest(&self) -> f64 {
+        let [low, high] = self.faces.unwrap_or_default();
+        self.height_at(low).min(self.height_at(high))
+    }
+
+    /// Distance of the flanges and mean height between them, m; none without flanges.
+    pub fn size(&self) -> Option<[f64; 2]> {
+        let [low, high] = self.faces?;
+        Some([high - low, self.height_at(0.5 * (low + high))])
+    }
 }
 
 /// Two flanges beside a core, the same on both sides of y = 0. Their rim stands the same height above it all round.

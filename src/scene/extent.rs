@@ -1,6 +1,10 @@
 //! The room that a core takes up.
 
 use super::Flange;
+use crate::geometry::Room;
+
+/// Share of a length by which it may be missed: by faces in an STL file, which has single precision, and by sums of pitches.
+pub(super) const ROUNDING: f64 = 1e-6;
 
 /// Room the core takes up.
 pub(super) struct Extent {
@@ -11,8 +15,8 @@ pub(super) struct Extent {
     /// ends along the axis, m
     pub(super) y_min: f64,
     pub(super) y_max: f64,
-    /// distance of the flanges, m, where the scene says it
-    pub(super) window: Option<f64>,
+    /// what lies between flanges, those of the scene or those that a mesh has
+    pub(super) window: Option<Room>,
 }
 
 impl Extent {
@@ -24,7 +28,7 @@ impl Extent {
             winding_radius: turning_radius,
             y_min: -half,
             y_max: half,
-            window: flange.map(|f| f.inner_distance),
+            window: flange.map(|f| between(f, turning_radius)),
         }
     }
 
@@ -38,9 +42,20 @@ impl Extent {
             turning_radius: self.turning_radius + f.height,
             y_min: self.y_min.min(-outer),
             y_max: self.y_max.max(outer),
-            window: Some(f.inner_distance),
+            window: Some(between(f, self.winding_radius)),
             ..self
         }
+    }
+}
+
+/// The room between the scene's flanges on a core of this radius, m.
+fn between(flange: Flange, radius: f64) -> Room {
+    let half = 0.5 * flange.inner_distance;
+    Room {
+        faces: [-half, half],
+        widest: [-half, half],
+        height: flange.height,
+        radius,
     }
 }
 

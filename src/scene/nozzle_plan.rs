@@ -5,7 +5,7 @@
 
 use super::SceneError;
 use super::angle_table::Form;
-use super::extent::Extent;
+use super::extent::{Extent, ROUNDING};
 use super::impossible::si;
 use super::nozzle_law::NozzleLaw;
 use super::nozzle_trail::Trail;
@@ -19,9 +19,6 @@ const TURNS: f64 = 2.5;
 
 /// Most turns of a coil: those that `spindle.turns` admits.
 const MOST_TURNS: f64 = 1e5;
-
-/// Share of a length by which sums of pitches may miss it.
-const ROUNDING: f64 = 1e-9;
 
 /// A layer as the nozzle winds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -162,7 +159,11 @@ impl SceneSettings {
     /// The layers that the nozzle winds, from the window between the flanges.
     fn layers(&self, d: f64, extent: &Extent, problems: &mut Problems) -> Option<Layers> {
         let w = &self.winding;
-        let window = extent.window;
+        let distance = |[low, high]: [f64; 2]| high - low;
+        let (width, widest) = match extent.window {
+            Some(room) => (Some(distance(room.faces)), Some(distance(room.widest))),
+            None => (None, None),
+        };
         for (key, count) in [
             ("winding.layers", w.layers),
             ("winding.turns_per_layer", w.turns_per_layer),
@@ -186,7 +187,8 @@ impl SceneSettings {
             return None;
         }
         let least = w.pitch.max(d);
-        let most = window.map(|width| ((width - d) / least * (1.0 + ROUNDING)).floor() + 1.0);
+        let most_in = |width: f64| ((width - d) / least * (1.0 + ROUNDING)).floor() + 1.0;
+        let (fit, most) = (width.map(most_in), widest.map(most_in));
         if most.is_some_and(|most| most < 1.0) {
             // flanges so near to each other are told already
             return None;
@@ -200,15 +202,19 @@ impl SceneSettings {
                 ));
                 return None;
             }
-            (0.0, Some(most)) => most,
+            (0.0, Some(most)) => fit.unwrap_or(most).max(1.0),
             (turns, Some(most)) if turns > most => {
                 let reason = format!(
                     "so many turns {} m apart need {} m; there are {} m between the flanges",
                     si(least),
                     si(d + (turns - 1.0) * least),
-                    si(window.unwrap_or_default())
+                    si(widest.unwrap_or_default())
                 );
-                let allowed = format!("at most {most}, or a larger core.flange.inner_distance");
+                let or = match self.core.flange.inner_distance {
+                    0.0 => "a core.file with flanges farther apart",
+                    _ => "a larger core.flange.inner_distance",
+                };
+                let allowed = format!("at most {most}, or {or}");
                 problems.add(self.impossible("winding.turns_per_layer", reason, allowed));
                 // what fits must not meet the nozzle either
                 let fits = self.stacked(most as u32, least, true);
@@ -226,10 +232,10 @@ impl SceneSettings {
             problems.add(self.impossible("winding.turns_per_layer", reason, allowed));
             return None;
         }
-        let room = window.map(|width| width * (1.0 + ROUNDING) - d);
+        let room = width.map(|width| width * (1.0 + ROUNDING) - d);
         // with room for half a pitch more every layer has as many turns
         let has_half = |pitch: f64| room.is_none_or(|room| (turns - 0.5) * pitch <= room);
-        let pitch = match (w.pitch, window) {
+        let pitch = match (w.pitch, width) {
             (0.0, Some(width)) if has_half(d) => ((width - d) / (turns - 0.5)).min(2.0 * d),
             (0.0, Some(width)) if turns > 1.0 => (width - d) / (turns - 1.0),
             (0.0, _) => d,
@@ -366,9 +372,10 @@ impl SceneSettings {
             problems.add(self.impossible(
                 "nozzle.distance",
                 format!(
-                    "the coil meets the nozzle in layer {number}, from turn {turn} at y = {} m on: it stands up to {} m from the axis there",
+                    "the coil meets the nozzle in layer {number}, from turn {turn} at y = {} m on: it stands up to {} m from the axis there, and the wire, {} m wide, has to pass",
                     si(layers.layers[number - 1].first),
-                    si(top(number))
+                    si(top(number)),
+                    si(d)
                 ),
                 format!("more than {} m{fewer}", si(top(count) + d)),
             ));
@@ -378,13 +385,15 @@ impl SceneSettings {
     /// A layered way stays in the window; the nozzle may lead beyond it.
     fn check_way(&self, law: &NozzleLaw, d: f64, extent: &Extent, problems: &mut Problems) {
         let (low, high) = match extent.window {
-            Some(width) => (-0.5 * width, 0.5 * width),
+            Some(room) => (room.widest[0], room.widest[1]),
             None => (extent.y_min, extent.y_max),
         };
-        let lead = self.traverse.lead.abs() + ROUNDING * (high - low);
+        let (lead, rounding) = (self.traverse.lead.abs(), ROUNDING * (high - low));
         let [least, largest] = law.range();
         let ends = [low + 0.5 * d - lead, high - 0.5 * d + lead];
-        if least >= ends[0] && largest <= ends[1] {
+        // (where the wire has no place at all, that has been told)
+        let within = least >= ends[0] - rounding && largest <= ends[1] + rounding;
+        if within || ends[1] < ends[0] - rounding {
             return;
         }
         let what = match extent.window {
@@ -392,25 +401,19 @@ impl SceneSettings {
             None => "an end of the core",
         };
         // (what rounding leaves of the middle of the core)
-        let told = |y: f64| {
-            si(if y.abs() > ROUNDING * (high - low) {
-                y
-            } else {
-                0.0
-            })
-        };
+        let told = |y: f64| si(if y.abs() > rounding { y } else { 0.0 });
         let reason = format!(
             "the nozzle goes from {} to {} m, past {what}",
             told(least),
             told(largest)
         );
-        let room = (ends[1] - ends[0]) - (largest - least);
-        let start = match self.traverse.mode.as_str() {
-            "table" => law.start(),
-            _ => self.nozzle.y_start,
-        };
+        let room = rounding + (ends[1] - ends[0]) - (largest - least);
+        let start = self.nozzle.y_start;
         let places = [ends[0] + (start - least), ends[1] - (largest - start)].map(si);
         let allowed = match room >= 0.0 {
+            _ if self.traverse.mode == "table" => {
+                format!("positions from {} to {} m", si(ends[0]), si(ends[1]))
+            }
             // a layer that fills the window leaves one place
             true if places[0] == places[1] => format!("{} m", places[0]),
             true => format!("{} to {} m", places[0], places[1]),

@@ -3,7 +3,7 @@
 use super::error::Warning;
 use super::extent::Extent;
 use super::impossible::si;
-use super::{Core, Integrator, NozzleLaw, Solver};
+use super::{Core, Integrator, NozzleLaw, Solver, Window};
 use crate::rod::{RoundLaws, Section, Twist};
 use crate::settings::SceneSettings;
 
@@ -87,20 +87,22 @@ impl SceneSettings {
     fn nozzle_past_a_flange(
         &self,
         wire: &Section,
-        core: &Core,
         extent: &Extent,
         law: &NozzleLaw,
     ) -> Option<(&'static str, String)> {
-        let (flange, width) = (core.flange()?, extent.window?);
+        let room = extent.window?;
         let [low, high] = law.range();
-        let farthest = if -low > high { low } else { high };
-        let past = farthest.abs() - 0.5 * width;
+        let [below, above] = [room.faces[0] - low, high - room.faces[1]];
+        let (farthest, past) = match below > above {
+            true => (low, below),
+            false => (high, above),
+        };
         if past <= 0.0 {
             return None;
         }
         let laid = extent.winding_radius + wire.radius();
         let at_face = laid + (self.nozzle.distance - laid) * wire.radius() / (past + wire.radius());
-        if at_face >= extent.winding_radius + flange.height {
+        if at_face >= extent.winding_radius + room.height {
             return None;
         }
         let key = match self.traverse.mode.as_str() {
@@ -110,10 +112,11 @@ impl SceneSettings {
             _ => "nozzle.y_start",
         };
         let message = format!(
-            "the nozzle goes to {} m, {} m past the inner face of a flange: wire beside that flange lies against its rim or is wound over it; keep the nozzle within {} m of the middle, or farther from the core",
+            "the nozzle goes to {} m, {} m past the inner face of a flange: wire beside that flange lies against its rim or is wound over it; keep the nozzle between {} and {} m, or farther from the core",
             si(farthest),
             si(past),
-            si(0.5 * width)
+            si(room.faces[0]),
+            si(room.faces[1])
         );
         Some((key, message))
     }
@@ -123,7 +126,7 @@ impl SceneSettings {
         solver: &Solver,
         wire: &Section,
         core: &Core,
-        extent: &Extent,
+        (extent, window): (&Extent, Option<Window>),
         law: &NozzleLaw,
     ) -> Vec<Warning> {
         let mut warnings = self.keys_without_effect();
@@ -169,14 +172,23 @@ impl SceneSettings {
                 );
                 warn("nozzle.distance", message);
             }
-            if core.flange().is_some_and(|flange| coil > flange.height) {
-                let message = format!("the coil stands {} m high, above the flanges", si(coil));
-                warn("core.flange.height", message);
+            if let Some(room) = extent.window
+                && coil > room.height
+            {
+                let (key, flanges) = match core.flange() {
+                    Some(_) => ("core.flange.height", "the flanges".to_owned()),
+                    None => (
+                        "core.file",
+                        format!("its flanges, which are {} m high", si(room.height)),
+                    ),
+                };
+                let message = format!("the coil stands {} m high, above {flanges}", si(coil));
+                warn(key, message);
             }
-            let width = extent.window.unwrap_or_default();
-            let c = &self.core;
-            let lowest = c.window_height - 0.5 * width * libm::tan(c.window_taper).abs();
-            if c.window_height > 0.0 && coil > lowest {
+            if self.core.window_height > 0.0
+                && let Some(lowest) = window.map(|window| window.lowest())
+                && coil > lowest
+            {
                 let message = format!(
                     "the coil stands {} m high, beyond the limit line, which is {} m high at its lowest",
                     si(coil),
@@ -200,7 +212,7 @@ impl SceneSettings {
             );
             warn(key, message);
         }
-        if let Some((key, message)) = self.nozzle_past_a_flange(wire, core, extent, law) {
+        if let Some((key, message)) = self.nozzle_past_a_flange(wire, extent, law) {
             warn(key, message);
         }
         let first = self.nozzle.y_start;

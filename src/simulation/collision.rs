@@ -5,10 +5,12 @@
 //! that stands at that instant, against frozen wire, and against live wire up to lift-off. The free span may pass beside it.
 
 use super::Winding;
+use super::nozzle_place::nozzle_of;
 use crate::geometry::{Nearness, RoundedRod};
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
 use crate::measure::DefectKind;
 use crate::settings::Nozzle;
+use crate::signals::Inputs;
 use std::f64::consts::TAU;
 
 /// What the nozzle's body met, and where.
@@ -38,6 +40,28 @@ fn turn_at(angle: f64) -> u32 {
 }
 
 impl Winding {
+    /// Inputs must not send the nozzle into the circle that the core and its flanges sweep, as long as there is wire to wind.
+    pub(super) fn check_circle(&mut self, end: &Inputs) {
+        let Some(core) = self.sys.model.core.as_ref().filter(|_| !self.run.over) else {
+            return;
+        };
+        let (exit, sweeps) = (nozzle_of(&self.scene, end), core.radius_max());
+        let from_axis = libm::hypot(exit.x, exit.z);
+        if from_axis > sweeps + self.scene.wire.radius() {
+            return;
+        }
+        let text = format!(
+            "nozzle_offset_x = {} m and nozzle_offset_z = {} m send the nozzle to {:.3} mm from the axis, into the circle of {:.3} mm that the core sweeps with its flanges; keep it, and half a wire, outside of that circle",
+            end.nozzle_offset_x,
+            end.nozzle_offset_z,
+            1e3 * from_axis,
+            1e3 * sweeps
+        );
+        let place = Spin::new(self.sys.state.spindle.angle).to_core(exit);
+        let (angle, _) = self.wound_to(self.lift_off());
+        self.note_end_at(DefectKind::Collision, angle, place, text);
+    }
+
     /// The coil must not reach the nozzle: no wire could leave it freely there.
     pub(super) fn check_clearance(&mut self) {
         let node = self.lift_off();

@@ -38,7 +38,7 @@ impl Winding {
         if let Source::Inputs { inputs, rates } = &source {
             check_finite(inputs, self.run.time)?;
             check_finite(&inputs.after(rates, dt), self.run.time)?;
-            self.check_nozzle(&inputs.after(rates, dt))?;
+            self.check_circle(&inputs.after(rates, dt));
         }
         let span = self.run.owed + dt;
         if span < WORTH_A_STEP {

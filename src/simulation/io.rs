@@ -12,6 +12,9 @@ pub struct Centreline {
     /// unstretched length from the clamp, m
     pub arc: Vec<f64>,
     /// plastic stretch of the edge leaving each node
+    pub plastic_stretch: Vec<f64>,
+    /// largest plastic strain in the section at each node: the plastic stretch and what the plastic curvature adds at the
+    /// surface of the bare wire
     pub plastic_strain: Vec<f64>,
     /// tension of the edge leaving each node, N
     pub tension: Vec<f64>,

@@ -220,6 +220,12 @@ impl Winding {
         self.watch_for_doubt(residual);
     }
 
+    /// Plastic curvature at a live node, 1/m.
+    pub(super) fn plastic_bend(&self, node: usize) -> f64 {
+        let [a, b] = self.sys.state.rod.bend[node].curvature;
+        libm::hypot(a, b)
+    }
+
     /// The whole wire in the core frame.
     pub fn centreline(&self) -> Centreline {
         let spin = Spin::new(self.sys.state.spindle.angle);
@@ -230,17 +236,25 @@ impl Winding {
             points: frozen.points.clone(),
             frames: frozen.frames.clone(),
             arc: frozen.arc.clone(),
-            plastic_strain: frozen.plastic_strain.clone(),
+            plastic_stretch: frozen.plastic_strain.clone(),
+            plastic_strain: Vec::new(),
             tension: frozen.tension.clone(),
             frozen: frozen.len(),
         };
+        let radius = 0.5 * self.scene.wire.bare_diameter;
+        let largest = |stretch: f64, bend: f64| stretch.abs() + radius * bend;
+        let at_rest = frozen.plastic_strain.iter().zip(&frozen.plastic_bend);
+        line.plastic_strain
+            .extend(at_rest.map(|(stretch, bend)| largest(*stretch, *bend)));
         let mut arc = self.sys.state.arc0;
         for i in 0..rod.nodes() {
             let j = i.min(rod.edges() - 1);
             line.points.push(spin.to_core(rod.x[i]));
             line.frames.push(back * rod.frame[j]);
             line.arc.push(arc);
-            line.plastic_strain.push(rod.stretch[j].strain);
+            line.plastic_stretch.push(rod.stretch[j].strain);
+            line.plastic_strain
+                .push(largest(rod.stretch[j].strain, self.plastic_bend(i)));
             line.tension.push(self.sys.state.load.tension[j]);
             arc += rod.rest.get(i).copied().unwrap_or(0.0);
         }

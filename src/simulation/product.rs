@@ -2,7 +2,6 @@
 
 use super::Winding;
 use crate::measure::LayerContour;
-use crate::scene::Window;
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -52,6 +51,9 @@ pub struct Fill {
     pub fill_bare: f64,
     /// share of wire with its enamel
     pub fill_enamelled: f64,
+    /// inner faces of the flanges along y, m, of the winding window
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faces_m: Option<[f64; 2]>,
 }
 
 impl Winding {
@@ -75,6 +77,7 @@ impl Winding {
                 height_m,
                 fill_bare: share(wire.bare_diameter),
                 fill_enamelled: share(wire.diameter),
+                faces_m: None,
             }
         };
         let contour = self.coil.contour();
@@ -92,8 +95,12 @@ impl Winding {
             resistivity_ohm_m: self.scene.resistivity,
             resistance_ohm: self.resistance_of(length, self.coil.added_by_stretch(length)),
             fill: self.coil.fill_factor(),
-            // the limit line is as high in the middle as it is on average
-            window: limit.and_then(|Window { width, height, .. }| Some(fill(width?, height))),
+            window: limit
+                .and_then(|window| window.size())
+                .map(|[width, height]| Fill {
+                    faces_m: limit.and_then(|window| window.faces),
+                    ..fill(width, height)
+                }),
             coil: top.map(|layer| fill(self.coil.coil_width(), layer.height_groove_m)),
             contour,
             clearance_m: limit.and_then(|window| self.coil.clearance(window.height, window.taper)),

@@ -295,6 +295,7 @@ impl Winding {
                 arc,
                 tension: self.sys.state.load.tension[i],
                 plastic_strain: self.sys.state.rod.stretch[i].strain,
+                plastic_bend: self.plastic_bend(i),
             };
             let centre = spin.to_core(self.sys.centre(i));
             let settled = self.settled(centre, arc, node.plastic_strain, node.tension);

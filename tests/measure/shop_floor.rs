@@ -1,7 +1,9 @@
 //! Double turns, skipped grooves, jumps out of turn, loose and stretched wire, made on paper; and what is none of them.
 
 use crate::coils::{D, PULL, on_cylinder, spec, wound};
-use coilwind::measure::{Coil, CoilSpec, Defect, DefectFlags, DefectKind, SettledNode, Verdict};
+use coilwind::measure::{
+    Coil, CoilSpec, Defect, DefectFlags, DefectKind, STATIONS_PER_TURN, SettledNode, Verdict,
+};
 use std::f64::consts::TAU;
 
 /// Turns of a layer of the coils here.
@@ -90,6 +92,26 @@ fn a_nozzle_that_hangs_back_for_a_turn_begins_no_layer() {
     let coil = told([3.6 * TAU, 5.0 * TAU]);
     assert!(of(DefectKind::DoubleTurn, &coil).is_empty());
     assert_eq!(coil.stations().last().unwrap().pass, 3);
+}
+
+/// A groove between turns that do not quite touch is wider than one between turns that do: there the layer flickered.
+#[test]
+fn a_double_turn_in_a_wide_groove_lies_in_the_second_layer_all_round() {
+    const WIDE: [(f64, f64); 6] = [
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (2.0, 0.0),
+        (3.04, 0.0),
+        (2.52, 1.0),
+        (4.1, 0.0),
+    ];
+    let coil = wound(spec(), &on_cylinder(5.8, 1.0, in_places(&WIDE)));
+    let whole = 4 * STATIONS_PER_TURN..5 * STATIONS_PER_TURN - 40;
+    let layers: Vec<u32> = coil.stations().map(|station| station.layer).collect();
+    // (a layer counts once it has for as long as a defect needs)
+    let second = &layers[whole.start + 8..whole.end];
+    assert!(second.iter().all(|layer| *layer == 2), "{second:?}");
+    assert!(layers[..whole.start - 40].iter().all(|layer| *layer == 1));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Opens reports in headless Chromium, light and dark: one run with frames and a defect, and two side by side.
+# Opens reports in headless Chromium, light and dark: one run with frames and a defect, the same with other numbers and
+# in a browser without WebGL, and two side by side.
 #
 #     tests/report/run.sh [--shots DIR | --hundred]
 #
@@ -36,5 +37,7 @@ fi
 "$command" run fig8 --set spindle.speed=100 --set spindle.turns=1.6 --quiet --out "$out/aligned"
 "$command" report "$out/gap" "$out/aligned"
 look --page "$out/gap/report.html" --frames ${shots:+--shots "$shots/gap"}
+look --page "$out/gap/report.html" --changed ${shots:+--shots "$shots/changed"}
+look --page "$out/gap/report.html" --no-webgl ${shots:+--shots "$shots/no-webgl"}
 look --page "$out/aligned/report.html" ${shots:+--shots "$shots/aligned"}
 look --page "$out/gap/compare.html" --runs 2 ${shots:+--shots "$shots/compare"}

@@ -1,13 +1,19 @@
 //! Cores from STL files as other programs write them, and files that make no core.
 
 use crate::common::{assert_says, parse};
+use coilwind::scene::Scene;
 use std::path::Path;
 
 /// Corners of the triangles of a box of 12 x 30 x 20 mm, mm.
 fn triangles() -> Vec<[[f32; 3]; 3]> {
+    of_a_box(6.0, [-15.0, 15.0], 10.0)
+}
+
+/// The same of a box of any size: half its width and height, mm, and from where to where along y.
+fn of_a_box(half_x: f32, y: [f32; 2], half_z: f32) -> Vec<[[f32; 3]; 3]> {
     let corner = |i: u32| {
         let side = |bit: u32, half: f32| if i >> bit & 1 == 1 { half } else { -half };
-        [side(0, 6.0), side(1, 15.0), side(2, 10.0)]
+        [side(0, half_x), y[(i >> 1 & 1) as usize], side(2, half_z)]
     };
     let quads = [
         [0, 4, 6, 2],
@@ -86,4 +92,55 @@ fn a_mesh_that_makes_no_core_is_told_with_its_key_and_place() {
         assert_says(&said, &["test.toml:3: core.file = ", name, "allowed: "]);
         assert_says(&said, parts);
     }
+}
+
+/// Wire of 0.5 mm on a box of 12 x 20 mm between flanges of the file's own, 3 mm high, with their faces at -4 and 5 mm.
+fn between_flanges(folder: &Path, wire_mm: f64, more: &str) -> Result<Scene, String> {
+    let mut all = of_a_box(6.0, [-6.0, 7.0], 10.0);
+    all.extend(of_a_box(9.0, [-5.0, -4.0], 13.0));
+    all.extend(of_a_box(9.0, [5.0, 6.0], 13.0));
+    let file = folder.join("tooth.stl");
+    std::fs::write(&file, text(" tooth", &all)).unwrap();
+    let scene = format!(
+        "[core]\nshape = 'mesh'\nfile = {file:?}\n[wire]\ndiameter_mm = {wire_mm}\n[start]\nclamp_y_mm = -3.75\n\
+         [nozzle]\ny_start_mm = -3.75\n[traverse]\nmode = 'orthocyclic'\n[winding]\nlayers = 2\n{more}"
+    );
+    let settings = parse(&scene).expect("parses");
+    settings.build().map_err(|error| error.to_string())
+}
+
+/// Flanges of a file were no flanges: nothing said how many turns fit, and nozzle and clamp could lie in them.
+#[test]
+fn flanges_of_a_file_bound_the_winding_as_those_of_a_scene_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let wind = |wire_mm: f64, more: &str| between_flanges(folder.path(), wire_mm, more);
+    let full = wind(0.5, "").expect("it can be wound");
+    // 18 turns fill 9 mm; between them lie 17
+    assert_eq!(full.spindle.turns, 35.0);
+    let window = full.window.expect("between flanges");
+    let [low, high] = window.faces.expect("both");
+    assert!(
+        (low + 4e-3).abs() < 1e-8 && (high - 5e-3).abs() < 1e-8,
+        "{window:?}"
+    );
+    assert!((window.height - 3e-3).abs() < 1e-5, "{window:?}");
+
+    let many = wind(0.5, "turns_per_layer = 19\n").expect_err("too many");
+    assert_says(
+        &many,
+        &[
+            "winding.turns_per_layer = 19",
+            "0.009 m between the flanges",
+            "at most 18",
+            "core.file",
+        ],
+    );
+    let fewer = wind(0.5, "turns_per_layer = 10\npitch_mm = 0.5\n");
+    fewer.expect("there is room");
+    let past = wind(
+        0.5,
+        "turns_per_layer = 10\npitch_mm = 0.5\ndirection = '-y'\n",
+    )
+    .expect_err("past a face");
+    assert_says(&past, &["nozzle.y_start", "past a flange"]);
 }

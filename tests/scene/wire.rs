@@ -268,10 +268,11 @@ fn insulation_is_an_offset_of_the_core() {
 fn the_window_ends_at_its_limit_line() {
     let coil = "[core]\nwindow_height_mm = 5\nwindow_taper_deg = 10\n";
     let open = scene(coil).window.unwrap();
-    assert_eq!((open.width, open.height), (None, 5e-3));
+    assert_eq!((open.size(), open.height), (None, 5e-3));
     let flanges = "[core.flange]\ninner_distance_mm = 15\nheight_mm = 4\n";
     let closed = scene(&format!("{coil}{flanges}")).window.unwrap();
-    assert_eq!((closed.width, closed.height), (Some(15e-3), 5e-3));
+    assert_eq!(closed.faces, Some([-7.5e-3, 7.5e-3]));
+    assert_eq!(closed.size(), Some([15e-3, 5e-3]));
     assert_eq!(scene(flanges).window.unwrap().height, 4e-3);
     assert_eq!(scene("").window, None);
     let steep = refused(&format!(

@@ -1,7 +1,11 @@
 """scripts/calibrate.py finds the parameters that a measurement was made with, and tells what is wrong with a measurement."""
 
 import json
+import os
+import signal
 import subprocess
+import sys
+import time
 
 import pytest
 
@@ -78,16 +82,101 @@ def test_parameters_of_a_noisy_measurement_are_recovered(calibrate, measured, tm
     assert (tmp_path / "residuals.csv").read_text(encoding="utf-8").startswith("column,angle_rad,measured,fitted\n")
 
 
-def test_what_does_not_show_is_told(calibrate, measured, tmp_path):
+@pytest.fixture(scope="module")
+def short(measured):
+    """The tension of the first turns."""
     lines = measured.read_text(encoding="utf-8").splitlines(keepends=True)
-    short = tmp_path / "short.csv"
+    path = measured.parent / "short.csv"
     tension = (",".join(line.rstrip().split(",")[:2]) + "\n" for line in lines[:100])
-    short.write_text("".join(tension), encoding="utf-8")
-    words = ["--set", "spindle.turns=0.65", "--fit", "friction.slip_speed", "--out", tmp_path]
-    code, said = calibrate(short, *words)
-    assert code == 0, said
+    path.write_text("".join(tension), encoding="utf-8")
+    return path
+
+
+SHORT = ["--set", "spindle.turns=0.65"]
+
+
+def test_what_does_not_show_is_told(calibrate, short, tmp_path):
+    code, said = calibrate(short, *SHORT, "--fit", "friction.slip_speed", "--out", tmp_path)
+    assert code == 1, said
     assert "friction.slip_speed hardly shows in what was measured" in said
     assert "what is left of tension_N is no noise" in said
+    assert "no fit: what was measured does not determine friction.slip_speed" in said
+    assert "wind with" not in said and "inf" not in said.replace("interval", ""), said
+    result = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
+    assert not result["fitted"] and not result["parameters"]["friction.slip_speed"]["determined"]
+
+
+def test_a_setting_so_far_off_that_nothing_shows_is_no_fit(calibrate, short, tmp_path):
+    """A mass of 2 kg was told as fitted, from 0 to inf."""
+    code, said = calibrate(short, *SHORT, "--set", "tensioner.mass=2", "--fit", "tensioner.mass", "--out", tmp_path)
+    assert code == 1 and "no fit: what was measured does not determine tensioner.mass" in said and "wind with" not in said, said
+
+
+def test_a_solution_that_is_its_start_and_leaves_everything_is_no_fit(root, monkeypatch):
+    monkeypatch.syspath_prepend(root / "scripts")
+    import calibrate
+    import numpy as np
+
+    angle = np.linspace(0.0, 6.0, 60)
+    curve = calibrate.Curve("measured.csv", "tension_N", "tension", 1.0, angle, 15.0 + np.sin(angle))
+
+    def nothing(computed, gain):
+        return calibrate.explains_nothing(calibrate.Answer(None, None, None, 58, [computed], gain), [curve])
+
+    assert nothing(15.0 - np.sin(angle), 1.0)
+    # It came closer, it is close, or what is left is noise.
+    assert not nothing(15.0 - np.sin(angle), 2.0)
+    assert not nothing(15.0 + 0.9 * np.sin(angle), 1.0)
+    assert not nothing(curve.values + np.where(np.arange(60) % 2, 1.0, -1.0), 1.0)
+
+
+def test_a_setting_of_what_is_fitted_is_its_start(calibrate, short, tmp_path):
+    code, said = calibrate(short, *SHORT, "--set", "tensioner.mass_g=1.5", "--fit", "tensioner.mass", "--out", tmp_path)
+    assert code == 0, said
+    result = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))
+    assert result["parameters"]["tensioner.mass"]["start"] == pytest.approx(1.5e-3)
+
+
+def test_results_are_not_overwritten_without_a_word(calibrate, short, tmp_path):
+    for name, holds in [("summary.json", "another run"), ("sweep.csv", "another sweep"), ("calibration.json", "another calibration")]:
+        out = tmp_path / name
+        out.mkdir()
+        (out / name).write_text("{}\n", encoding="utf-8")
+        code, said = calibrate(short, *SHORT, "--fit", "tensioner.mass", "--out", out)
+        assert code == 2 and f"{out} holds {holds}; add --force to overwrite it" in said and len(said.splitlines()) == 1, said
+        assert (out / name).read_text(encoding="utf-8") == "{}\n"
+    code, said = calibrate(short, *SHORT, "--fit", "tensioner.mass=1.5e-3", "--out", out, "--force")
+    assert code == 0 and json.loads((out / "calibration.json").read_text(encoding="utf-8"))["fitted"], said
+
+
+def test_a_full_disk_is_told_in_a_line(calibrate, short, tmp_path):
+    (tmp_path / "residuals.csv.partial").symlink_to("/dev/full")
+    code, said = calibrate(short, *SHORT, "--fit", "tensioner.mass=1.5e-3", "--out", tmp_path)
+    assert code == 3 and said.endswith(f"calibrate.py: cannot write {tmp_path}/residuals.csv: No space left on device\n"), said
+    assert "wind with" in said and "Traceback" not in said
+    assert {path.name for path in tmp_path.iterdir()} == {"calibration.json"}
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_a_fit_that_is_stopped_keeps_the_best_so_far(number, scene, command, measured, root, tmp_path):
+    out, runs = tmp_path / "out", tmp_path / "runs"
+    runs.mkdir()
+    fits = [word for name in TRUTH for word in ("--fit", f"{name}={START[name]}" if name in START else name)]
+    line = [sys.executable, root / "scripts/calibrate.py", scene, "--measured", measured, *fits, "--threads", "1", "--command", command, "--out", out]
+    child = subprocess.Popen(line, stderr=subprocess.PIPE, text=True, env=os.environ | {"TMPDIR": str(runs)})
+    while sum(1 for _ in runs.glob("*/*")) < 8:
+        assert child.poll() is None
+        time.sleep(0.05)
+    child.send_signal(number)
+    said = child.communicate(timeout=30)[1]
+    assert child.returncode == 130 and len(said.splitlines()) == 1, said
+    assert f"the best values so far are in {out}/calibration.json; go on from them with: " in said and said.endswith(" --force\n"), said
+    result = json.loads((out / "calibration.json").read_text(encoding="utf-8"))
+    assert result["stopped"] and not result["fitted"]
+    for name in TRUTH:
+        assert f"--fit {name}={result['parameters'][name]['value']:.6g}" in said
+    assert (out / "residuals.csv").stat().st_size > 1000 and (out / "residuals.png").stat().st_size > 10_000
+    assert not list(runs.iterdir()), "temporary folders are left"
 
 
 def test_a_fit_that_ends_at_an_end_of_its_range_is_none(calibrate, measured, tmp_path):
@@ -119,6 +208,11 @@ def test_a_fit_that_ends_at_an_end_of_its_range_is_none(calibrate, measured, tmp
         ("turns,tension_N\n0.3,15\n2.5,15\n", [], "from 0.30 to 2.50 turns, the run goes from 0.00 to 1.40; wind more with --set spindle.turns=N"),
         ("turns,height_mm\n0.3,0.1\n1.38,0.1\n2,0.1\n", [], "settled wire of the run goes from"),
         ("turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "tensioner.mas"], "--fit tensioner.mas: there is no such parameter"),
+        ("turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "tensioner.mass=2"], "--fit tensioner.mass is given twice; leave one out"),
+        (
+            "turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "tensioner.radius=0.05", "--set", "tensioner.radius_mm=50"],
+            "--fit tensioner.radius=0.05 and --set tensioner.radius_mm=50 both say where tensioner.radius starts",
+        ),
         ("turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "nozzle.exit_friction"], "it starts from 0; give a start above zero"),
         ("turns,tension_N\n0.3,15\n0.4,15\n", ["--set", "wire.diametr=1"], "wire.diametr"),
     ],

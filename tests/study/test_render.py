@@ -1,6 +1,7 @@
 """scripts/render.py draws the wire that a run has, and frames are read by VTK's own reader."""
 
 import os
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -58,6 +59,26 @@ print(np.mean(red > blue + 40), np.mean((abs(red - blue) < 40) & (red < 235)), n
     assert copper > 0.01 and grey > 0.05 and paper > 0.2, (copper, grey, paper)
 
 
+def test_a_wire_is_one_smooth_tube(root):
+    """Each edge was a tube of its own, and every node a dark seam."""
+    said = render_python(f"""
+import sys; sys.path.insert(0, r"{root / 'scripts'}")
+import numpy as np, pyvista as pv, render
+from types import SimpleNamespace
+turn = np.linspace(0.0, 6.0, 40)
+wire = pv.PolyData(np.column_stack([np.cos(turn), np.sin(turn), 0.1 * turn]))
+wire["tension"] = turn
+coil = SimpleNamespace(args=SimpleNamespace(colour="tension"), radius=0.05)
+tube = render.Coil.tube(coil, wire)
+# A ring at each node, and the caps.
+assert tube.n_points == 42 * render.SIDES, tube.n_points
+rings = tube["shown"][: 40 * render.SIDES].reshape(40, -1)
+np.testing.assert_allclose(rings, np.tile(turn[:, None], render.SIDES), atol=1e-6)
+print("smooth")
+""")
+    assert said == "smooth\n"
+
+
 def test_a_film_has_the_frames(run, script, tmp_path):
     film = tmp_path / "x.gif"
     code, said = script("scripts/render.py", run, "--film", film, "--size", "160x120", python=RENDER)
@@ -79,3 +100,56 @@ def test_what_cannot_be_drawn_is_told_in_a_line(words, complaint, script, tmp_pa
     code, said = script("scripts/render.py", *(word.format(folder=tmp_path) for word in words), python=RENDER)
     assert code == 2
     assert complaint in said and "Traceback" not in said
+
+
+@pytest.fixture
+def spoilt(run, tmp_path):
+    """A copy of the run, one file of which ends too early."""
+
+    def cut(name, size):
+        folder = tmp_path / "run"
+        shutil.copytree(run, folder)
+        os.truncate(folder / name, size)
+        return folder
+
+    return cut
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "words", "complaint"),
+    [
+        ("coil.vtp", 20_000, [], "coil.vtp is not whole (it ends too early); begin again with: coilwind run {folder}/scene.toml --out {folder} --force"),
+        ("core.vtp", 0, [], "core.vtp is not whole (it ends too early); begin again with"),
+        (
+            "frames/frame_0002.vtp", 2000, ["--film", "{folder}/film.gif"],
+            "frame_0002.vtp is not whole (it ends too early); begin again with: coilwind run {folder}/scene.toml --out {folder} --frames 3 --force",
+        ),
+        ("frames.pvd", 200, ["--film", "{folder}/film.gif"], "frames.pvd is not whole"),
+    ],
+)
+def test_a_file_that_is_cut_short_is_told_in_a_line(name, size, words, complaint, spoilt, script):
+    folder = spoilt(name, size)
+    code, said = script("scripts/render.py", folder, *(word.format(folder=folder) for word in words), python=RENDER)
+    assert code == 2 and complaint.format(folder=folder) in said and len(said.splitlines()) == 1, said
+    assert not (folder / "film.gif").exists()
+
+
+def test_a_frame_with_damage_inside_is_told_in_a_line(spoilt, script):
+    folder = spoilt("frames/frame_0002.vtp", 1 << 20)
+    frame = folder / "frames/frame_0002.vtp"
+    text = frame.read_bytes().rstrip(b"\0")
+    middle = text.index(b"<Points>") + 200
+    frame.write_bytes(text[:middle] + b"!!!!" + text[middle + 4 :])
+    code, said = script("scripts/render.py", folder, "--film", folder / "film.gif", "--size", "160x120", python=RENDER)
+    assert code == 2 and "frame_0002.vtp is not whole" in said and len(said.splitlines()) == 1, said
+    assert not (folder / "film.gif").exists()
+
+
+@pytest.mark.parametrize(("checkpoint", "complaint"), [(True, "go on with: coilwind run --resume {folder}"), (False, "begin again with: coilwind run {folder}/scene.toml")])
+def test_a_run_that_was_killed_is_told_to_go_on(checkpoint, complaint, script, tmp_path):
+    if checkpoint:
+        (tmp_path / "checkpoint.bin").write_bytes(b"coilwck2")
+    (tmp_path / "scene.toml").write_text("preset = 'fig8'\n", encoding="utf-8")
+    code, said = script("scripts/render.py", tmp_path, python=RENDER)
+    assert code == 2 and len(said.splitlines()) == 1, said
+    assert f"the run was stopped before it wrote its results; {complaint.format(folder=tmp_path)}" in said

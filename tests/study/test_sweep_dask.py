@@ -1,11 +1,15 @@
-"""scripts/sweep_dask.py: the same bytes for any number of workers, also where workers are killed on the way."""
+"""scripts/sweep_dask.py: the same bytes for any number of workers, also where workers are killed or the sweep is stopped on the way."""
 
+import contextlib
 import csv
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
+import threading
+import time
 from argparse import Namespace
 
 import pytest
@@ -45,14 +49,23 @@ def tasks(sweep_dask, scene, command):
     return sweep_dask.tasks_of(Namespace(command=command, scene=str(scene), over=over, set=[], ensemble=2, step=5e-4))
 
 
+def begun(sweep_dask, folder, tasks):
+    """A ledger in an empty folder."""
+    ledger = sweep_dask.ledger_of(folder, *tasks, {})
+    ledger.begin()
+    return ledger
+
+
 @pytest.fixture(scope="module")
 def alone(sweep_dask, tasks, fmu, tmp_path_factory):
     """The table without Dask."""
     folder = tmp_path_factory.mktemp("alone")
     with open(fmu, "rb") as file:
         unpacked = sweep_dask.unpack(file.read(), folder)
-    names, runs = tasks
-    sweep_dask.write(folder, names, runs, [{**sweep_dask.wind(unpacked, task), "worker": ""} for task in runs])
+    ledger = begun(sweep_dask, folder, tasks)
+    for task in tasks[1]:
+        sweep_dask.keep_in(ledger, task, {**sweep_dask.wind(unpacked, task), "worker": ""})
+    ledger.write()
     return (folder / "sweep.csv").read_bytes()
 
 
@@ -74,11 +87,11 @@ def test_another_sweep_is_not_overwritten_without_a_word(scene, fmu, command, sc
     over = ["--over", "spindle.speed=100:100:1", "--set", "spindle.turns=0.3"]
     words = [*over, "--command", command, "--fmu", fmu, "--workers", "1", "--out", tmp_path]
     code, said = script("scripts/sweep_dask.py", scene, *words)
-    assert code == 2 and "holds another sweep; add --force" in said and len(said.splitlines()) == 1, said
+    assert code == 2 and "holds another sweep (another over, " in said and "); add --force" in said and len(said.splitlines()) == 1, said
     assert other.read_text(encoding="utf-8") == "of another sweep\n"
     code, said = script("scripts/sweep_dask.py", scene, *words, "--force")
     assert code == 0, said
-    assert {path.name for path in tmp_path.iterdir()} == {"sweep.csv", "times.csv"}
+    assert {path.name for path in tmp_path.iterdir()} == {"sweep.csv", "times.csv", "sweep.json"}
     assert len(list(csv.DictReader(other.open(encoding="utf-8")))) == 1
 
 
@@ -86,12 +99,15 @@ def test_killed_workers_change_nothing(alone, sweep_dask, tasks, fmu, tmp_path):
     import dask
     from distributed import Client, LocalCluster
 
-    names, runs = tasks
-    killed = []
+    ledger = begun(sweep_dask, tmp_path, tasks)
+    killed, workers = [], set()
     dask.config.set({"distributed.scheduler.allowed-failures": sweep_dask.DEATHS})
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
 
-        def kill(ended):
+        def keep(task, report):
+            sweep_dask.keep_in(ledger, task, report)
+            workers.add(report["worker"])
+            ended = len(ledger.rows)
             # One of the workers that are alive, at three instants of the sweep.
             if ended in (2, 5, 8):
                 pids = sorted(client.run(os.getpid).values())
@@ -99,11 +115,11 @@ def test_killed_workers_change_nothing(alone, sweep_dask, tasks, fmu, tmp_path):
                 killed.append(ended)
 
         with open(fmu, "rb") as file:
-            reports = sweep_dask.wind_all(client, file.read(), runs, kill)
+            sweep_dask.wind_all(client, file.read(), tasks[1], keep)
     assert killed == [2, 5, 8]
-    sweep_dask.write(tmp_path, names, runs, reports)
+    ledger.write()
     assert (tmp_path / "sweep.csv").read_bytes() == alone
-    assert len({report["worker"] for report in reports}) > 2
+    assert len(workers) > 2
 
 
 def test_a_run_has_the_numbers_of_the_command(alone, scene, command, tmp_path):
@@ -130,6 +146,7 @@ def test_a_run_has_the_numbers_of_the_command(alone, scene, command, tmp_path):
         (["--over", "spindle.speed=1:2:2", "--set", "wire.material=copper"], "wire.material is no number"),
         (["--over", "wire.diameter=-1:2:2"], "wire.diameter"),
         (["--over", "spindle.speed=100:200:2", "--scheduler", "tcp://127.0.0.1:9"], "there is no scheduler"),
+        (["--over", "spindle.speed=100:200:2", "--workers", "0"], "--workers 0 has to be at least 1"),
         (["--over", "spindle.speed=100:200:2", "--fmu", "none.fmu"], "none.fmu is missing; build it with scripts/build_fmu.sh"),
     ],
 )
@@ -139,3 +156,164 @@ def test_what_cannot_be_swept_is_told_in_a_line(words, complaint, scene, fmu, co
     assert code == 2
     assert complaint in said and len(said.splitlines()) == 1, said
     assert not (tmp_path / "out").exists()
+
+
+@contextlib.contextmanager
+def answering(said):
+    """The address of a server that says this to whoever comes, and then nothing."""
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def serve():
+            with contextlib.suppress(OSError), contextlib.ExitStack() as held:
+                while True:
+                    caller = held.enter_context(server.accept()[0])
+                    caller.sendall(said)
+
+        threading.Thread(target=serve, daemon=True).start()
+        yield f"tcp://127.0.0.1:{server.getsockname()[1]}"
+
+
+@pytest.mark.parametrize(("said", "complaint"), [(b"", "within 5 s"), (b"SSH-2.0-OpenSSH_9.2\r\n" * 9, "what answers is no scheduler of Dask")])
+def test_another_program_at_the_address_is_told_in_time(said, complaint, scene, fmu, command, script, tmp_path):
+    """The client of Dask waits for ever, or wants exabytes of memory."""
+    with answering(said) as address:
+        words = ["--over", "spindle.speed=100:200:2", "--command", command, "--fmu", fmu, "--scheduler", address, "--out", tmp_path / "out"]
+        code, told = script("scripts/sweep_dask.py", scene, *words, timeout=30)
+    assert code == 2 and f"--scheduler {address}: " in told and complaint in told and "start one with dask scheduler" in told, told
+    assert len(told.splitlines()) == 1 and not (tmp_path / "out").exists()
+
+
+@contextlib.contextmanager
+def scheduler(workers, folder):
+    """The process and the address of a scheduler on a port of its own."""
+    file = folder / "scheduler.json"
+    module = [sys.executable, "-m"]
+    line = [*module, "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard", "--host", "127.0.0.1", "--scheduler-file", str(file)]
+    silent = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    children = [subprocess.Popen(line, **silent)]
+    try:
+        while not file.exists() or not file.read_text(encoding="utf-8").strip():
+            assert children[0].poll() is None
+            time.sleep(0.05)
+        address = json.loads(file.read_text(encoding="utf-8"))["address"]
+        for _ in range(workers):
+            line = [*module, "distributed.cli.dask_worker", address, "--nthreads", "1", "--no-dashboard", "--death-timeout", "20"]
+            children.append(subprocess.Popen(line, cwd=folder, **silent))
+        yield children[0], address
+    finally:
+        for child in children:
+            child.terminate()
+        for child in children:
+            child.wait(20)
+
+
+def test_a_scheduler_without_workers_ends_in_time(scene, fmu, command, script, tmp_path):
+    with scheduler(0, tmp_path) as (_, address):
+        words = ["--over", "spindle.speed=100:200:2", "--command", command, "--fmu", fmu, "--scheduler", address, "--wait", "5"]
+        code, said = script("scripts/sweep_dask.py", scene, *words, "--out", tmp_path / "out", timeout=60)
+    lines = said.splitlines()
+    assert code == 3 and len(lines) == 2, said
+    assert lines[0] == f"waiting up to 5 s for a worker; start some with: dask worker {address}"
+    assert f"the scheduler {address} had no worker for 5 s; start some with: dask worker {address}; 0 runs are kept" in lines[1]
+
+
+# Runs of a second: one is on its way whenever a test stops the sweep.
+LONG = ["--over", "spindle.speed=60:120:4", "--set", "spindle.turns=3"]
+
+
+@pytest.fixture
+def stopped(scene, fmu, command, root, tmp_path):
+    """Ends a sweep on its way; its exit code, what it said in its last line, and its folder."""
+
+    def run(stop, *words):
+        out = tmp_path / "out"
+        line = [sys.executable, root / "scripts/sweep_dask.py", scene, *LONG, "--command", command, "--fmu", fmu, "--out", out, "--quiet", *words]
+        child = subprocess.Popen(list(map(str, line)), stderr=subprocess.PIPE, text=True, start_new_session=True)
+        while not (out / "sweep.csv").exists():
+            assert child.poll() is None, child.communicate()
+            time.sleep(0.02)
+        stop(child)
+        said = child.communicate(timeout=30)[1]
+        assert len(said.splitlines()) == 1, said
+        return child.returncode, said, out
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def uninterrupted(scene, fmu, command, script, tmp_path_factory):
+    out = tmp_path_factory.mktemp("whole")
+    code, said = script("scripts/sweep_dask.py", scene, *LONG, "--command", command, "--fmu", fmu, "--out", out, "--workers", "1")
+    assert code == 0, said
+    return (out / "sweep.csv").read_bytes()
+
+
+# On a terminal Ctrl-C reaches the workers as well.
+@pytest.mark.parametrize("stop", [lambda child: os.killpg(child.pid, signal.SIGINT), lambda child: child.send_signal(signal.SIGTERM)], ids=["SIGINT", "SIGTERM"])
+def test_a_sweep_that_is_stopped_goes_on_to_the_same_bytes(stop, stopped, uninterrupted, tmp_path):
+    code, said, out = stopped(stop, "--workers", "1")
+    kept = (out / "sweep.csv").read_bytes()
+    runs = kept.count(b"\n") - 1
+    assert code == 130 and f"interrupted; {runs} runs are kept; go on with: " in said, said
+    assert 1 <= runs < 4 and uninterrupted.startswith(kept)
+    again = subprocess.run(said.partition("go on with: ")[2], shell=True, capture_output=True, text=True, check=False)
+    assert again.returncode == 0 and f"4 runs, {4 - runs} of them new" in again.stdout, again.stderr
+    assert (out / "sweep.csv").read_bytes() == uninterrupted
+    assert not list(out.glob("*.partial"))
+
+
+def test_a_lost_scheduler_leaves_the_rows(stopped, uninterrupted, tmp_path):
+    with scheduler(1, tmp_path) as (process, address):
+        code, said, out = stopped(lambda _: process.kill(), "--scheduler", address)
+    assert code == 3 and f"the scheduler {address} was lost; " in said and " runs are kept; go on with: " in said, said
+    assert uninterrupted.startswith((out / "sweep.csv").read_bytes())
+
+
+def test_a_full_disk_leaves_the_rows(stopped, uninterrupted, tmp_path):
+    code, said, out = stopped(lambda _: (tmp_path / "out/sweep.csv.partial").symlink_to("/dev/full"), "--workers", "1")
+    assert code == 3 and f"cannot write {out}/sweep.csv: No space left on device; " in said and "go on with: " in said, said
+    assert uninterrupted.startswith((out / "sweep.csv").read_bytes())
+
+
+def test_the_folder_of_something_else_is_refused(sweep_dask, tasks, tmp_path):
+    names, runs = tasks
+
+    def refused(plan=None):
+        with pytest.raises(sweep_dask.Mistake) as told:
+            sweep_dask.ledger_of(tmp_path, names, runs, plan or {})
+        return str(told.value)
+
+    begun(sweep_dask, tmp_path, tasks)
+    assert f"{tmp_path} holds another sweep (another set); add --force" in refused({"set": ["spindle.turns=2"]})
+    (tmp_path / "sweep.csv").write_text("spindle.speed,member\n1,1\n", encoding="utf-8")
+    assert f"{tmp_path / 'sweep.csv'}:1: no row of this sweep; remove the line, or begin again with --force" in refused()
+    (tmp_path / "sweep.json").write_text("{", encoding="utf-8")
+    assert "holds another sweep (its sweep.json is not whole)" in refused()
+    (tmp_path / "scene.toml").write_text("[core]\n", encoding="utf-8")
+    assert f"{tmp_path} holds another run; add --force to overwrite it, or --out for another folder" in refused()
+    sweep_dask.ledger_of(tmp_path, names, runs, {}, force=True).begin()
+    assert {path.name for path in tmp_path.iterdir()} == {"sweep.json"}
+
+
+def test_the_scene_is_not_removed_with_the_run_that_it_lies_in(scene, fmu, command, script, tmp_path):
+    inside = tmp_path / "scene.toml"
+    inside.write_bytes(scene.read_bytes())
+    words = ["--over", "spindle.speed=100:200:2", "--command", command, "--fmu", fmu, "--out", tmp_path, "--force"]
+    code, said = script("scripts/sweep_dask.py", inside, *words)
+    assert code == 2 and f"{inside} lies in {tmp_path}, which --force empties" in said and inside.exists(), said
+
+
+def test_two_sweeps_in_a_folder_are_refused(sweep_dask, tasks, tmp_path):
+    pytest.importorskip("fcntl")
+    first = begun(sweep_dask, tmp_path, tasks)
+    with pytest.raises(sweep_dask.Mistake, match="a sweep is going on here"):
+        sweep_dask.ledger_of(tmp_path, *tasks, {}).begin()
+    first.lock.close()
+
+
+def test_what_was_built_is_looked_for_in_the_target_folder_of_cargo(scene, root, tmp_path):
+    env = {name: value for name, value in os.environ.items() if not name.startswith("COILWIND_")} | {"CARGO_TARGET_DIR": str(tmp_path)}
+    for name, words in [("sweep_dask", ["--over", "spindle.speed=1:2:2"]), ("calibrate", ["--measured", "x.csv", "--fit", "tensioner.mass"])]:
+        line = [sys.executable, root / f"scripts/{name}.py", scene, *words]
+        said = subprocess.run(line, capture_output=True, text=True, check=False, env=env, cwd=tmp_path).stderr
+        assert said == f"{name}.py: {tmp_path}/release/coilwind is missing; build it with cargo build --release\n"

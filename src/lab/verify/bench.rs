@@ -256,6 +256,7 @@ fn straight_wires(y: &[f64], z: f64, length: f64) -> Vec<FrozenNode> {
                 arc,
                 tension: 0.0,
                 plastic_strain: 0.0,
+                plastic_bend: 0.0,
             });
             arc += step;
         }

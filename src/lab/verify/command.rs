@@ -2,11 +2,12 @@
 
 use super::file::{Case, CaseFile, Check};
 use super::report::{Outcome, Record, judge, unknown};
+use super::side_by_side::side_by_side;
 use super::{Context, KINDS, Kind, Setup, VerifyError, WIND, Wind};
 use crate::scene::{Integrator, Preset};
 use crate::settings::SceneSettings;
+use cpu_time::ThreadTime;
 use std::path::PathBuf;
-use std::time::Instant;
 
 /// Which cases to run, and how.
 #[derive(Clone, Debug)]
@@ -155,7 +156,7 @@ fn wind_spacing(tolerance: f64) -> Result<f64, VerifyError> {
     Ok(scene.solver.spacing_near / scene.wire.diameter)
 }
 
-/// Runs what `args` ask for, handing each line to `print`; whether every number was right.
+/// Runs what `args` ask for on all cores, handing each line to `print` in the order of the files; whether every number was right.
 ///
 /// An error is bad input (exit code 2); `Ok(false)` a number out of tolerance, a case without
 /// an answer or a kind that is not known (exit code 1).
@@ -184,54 +185,94 @@ pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, Ve
             count(&unknown(kind, None));
         }
     }
-    for file in &files {
-        if !args.kinds.is_empty() && !args.kinds.contains(&file.kind) {
-            continue;
-        }
-        run_file(file, &manner, |records, cpu| {
+    let asked = |file: &&CaseFile| args.kinds.is_empty() || args.kinds.contains(&file.kind);
+    let tasks: Vec<Task> = files
+        .iter()
+        .filter(asked)
+        .flat_map(|file| tasks(file, &manner))
+        .collect();
+    side_by_side(
+        &tasks,
+        |task| task.run(&manner),
+        |(records, cpu)| {
             seconds += cpu;
             records.iter().for_each(&mut count);
-        })?;
-    }
+        },
+    )?;
     if !args.json {
         print(&format!("{right} of {all} right, {seconds:.1} s"));
     }
     Ok(right == all)
 }
 
-/// Runs the cases of one file; `each` gets the records of a case and the seconds it took.
+/// Runs the cases of one file; `each` gets the records of a case and the seconds of processor time it took.
 pub fn run_file(
     file: &CaseFile,
     manner: &Manner,
     mut each: impl FnMut(&[Record], f64),
 ) -> Result<(), VerifyError> {
-    let Some(kind) = KINDS.iter().find(|kind| kind.name == file.kind) else {
-        for case in &file.cases {
-            let counts = |c: &&(String, Check)| c.1.counts(manner.preset);
-            let checks = file.check.iter().filter(counts);
-            let mut records = judge(&file.kind, case, checks, &Outcome::Unknown);
-            if records.is_empty() {
-                records.push(unknown(&file.kind, Some(&case.id)));
-            }
-            each(&records, 0.0);
-        }
-        return Ok(());
-    };
-    if !file.check.iter().any(|(_, c)| c.counts(manner.preset)) {
-        // nobody asks for what the other preset is judged by
-        return Ok(());
-    }
-    let setups = manner.setups(kind);
-    for case in &file.cases {
-        for (setup, name) in &setups {
-            let (records, cpu) = run_case(file, case, manner, kind, (*setup, name))?;
-            each(&records, cpu);
-        }
+    for task in tasks(file, manner) {
+        let (records, cpu) = task.run(manner)?;
+        each(&records, cpu);
     }
     Ok(())
 }
 
-/// The records of a case in one set-up, and the seconds it took.
+/// A case to run.
+struct Task<'a> {
+    file: &'a CaseFile,
+    case: &'a Case,
+    /// its kind, the set-up and the name of that; none for a kind that is not known
+    how: Option<(&'static Kind, Setup, String)>,
+}
+
+/// What there is to run of a file.
+fn tasks<'a>(file: &'a CaseFile, manner: &Manner) -> Vec<Task<'a>> {
+    let Some(kind) = KINDS.iter().find(|kind| kind.name == file.kind) else {
+        let of = |case| Task {
+            file,
+            case,
+            how: None,
+        };
+        return file.cases.iter().map(of).collect();
+    };
+    if !file.check.iter().any(|(_, c)| c.counts(manner.preset)) {
+        // nobody asks for what the other preset is judged by
+        return Vec::new();
+    }
+    let setups = manner.setups(kind);
+    let of = |case| {
+        setups.iter().map(move |(setup, name)| Task {
+            file,
+            case,
+            how: Some((kind, *setup, name.clone())),
+        })
+    };
+    file.cases.iter().flat_map(of).collect()
+}
+
+impl Task<'_> {
+    /// The records of the case, and the seconds of processor time it took.
+    fn run(&self, manner: &Manner) -> Result<(Vec<Record>, f64), VerifyError> {
+        let Self { file, case, how } = self;
+        if let Some((kind, setup, name)) = how {
+            return run_case(file, case, manner, kind, (*setup, name));
+        }
+        let counts = |c: &&(String, Check)| c.1.counts(manner.preset);
+        let mut records = judge(
+            &file.kind,
+            case,
+            file.check.iter().filter(counts),
+            &Outcome::Unknown,
+        );
+        if records.is_empty() {
+            records.push(unknown(&file.kind, Some(&case.id)));
+        }
+        Ok((records, 0.0))
+    }
+}
+
+/// The records of a case in one set-up, and the seconds of processor time it took.
 fn run_case(
     file: &CaseFile,
     case: &Case,
@@ -252,7 +293,7 @@ fn run_case(
         tolerance: manner.tolerance.unwrap_or(usual),
         setup,
     };
-    let start = Instant::now();
+    let start = ThreadTime::now();
     let answers = (kind.run)(&context);
     let cpu = start.elapsed().as_secs_f64();
     let outcome = match answers {

@@ -140,6 +140,7 @@ fn stack(ctx: &Context, (radius, pull): (f64, f64), spacing: f64, mu: f64) -> Sy
             arc: edge * (frozen - k) as f64,
             tension: 0.0,
             plastic_strain: 0.0,
+            plastic_bend: 0.0,
         });
     }
     sys.state.arc0 = edge * frozen as f64;

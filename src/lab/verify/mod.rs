@@ -33,6 +33,7 @@ mod report;
 mod rolling_path;
 mod shoulder_drop;
 mod shoulder_static;
+mod side_by_side;
 mod spinning_ring;
 mod square_loop;
 mod torsion;

@@ -68,13 +68,17 @@ function lowerBound(values, x) {
   return low;
 }
 
-/** Least and largest of the finite values, without the outermost hundredth at either end. */
+/** Differences of a value below this share of it are those of numbers with four bytes. */
+const SAME = 1e-6;
+/** Least and largest of the finite values, without the outermost hundredth at either end; the same number twice where
+ * all are equal. */
 function span(values) {
   const sorted = Float32Array.from(values).filter(Number.isFinite).sort();
-  if (sorted.length === 0) return [0, 1];
+  if (sorted.length === 0) return [0, 0];
   const at = (share) => sorted[Math.round(share * (sorted.length - 1))];
-  const [least, most] = [at(0.01), at(0.99)];
-  return most > least ? [least, most] : [least - 0.5 * (Math.abs(least) || 1), most + 0.5 * (Math.abs(most) || 1)];
+  const differ = ([least, most]) => most - least > SAME * Math.max(Math.abs(least), Math.abs(most));
+  // A field that differs in less than a hundredth of its places is not constant.
+  return [[at(0.01), at(0.99)], [at(0), at(1)]].find(differ) ?? [at(0.5), at(0.5)];
 }
 
 /** Buttons of which one is pressed. */
@@ -97,8 +101,9 @@ const later = (work) => waiting.push(work);
 function doWhatWaits() {
   const next = waiting.shift();
   if (!next) return void (document.body.dataset.whole = "yes");
-  next();
+  // First, so that a piece that fails takes no other with it.
   setTimeout(doWhatWaits);
+  next();
 }
 
 /** A canvas in the pixels of the screen that draws itself again when its width or the theme changes; first when all else is shown. */

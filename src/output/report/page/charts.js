@@ -9,7 +9,7 @@ function charts(run) {
   const forward = turns.every((turn, k) => k === 0 || turn >= turns[k - 1]);
   const x = forward ? turns : Array.from(history.time, (time) => 1e3 * time);
   const axis = forward ? "Turns of the spindle" : "Time, ms";
-  const marks = forward ? run.defects.map((d) => [d.turn - 1 + d.angle_deg / STATIONS, defectOf(d.kind).colour]) : [];
+  const marks = forward ? run.defects.map((d) => [d.turn - 1 + d.angle_deg / STATIONS, d.kind]) : [];
   const plain = (array, scale = 1) => Array.from(array, (value) => scale * value);
   const go = forward ? (turn) => run.goTo(turn) : () => {};
   const note = marks.length ? "Dashed: defects, where they lie on the wire." : null;
@@ -65,10 +65,10 @@ function drawMarks(u, marks) {
   pen.save();
   pen.setLineDash([5, 4]);
   pen.lineWidth = 1.2 * devicePixelRatio;
-  for (const [at, colour] of marks) {
+  for (const [at, kind] of marks) {
     const x = u.valToPos(at, "x", true);
     if (x < left || x > left + width) continue;
-    pen.strokeStyle = colour === "#111111" ? css("--ink") : colour;
+    pen.strokeStyle = lineColour(kind);
     pen.beginPath();
     pen.moveTo(x, top);
     pen.lineTo(x, top + height);

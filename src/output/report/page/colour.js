@@ -45,16 +45,52 @@ function defectColour(bits) {
   const worst = DEFECTS.findLast((kind) => bits & kind.bit);
   return worst ? worst.colour : PLAIN;
 }
-const defectOf = (name) => DEFECTS.find((kind) => kind.name === name) ?? { colour: UNKNOWN };
+const defectOf = (name) => DEFECTS.find((kind) => kind.name === name) ?? { name, bit: 0, colour: UNKNOWN };
+/** The colour of a kind on the page itself, where black would vanish in the dark: for the style sheet, and as it is now. */
+const pageColour = (name) => `var(--kind-${name}, ${defectOf(name).colour})`;
+const lineColour = (name) => css(`--kind-${name}`) || defectOf(name).colour;
+
+/** Kinds of the defects with a place, the mildest first, and whether they are drawn along the wire or as balls. */
+function kindsOf(runs) {
+  const places = runs.flatMap((run) => run.defects.filter((defect) => defect.place_m).map((defect) => defect.kind));
+  const onWire = runs.reduce((bits, run) => bits | run.marked, 0);
+  const named = DEFECTS.filter((kind) => kind.bit & onWire || places.includes(kind.name));
+  const strange = [...new Set(places)].filter((name) => !DEFECTS.some((kind) => kind.name === name)).map(defectOf);
+  return [...named, ...strange].map((kind) => ({ ...kind, ball: runs.some((run) => run.balls.some((ball) => ball.kind === kind.name)) }));
+}
+
+/** Share of the diameter that gaps span at least on the scale: the limit of a gap where the scene sets no other. */
+const GAP_LIMIT = 0.15;
+
+/** What a scale spans at least, m, so that it does not make structure of noise, and what that is; null for others. */
+function floorOf(key, runs) {
+  const most = (of) => Math.max(...runs.map(of));
+  if (key === "gap") {
+    const least = GAP_LIMIT * most((run) => run.diameter);
+    return { least, words: `${mm(least)} (${GAP_LIMIT} d)` };
+  }
+  if (key === "bulge") {
+    const least = most((run) => run.summary.bulge_judged?.limit_m ?? 0.5 * run.diameter);
+    return { least, words: `${mm(least)}, the limit of a bulge` };
+  }
+  return null;
+}
 
 /** A function from a value to red, green and blue, 0 to 255, and the range that it spans. */
-function colouring(key, values) {
+function colouring(key, values, runs) {
   if (key === "layer") return { of: cached((layer) => rgb(layerColour(layer))) };
   if (key === "defect") return { of: cached((bits) => rgb(defectColour(bits))) };
-  const range = span(values);
+  let range = span(values);
   const unknown = rgb(UNKNOWN);
+  if (range[0] === range[1]) {
+    const one = ramp(0.5);
+    return { range, of: (value) => (Number.isFinite(value) ? one : unknown) };
+  }
+  const floor = floorOf(key, runs);
+  const raised = floor && range[1] - range[0] < floor.least ? floor : null;
+  if (raised) range = [range[0], range[0] + raised.least];
   return {
-    range,
+    range, raised,
     of: (value) => (Number.isFinite(value) ? ramp((value - range[0]) / (range[1] - range[0])) : unknown),
   };
 }
@@ -68,19 +104,25 @@ function cached(make) {
 }
 
 /** The legend of a colouring as an element's children. */
-function legend(key, colours, values) {
+function legend(key, colours, values, runs) {
   const { label, unit, scale } = QUANTITIES[key];
   if (colours.range && !values.some(Number.isFinite)) return [el("div", {}, label), keys([["not measured", UNKNOWN]])];
+  const lacks = values.some((value) => !Number.isFinite(value));
+  if (colours.range && colours.range[0] === colours.range[1]) {
+    const one = `rgb(${colours.of(colours.range[0]).map(Math.round).join(" ")})`;
+    const named = [[`${digits(scale * colours.range[0])} ${unit} everywhere`, one], ...(lacks ? [["not measured", UNKNOWN]] : [])];
+    return [el("div", {}, label), keys(named)];
+  }
   if (colours.range) {
     const stops = RAMP.join(", ");
     const across = scale * (colours.range[1] - colours.range[0]);
     const count = Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(across))));
     const ends = colours.range.map((value) => `${fixed(scale * value, count)} ${unit}`);
-    const lacks = values.some((value) => !Number.isFinite(value));
     return [
       el("div", {}, label),
       el("div", { class: "ramp", style: `background: linear-gradient(90deg, ${stops})` }),
       el("div", { class: "ends" }, ...ends.map((text) => el("span", {}, text))),
+      colours.raised ? el("div", { class: "soft" }, `The scale spans at least ${colours.raised.words}.`) : null,
       lacks ? keys([["not measured", UNKNOWN]]) : null,
     ].filter(Boolean);
   }
@@ -89,11 +131,13 @@ function legend(key, colours, values) {
     const named = present.map((layer) => [layer === 0 ? "not at rest" : `${layer}`, layerColour(layer)]);
     return [el("div", {}, label), keys(named)];
   }
-  const found = DEFECTS.filter((kind) => present.some((bits) => bits & kind.bit));
-  return [el("div", {}, label), keys([["none", PLAIN], ...found.map((kind) => [kind.name, kind.colour])])];
+  const found = kindsOf(runs).map((kind) => [kind.ball ? `${kind.name} (ball)` : kind.name, kind.colour]);
+  return [el("div", {}, label), keys([["none", PLAIN], ...found])];
 }
 
-function keys(named) {
-  const entry = ([text, colour]) => el("span", {}, el("i", { style: `background: ${colour}` }), text);
-  return el("div", { class: "keys" }, ...named.map(entry));
+/** Names with their colours, as dots or as rings. */
+function keys(named, shape = "dots") {
+  const entry = ([text, colour]) => el("span", {}, dot(colour), text);
+  return el("div", { class: `keys ${shape}` }, ...named.map(entry));
 }
+const dot = (colour) => el("i", { class: "dot", style: `--kind: ${colour}` });

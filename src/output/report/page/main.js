@@ -10,11 +10,15 @@ class Run {
     this.summary = data.summary;
     this.defects = data.summary.defects ?? [];
     this.diameter = data.summary.product.enamelled_diameter_m ?? data.summary.product.wire_diameter_m;
+    this.faces = data.summary.product.window?.faces_m ?? null;
     this.history = decodeAll(data.history);
     this.stations = decodeAll(data.stations);
     this.wire = decodeAll(data.wire);
     this.core = decodeAll(data.core);
     this.frames = data.frames.map((frame) => ({ ...frame, wire: decodeAll(frame.wire) }));
+    // Faults of the wire itself have a place, but no stretch of wire is marked with them: the view shows balls there.
+    this.marked = (this.wire?.defect ?? []).reduce((sum, bits) => sum | bits, 0);
+    this.balls = this.defects.filter((defect) => defect.place_m && !(defectOf(defect.kind).bit & this.marked));
     if (this.wire) this.measure();
   }
 
@@ -131,9 +135,10 @@ function defects(run) {
     el("thead", {}, el("tr", {}, ...["Defect", "Turn", "Layer", "Angle", "Time", "Size"].map((name) => el("th", {}, name)))),
     el("tbody", {}, ...run.defects.slice(0, 500).map((defect) => {
       const size = sizeOf(defect) ?? "–";
-      const cells = [defect.kind, defect.turn, defect.layer, `${Math.round(defect.angle_deg)}°`, duration(defect.time_s), size];
+      const kind = el("span", { class: "kind" }, dot(pageColour(defect.kind)), defect.kind);
+      const cells = [kind, defect.turn, defect.layer, `${Math.round(defect.angle_deg)}°`, duration(defect.time_s), size];
       const go = () => run.goToDefect(defect);
-      const row = el("tr", { tabindex: 0, onclick: go, onkeydown: (event) => event.key === "Enter" && go() }, ...cells.map((cell) => el("td", {}, `${cell}`)));
+      const row = el("tr", { tabindex: 0, onclick: go, onkeydown: (event) => event.key === "Enter" && go() }, ...cells.map((cell) => el("td", {}, cell)));
       row.defect = defect;
       return row;
     })));
@@ -141,7 +146,7 @@ function defects(run) {
   const title = el("div", { class: "bar" }, el("h2", {}, count ? `Defects (${count})` : "Defects"));
   const more = count > 500 ? el("p", { class: "note" }, "The first 500; all stand in defects.csv.") : null;
   const body = count ? el("div", { class: "scroll" }, table) : el("p", { class: "soft" }, run.summary.status === "failed" ? "None found until the run failed." : "None found.");
-  return el("section", { class: "card" }, title, body, count ? el("p", { class: "note" }, "A click moves the view there.") : null, more);
+  return el("section", { class: "card" }, title, body, count && run.view?.renderer ? el("p", { class: "note" }, "A click moves the view there.") : null, more);
 }
 
 function trust(run) {
@@ -155,7 +160,7 @@ function trust(run) {
     ["Computed in", `${duration(s.wall_s)} (real-time factor ${digits(s.real_time_factor)})`],
   ];
   return el("section", { class: "card" }, el("div", { class: "bar" }, el("h2", {}, "How far to trust it")),
-    el("table", {}, el("tbody", {}, ...rows.map(([name, value]) => el("tr", {}, el("td", {}, name), el("td", {}, value))))));
+    el("div", { class: "scroll" }, el("table", { class: "words" }, el("tbody", {}, ...rows.map(([name, value]) => el("tr", {}, el("td", {}, name), el("td", {}, value)))))));
 }
 
 /** A place that is empty, so that two runs side by side stay in line. */

@@ -13,14 +13,16 @@ function defectMap(run) {
   };
   let key = "gap";
   let values, colours, picture;
+  const kinds = [...new Set(run.defects.map((defect) => defect.kind))];
+  const rings = kinds.length ? [keys(kinds.map((kind) => [kind, pageColour(kind)]), "rings")] : [];
   const legendBox = el("div", { class: "keys-of-map" });
   const choose = (chosen) => {
     key = chosen;
     values = measure(key);
     const all = run.all.flatMap((one) => (one.stations ? Array.from(measure(key, one.stations)) : []));
-    colours = colouring(key, all);
+    colours = colouring(key, all, run.all);
     picture = image(values, colours, turns);
-    legendBox.replaceChildren(...legend(key, colours, all));
+    legendBox.replaceChildren(...legend(key, colours, all, run.all), ...rings);
   };
   choose(key);
 
@@ -55,7 +57,7 @@ function defectMap(run) {
       pen.strokeStyle = css("--card");
       pen.stroke();
       pen.lineWidth = 2;
-      pen.strokeStyle = defect.kind === "break" ? css("--ink") : defectOf(defect.kind).colour;
+      pen.strokeStyle = lineColour(defect.kind);
       pen.stroke();
     }
   };
@@ -91,7 +93,7 @@ function defectMap(run) {
   };
   const bar = el("div", { class: "bar" }, el("h2", {}, "Defect map"),
     choice({ gap: "Gap", bulge: "Height", layer: "Layer" }, key, pick));
-  const note = run.defects.length ? "Rings mark defects. A click moves the view there." : "No defects. A click moves the view there.";
+  const note = [run.defects.length ? "Rings mark defects." : "No defects.", ...(run.view?.renderer ? ["A click moves the view there."] : [])].join(" ");
   return el("section", { class: "card map" }, bar, el("div", { class: "plot" }, board, tip),
     el("div", { class: "legend", style: "position: static; display: inline-block; margin-top: 8px" }, legendBox),
     el("p", { class: "note" }, `${note} Grey is not judged: shaped by the clamp, without a neighbour, or in the step to the next layer.`));

@@ -1,17 +1,23 @@
 // When the view is drawn, and how finely: the finest picture that is quick at once, the fine one when all stands still.
 
 /** Pixels drawn for one of the page, either way: the fine picture has more than are shown, so that its edges are smooth. */
-const RATIO = { rough: () => 0.5, draft: () => 0.7, fine: () => Math.max(2, devicePixelRatio || 1) };
+const RATIO = { rough: (painter) => painter.sharp, draft: () => 0.7, fine: () => Math.max(2, devicePixelRatio || 1) };
+/** The most and the least of a rough picture, and by how much they go down where it takes long. */
+const SHARP = { most: 0.5, least: 0.25, step: 0.8 };
 /** The fine picture waits until nothing has moved for so long, ms. */
 const STILL = 250;
 /** A picture that takes longer, ms, is not drawn while the view moves, if there is a quicker one. */
-const SMOOTH = 25;
+const SMOOTH = 25; // the browser needs as long to bring it to the screen, and 20 a second look smooth
+/** One in so many rough pictures is waited for to see how long it takes: the wait holds up the next. */
+const MEASURED = 3;
 
 class Painter {
   constructor(view) {
     this.view = view;
-    // What a picture took, ms: the fine one since the page was opened, the draft since the view moves.
+    // What a picture took, ms; what is unknown is tried.
     this.takes = { fine: Infinity, draft: 0 };
+    this.sharp = SHARP.most;
+    this.roughs = 0;
   }
 
   /** Draws before the screen is next painted. */
@@ -23,6 +29,7 @@ class Painter {
       this.waits = false;
       if (this.takes.fine < SMOOTH) return this.paint("fine");
       if (this.takes.draft < SMOOTH) this.takes.draft = this.time(() => this.paint("draft"));
+      else if ((this.roughs += 1) % MEASURED === 1) this.adapt(this.time(() => this.paint("rough")));
       else this.paint("rough");
       this.rest = setTimeout(() => this.finish(), STILL);
     });
@@ -34,7 +41,16 @@ class Painter {
       this.rest = setTimeout(() => this.finish(), STILL);
       return;
     }
-    this.takes = { fine: this.time(() => this.paint("fine")), draft: 0 };
+    // The first draft had to set all up. Later ones are tried again now and then, since the machine may have become quiet.
+    const draft = this.takes.fine === Infinity ? 0 : 0.7 * this.takes.draft;
+    this.takes = { fine: this.time(() => this.paint("fine")), draft };
+    this.sharp = Math.min(SHARP.most, this.sharp / SHARP.step);
+    this.roughs = 0;
+  }
+
+  /** Takes fewer pixels after a rough picture that took so long, ms; more come back when all stands still. */
+  adapt(took) {
+    if (took > SMOOTH) this.sharp = Math.max(SHARP.least, SHARP.step * this.sharp);
   }
 
   /** How long a picture takes, ms. */
@@ -53,10 +69,11 @@ class Painter {
   }
 
   paint(detail) {
-    const { renderer, tube, scene, camera, box } = this.view;
-    const ratio = RATIO[detail]();
+    const { renderer, tube, surface, scene, camera, box } = this.view;
+    const ratio = RATIO[detail](this);
     if (renderer.getPixelRatio() !== ratio) renderer.setPixelRatio(ratio);
     if (tube.drawn !== detail) tube.detail(detail);
+    surface?.detail(detail);
     renderer.render(scene, camera);
     // For tests: what stands there, and how often it was drawn.
     box.dataset.drawn = detail;

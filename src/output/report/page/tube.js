@@ -4,6 +4,8 @@ const SIDES = 10;
 const SCALE = 1e3;
 /** What is drawn of a tube: every so many of its sides and nodes. */
 const DETAIL = { fine: { sides: 1, nodes: 1 }, draft: { sides: 2, nodes: 2 }, rough: { sides: 2, nodes: 6 } };
+/** Cubes along the longest edge of the core, for pictures while the view moves. */
+const CUBES = 60;
 /** Colours of the screen as light, by the curve of sRGB. */
 const LIGHT = Float32Array.from({ length: 256 }, (_, k) => {
   const c = k / 255;
@@ -91,13 +93,41 @@ class Tube {
   }
 }
 
-/** The core as flat triangles. They share corners, since the graphics card takes their normals from the picture. */
-function coreMesh(core) {
-  const geometry = new Vendor.BufferGeometry();
-  geometry.setAttribute("position", new Vendor.BufferAttribute(core.points.map((metres) => SCALE * metres), 3));
-  geometry.setIndex(new Vendor.BufferAttribute(core.corners, 1));
-  const material = new Vendor.MeshLambertMaterial({ flatShading: true, side: Vendor.DoubleSide });
-  return new Vendor.Mesh(geometry, material);
+/** The core as flat triangles, all or few. They share corners, since the graphics card takes their normals from the picture. */
+class CoreSurface {
+  constructor(core) {
+    this.geometry = new Vendor.BufferGeometry();
+    this.geometry.setAttribute("position", new Vendor.BufferAttribute(core.points.map((metres) => SCALE * metres), 3));
+    this.index = { fine: new Vendor.BufferAttribute(core.corners, 1) };
+    this.index.draft = this.index.rough = new Vendor.BufferAttribute(fewCorners(core), 1);
+    const material = new Vendor.MeshLambertMaterial({ flatShading: true, side: Vendor.DoubleSide });
+    this.mesh = new Vendor.Mesh(this.geometry, material);
+    this.detail("draft");
+  }
+
+  detail(name) {
+    this.geometry.setIndex(this.index[name]);
+  }
+}
+
+/** The triangles that are left where the first corner in a cube of space stands for all corners in it. */
+function fewCorners({ points, corners }) {
+  const low = [Infinity, Infinity, Infinity];
+  let extent = 0;
+  for (let at = 0; at < points.length; at += 1) low[at % 3] = Math.min(low[at % 3], points[at]);
+  for (let at = 0; at < points.length; at += 1) extent = Math.max(extent, points[at] - low[at % 3]);
+  const first = new Map();
+  const standIn = Uint32Array.from({ length: points.length / 3 }, (_, corner) => {
+    const cube = low.reduce((sum, least, axis) => sum * CUBES + Math.floor(((points[3 * corner + axis] - least) / extent) * (CUBES - 1)), 0);
+    if (!first.has(cube)) first.set(cube, corner);
+    return first.get(cube);
+  });
+  const few = [];
+  for (let at = 0; at < corners.length; at += 3) {
+    const [a, b, c] = [standIn[corners[at]], standIn[corners[at + 1]], standIn[corners[at + 2]]];
+    if (a !== b && b !== c && c !== a) few.push(a, b, c);
+  }
+  return Uint32Array.from(few);
 }
 
 /** The wire at a frame: what lay already, then what the frame has. */

@@ -1,9 +1,15 @@
 // The coil in three dimensions, to turn, zoom and colour. Lengths in mm.
 
+/** Defects that are shown as balls, at most: each is drawn on its own. */
+const MOST_BALLS = 200;
+const BALL = new Vendor.SphereGeometry(1, 16, 10);
+/** Whether the reader wishes that nothing moves by itself. */
+const stands = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+
 class View {
   constructor(run) {
     this.run = run;
-    this.key = run.all.some((one) => one.defects.some((d) => d.size_m != null)) ? "defect" : "tension";
+    this.key = run.all.some((one) => one.defects.some((d) => d.place_m)) ? "defect" : "tension";
     this.frame = null;
     this.legend = el("div", { class: "legend" });
     this.place = el("div", { class: "place" });
@@ -12,8 +18,10 @@ class View {
     this.camera = new Vendor.PerspectiveCamera(32, 1, 0.5, 5000);
     try {
       this.renderer = new Vendor.WebGLRenderer();
+      this.renderer.localClippingEnabled = true;
     } catch {
-      this.box.replaceChildren(el("p", { style: "padding: 16px" }, "This browser shows no WebGL; the other parts of the page do not need it."));
+      this.box.replaceChildren(el("p", {}, "This browser shows no WebGL; the other parts of the page do not need it."));
+      this.box.classList.add("bare");
       return;
     }
     this.painter = new Painter(this);
@@ -32,9 +40,12 @@ class View {
     this.mark.visible = false;
     this.scene.add(this.mark);
     if (run.core) {
-      this.core = coreMesh(run.core);
+      this.surface = new CoreSurface(run.core);
+      this.core = this.surface.mesh;
       this.scene.add(this.core);
     }
+    this.balls = run.balls.slice(0, MOST_BALLS).map((defect) => this.ball(defect));
+    this.balls.forEach((ball) => this.scene.add(ball));
     this.build();
     this.theme();
     onTheme(() => this.theme());
@@ -57,6 +68,24 @@ class View {
     this.colour(this.key);
   }
 
+  /** A ball at a defect that marks no wire. */
+  ball(defect) {
+    const ball = new Vendor.Mesh(BALL, new Vendor.MeshLambertMaterial({ color: defectOf(defect.kind).colour }));
+    ball.position.set(...defect.place_m).multiplyScalar(SCALE);
+    ball.scale.setScalar(0.9 * this.run.diameter * SCALE);
+    ball.defect = defect;
+    return ball;
+  }
+
+  /** Shows the balls of the defects that there are at the frame, on the turns that are shown. */
+  showBalls() {
+    const time = this.frame == null ? Infinity : this.run.frames[this.frame].time * (1 + SAME);
+    for (const ball of this.balls) {
+      const { time_s: began, turn, angle_deg: angle } = ball.defect;
+      ball.visible = this.key === "defect" && began <= time && turn - 1 + angle / STATIONS <= (this.upTo ?? Infinity);
+    }
+  }
+
   /** Shows the first turns only, so that lower layers can be seen; no number shows all. */
   peel(turns) {
     this.upTo = turns;
@@ -65,6 +94,7 @@ class View {
       this.peeler.value = turns == null ? this.peeler.max : Math.ceil(turns);
       this.peeled.textContent = turns == null ? "all" : `${Number(turns.toFixed(2))}`;
     }
+    this.showBalls();
     this.draw();
   }
 
@@ -72,20 +102,30 @@ class View {
   colour(key) {
     this.key = key;
     const coil = this.run.all.flatMap((run) => (run.wire ? Array.from(run.wire[key].subarray(0, Math.max(1, run.laid))) : []));
-    const colours = colouring(key, coil);
+    const colours = colouring(key, coil, this.run.all);
     this.tube.paint(this.shown[key], colours);
-    this.legend.replaceChildren(...legend(key, colours, coil));
+    this.legend.replaceChildren(...legend(key, colours, coil, this.run.all));
+    this.showBalls();
     this.draw();
   }
 
   showCore(how) {
     if (!this.core) return;
     this.core.visible = how !== "hidden";
+    this.core.material.clippingPlanes = how === "bare" ? this.betweenFaces() : null;
     this.core.material.transparent = how === "glass";
     this.core.material.opacity = how === "glass" ? 0.25 : 1;
     this.core.material.depthWrite = how !== "glass";
     this.core.material.needsUpdate = true;
     this.draw();
+  }
+
+  /** Planes that leave of the core what lies between the inner faces of its flanges. */
+  betweenFaces() {
+    const [low, high] = this.run.faces.map((y) => SCALE * y);
+    // A face in the plane itself would be left in shreds.
+    const inset = 1e-3 * (high - low);
+    return [new Vendor.Plane(new Vendor.Vector3(0, 1, 0), -low - inset), new Vendor.Plane(new Vendor.Vector3(0, -1, 0), high - inset)];
   }
 
   show(frame) {
@@ -101,6 +141,7 @@ class View {
   }
 
   resize() {
+    if (!this.renderer) return;
     const [width, height] = [this.box.clientWidth, this.box.clientHeight];
     if (!width || !height || (width === this.wide && height === this.high)) return;
     [this.wide, this.high] = [width, height];
@@ -139,10 +180,18 @@ class View {
     this.mark.position.copy(target);
     this.mark.visible = true;
     this.place.textContent = words;
+    this.bringIntoSight();
+  }
+
+  /** Scrolls the page by as little as shows all of the view; not at all where it is in sight. */
+  bringIntoSight() {
+    const { top, bottom } = this.box.getBoundingClientRect();
+    if (top >= 0 && bottom <= innerHeight) return;
+    this.box.scrollIntoView({ block: "nearest", behavior: stands() ? "instant" : "smooth" });
   }
 
   move(target, eye, atOnce = false) {
-    const still = atOnce || matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const still = atOnce || stands();
     const [from, seen, began] = [this.camera.position.clone(), this.controls.target.clone(), performance.now()];
     const step = (now) => {
       const t = still ? 1 : Math.min(1, Math.max(0, (now - began) / 450));
@@ -166,16 +215,17 @@ class View {
     const pick = (names, chosen, change) => el("select", { onchange: (event) => change(event.target.value) },
       ...Object.entries(names).map(([key, text]) => el("option", { value: key, selected: key === chosen }, text)));
     const names = Object.fromEntries(Object.entries(QUANTITIES).map(([key, { label }]) => [key, label]));
+    const cores = { solid: "solid", ...(this.run.faces ? { bare: "without flanges" } : {}), glass: "see-through", hidden: "hidden" };
     const sides = { corner: [1, 0.42, 0.8], x: [1, 0.02, 0], z: [0, 0.02, 1], axis: [0.02, 1, 0] };
     const bar = el("div", { class: "bar" }, el("h2", {}, "Coil"),
       el("label", {}, "Colour", withClass("colour", pick(names, this.key, (key) => this.colour(key)))),
-      this.core ? el("label", {}, "Core", withClass("core", pick({ solid: "solid", glass: "see-through", hidden: "hidden" }, "solid", (how) => this.showCore(how)))) : null,
+      this.core ? el("label", {}, "Core", withClass("core", pick(cores, "solid", (how) => this.showCore(how)))) : null,
       el("span", { class: "group" }, ...Object.entries({ corner: "Whole coil", x: "From x", z: "From z", axis: "Along the axis" })
         .map(([key, text]) => el("button", { type: "button", onclick: () => this.look(...sides[key]) }, text))));
-    const card = el("section", { class: "card coil" }, this.renderer ? bar : null, this.box);
+    const card = el("section", { class: "card coil" }, this.renderer ? bar : el("div", { class: "bar" }, el("h2", {}, "Coil")), this.box);
     if (this.renderer && this.run.frames.length) card.append(this.slider());
     if (this.renderer && this.run.turnOf[this.run.laid - 1] > 5) card.append(this.layersSlider());
-    card.append(el("p", { class: "note" }, "Drag to turn, wheel to zoom, right button to shift."));
+    if (this.renderer) card.append(el("p", { class: "note" }, "Drag to turn, wheel to zoom, right button to shift."));
     return card;
   }
 

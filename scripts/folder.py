@@ -1,0 +1,86 @@
+"""Folders of results: where what is built stands, what a folder holds, and files that are whole or absent."""
+
+import os
+import shlex
+from pathlib import Path
+
+from failure import Mistake, Stuck
+
+ROOT = Path(__file__).resolve().parents[1]
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR") or ROOT / "target")
+COMMAND = Path(os.environ.get("COILWIND_COMMAND") or TARGET / "release/coilwind")
+FMU = Path(os.environ.get("COILWIND_FMU") or TARGET / "fmu/CoilWinding.fmu")
+# What builds them.
+COMMAND_BUILD, FMU_BUILD = "cargo build --release", "scripts/build_fmu.sh"
+
+CHECKPOINT = "checkpoint.bin"
+# By what a folder is known, and which files belong to it; those of runs and sweeps as in src/cli/folder.rs.
+SIGNS = {
+    "another run": ["summary.json", "history.csv", "scene.toml", CHECKPOINT],
+    "another sweep": ["sweep.json", "sweep.csv", "times.csv"],
+    "another calibration": ["calibration.json", "residuals.csv", "residuals.png"],
+}
+RESULTS = [
+    "turns.csv", "stations.csv", "defects.csv", "coil.vtp", "coil.png", "core.vtp", "report.html", "compare.html", "frames.pvd",
+    "ensemble.csv", "map.svg", "map.html",
+]
+
+
+def need(path, build):
+    """A mistake where `path` has not been built."""
+    if not path.is_file():
+        raise Mistake(f"{path} is missing; build it with {build}")
+
+
+def refuse_occupied(folder, force, *allowed):
+    """A mistake where the folder holds results, unless `force` says otherwise or they are `allowed`."""
+    for holds, names in SIGNS.items():
+        if not force and holds not in allowed and any(has(folder, name) for name in names):
+            raise Mistake(f"{folder} holds {holds}; add --force to overwrite it, or --out for another folder")
+
+
+def has(folder, name):
+    """Whether a folder has this file, with something in it."""
+    path = folder / name
+    return path.is_file() and path.stat().st_size > 0
+
+
+def make(folder):
+    """Makes the folder."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise Mistake(f"cannot write {folder}: {error.strerror}") from None
+
+
+def clear(folder):
+    """Removes the run and the sweep that the folder holds. Files of other names stay."""
+    for name in [*SIGNS["another run"], *SIGNS["another sweep"], *RESULTS]:
+        if (folder / name).is_file():
+            (folder / name).unlink()
+    for path in (folder / "frames").glob("frame_*.vtp"):
+        path.unlink()
+
+
+def write_whole(path, write):
+    """Has `write` write a file beside `path`, which takes its name at the end: a reader never finds half of it."""
+    partial = path.with_name(f"{path.name}.partial")
+    try:
+        write(partial)
+        os.replace(partial, path)
+    except OSError as error:
+        partial.unlink(missing_ok=True)
+        raise Stuck(f"cannot write {path}: {error.strerror or error}") from None
+    except BaseException:
+        partial.unlink(missing_ok=True)
+        raise
+
+
+def wind_again(folder, *words):
+    """What gives a run that is not whole, in words."""
+    if has(folder, CHECKPOINT):
+        return f"go on with: {shlex.join(['coilwind', 'run', '--resume', str(folder)])}"
+    if not has(folder, "scene.toml"):
+        return "wind the scene again"
+    line = ["coilwind", "run", str(folder / "scene.toml"), "--out", str(folder), *words, "--force"]
+    return f"begin again with: {shlex.join(line)}"

@@ -1,0 +1,265 @@
+//! The winding window of a mesh that has flanges of its own.
+
+use super::flank::FLANGE_FACE;
+use super::hull::Hull;
+use super::mesh::TriMesh;
+
+/// Places round the core at which its flanges are looked for.
+const PLACES: usize = 72;
+
+/// Share of the places that a flange may leave open, as where wire comes in.
+const OPEN: f64 = 0.1;
+
+/// Sections that are tried where the given one lies between no flanges.
+const SECTIONS: usize = 64;
+
+/// Halvings of the height of a flange.
+const HALVINGS: u32 = 12;
+
+/// Chords to a right angle of the way round a corner.
+const CHORDS: usize = 8;
+
+/// The room between two flanges. Lengths in m.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Room {
+    /// the inner faces along y, where they are nearest to each other
+    pub faces: [f64; 2],
+    /// the same where they are farthest from each other
+    pub widest: [f64; 2],
+    /// how far the lower flange stands above the core
+    pub height: f64,
+    /// largest distance of the core between them from the axis
+    pub radius: f64,
+}
+
+impl TriMesh {
+    /// The room round the place `y` between two flanges that are at least `least` high, m.
+    ///
+    /// A flange is what a straight line along y meets in a face steeper than 45 degrees, from nearly everywhere round the core. So
+    /// the ribs of a core with grooves are none as long as they are lower. Where `y` lies in a flange, the room is the nearest.
+    pub fn room(&self, y: f64, least: f64) -> Option<Room> {
+        let (low, high) = super::mesh::bounds(&self.vertices, &self.triangles);
+        let at = |k: usize| low.y + (high.y - low.y) * (k as f64 + 0.5) / SECTIONS as f64;
+        let mut places: Vec<f64> = (0..SECTIONS).map(at).collect();
+        places.sort_by(|a, b| (a - y).abs().total_cmp(&(b - y).abs()));
+        places.insert(0, y);
+        places.into_iter().find_map(|y| self.room_round(y, least))
+    }
+
+    /// The convex hull of the section at `y`; none where the axis does not go through it.
+    fn section(&self, y: f64) -> Option<Hull> {
+        Hull::of(self.section_points(y).iter().map(|p| [p.x, p.z]).collect())
+    }
+
+    fn room_round(&self, y: f64, least: f64) -> Option<Room> {
+        let section = self.section(y)?;
+        let sides = [self.flange_faces(y, -1.0), self.flange_faces(y, 1.0)];
+        let met = |out: f64| -> Option<[[f64; 2]; 2]> {
+            let ring = evenly(&section.outline(out, CHORDS));
+            let [down, up] = sides.each_ref().map(|faces| {
+                let far: Vec<f64> = ring.iter().filter_map(|&p| first(faces, p)).collect();
+                let open = ring.len() - far.len();
+                (open as f64 <= OPEN * ring.len() as f64).then(|| {
+                    far.iter().fold([f64::INFINITY, 0.0], |[near, most], &f| {
+                        [near.min(f), f64::max(most, f)]
+                    })
+                })
+            });
+            Some([down?, up?])
+        };
+        let [down, up] = met(least)?;
+        let (mut height, mut too_high) = (least, self.radius_about_y());
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (height + too_high);
+            match met(middle) {
+                Some(_) => height = middle,
+                None => too_high = middle,
+            }
+        }
+        Some(Room {
+            faces: [y - down[0], y + up[0]],
+            widest: [y - down[1], y + up[1]],
+            height,
+            radius: section.radius(),
+        })
+    }
+
+    fn radius_about_y(&self) -> f64 {
+        let far = self.vertices.iter().map(|v| libm::hypot(v.x, v.z));
+        far.fold(0.0, f64::max)
+    }
+
+    /// The steep faces that look back to `y` from one side of it.
+    fn flange_faces(&self, y: f64, side: f64) -> Vec<Face> {
+        let steep = (0..self.len() as u32).filter(|&t| side * self.normal(t).y < -FLANGE_FACE);
+        let corners = |t: u32| self.triangles[t as usize].map(|v| self.vertices[v as usize]);
+        let face = |t: u32| Face {
+            corners: corners(t).map(|p| [p.x, p.z]),
+            away: corners(t).map(|p| side * (p.y - y)),
+        };
+        steep
+            .map(face)
+            .filter(|face| face.away.iter().any(|&away| away > 0.0))
+            .collect()
+    }
+}
+
+/// A triangle as seen along y.
+struct Face {
+    /// corners as (x, z), m
+    corners: [[f64; 2]; 3],
+    /// how far along y each is, m
+    away: [f64; 3],
+}
+
+impl Face {
+    /// How far along y it is at (x, z), m, if it is there.
+    fn at(&self, [x, z]: [f64; 2]) -> Option<f64> {
+        let [a, b, c] = self.corners;
+        let twice =
+            |[ax, az]: [f64; 2], [bx, bz]: [f64; 2]| (ax - x) * (bz - z) - (az - z) * (bx - x);
+        let parts = [twice(b, c), twice(c, a), twice(a, b)];
+        let inside = parts.iter().all(|&p| p >= 0.0) || parts.iter().all(|&p| p <= 0.0);
+        let whole: f64 = parts.iter().sum();
+        let share = |k: usize| parts[k] / whole * self.away[k];
+        (inside && whole != 0.0).then(|| share(0) + share(1) + share(2))
+    }
+}
+
+/// How far along y the first of these faces is at a place, m.
+fn first(faces: &[Face], place: [f64; 2]) -> Option<f64> {
+    let far = faces.iter().filter_map(|face| face.at(place));
+    far.filter(|&far| far > 0.0).min_by(f64::total_cmp)
+}
+
+/// Places spread evenly over a closed outline.
+fn evenly(outline: &[[f64; 2]]) -> Vec<[f64; 2]> {
+    let ahead = |k: usize| outline[(k + 1) % outline.len()];
+    let length = |k: usize| {
+        let ([ax, az], [bx, bz]) = (outline[k], ahead(k));
+        libm::hypot(bx - ax, bz - az)
+    };
+    let step = (0..outline.len()).map(length).sum::<f64>() / PLACES as f64;
+    let mut places = Vec::with_capacity(PLACES);
+    let (mut passed, mut next) = (0.0, 0.5 * step);
+    for k in 0..outline.len() {
+        let ([ax, az], [bx, bz], edge) = (outline[k], ahead(k), length(k));
+        while next < passed + edge {
+            let share = (next - passed) / edge;
+            places.push([ax + share * (bx - ax), az + share * (bz - az)]);
+            next += step;
+        }
+        passed += edge;
+    }
+    places
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::generate;
+    use super::super::mesh::TriMesh;
+    use crate::math::V3;
+
+    /// A box of 12 x 20 mm with flanges 3 mm high, their faces at -4 and 5 mm, 1 mm thick.
+    fn tooth() -> TriMesh {
+        joined(&[
+            ([-6.0, 6.0], [-6.0, 7.0], [-10.0, 10.0]),
+            ([-9.0, 9.0], [-5.0, -4.0], [-13.0, 13.0]),
+            ([-9.0, 9.0], [5.0, 6.0], [-13.0, 13.0]),
+        ])
+    }
+
+    /// Boxes, mm, that overlap.
+    fn joined(boxes: &[([f64; 2], [f64; 2], [f64; 2])]) -> TriMesh {
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        for &(x, y, z) in boxes {
+            let base = vertices.len() as u32;
+            for corner in 0..8 {
+                let [i, j, k] = [corner >> 2 & 1, corner >> 1 & 1, corner & 1];
+                vertices.push(V3::new(x[i], y[j], z[k]) * 1e-3);
+            }
+            for [a, b, c, d] in [
+                [0, 1, 3, 2],
+                [4, 6, 7, 5],
+                [0, 4, 5, 1],
+                [2, 3, 7, 6],
+                [0, 2, 6, 4],
+                [1, 5, 7, 3],
+            ] {
+                triangles.push([base + a, base + b, base + c]);
+                triangles.push([base + a, base + c, base + d]);
+            }
+        }
+        TriMesh::new(vertices, triangles).expect("closed")
+    }
+
+    fn near(got: [f64; 2], want: [f64; 2]) -> bool {
+        (0..2).all(|k| (got[k] - want[k]).abs() < 1e-9)
+    }
+
+    #[test]
+    fn flanges_that_a_mesh_has_bound_its_room() {
+        let room = tooth().room(0.1e-3, 0.5e-3).expect("between flanges");
+        assert!(near(room.faces, [-4e-3, 5e-3]), "{room:?}");
+        assert!(near(room.widest, room.faces), "{room:?}");
+        assert!((room.height - 3e-3).abs() < 1e-4, "{room:?}");
+        assert!(
+            (room.radius - 1e-3 * 136_f64.sqrt()).abs() < 1e-9,
+            "{room:?}"
+        );
+    }
+
+    #[test]
+    fn a_place_in_a_flange_has_the_room_beside_it() {
+        let tooth = tooth();
+        let inside = tooth.room(0.1e-3, 0.5e-3).expect("between flanges");
+        let on_rim = tooth.room(-4.6e-3, 0.5e-3).expect("found all the same");
+        assert!(near(on_rim.faces, inside.faces), "{on_rim:?}");
+    }
+
+    #[test]
+    fn of_two_chambers_the_one_with_the_place_counts() {
+        let mut boxes = vec![([-6.0, 6.0], [-9.0, 9.0], [-10.0, 10.0])];
+        for y in [-8.0, 0.0, 7.0] {
+            boxes.push(([-9.0, 9.0], [y, y + 1.0], [-13.0, 13.0]));
+        }
+        let core = joined(&boxes);
+        let lower = core.room(-3e-3, 0.5e-3).expect("a chamber");
+        assert!(near(lower.faces, [-7e-3, 0.0]), "{lower:?}");
+        let upper = core.room(4e-3, 0.5e-3).expect("a chamber");
+        assert!(near(upper.faces, [1e-3, 7e-3]), "{upper:?}");
+    }
+
+    #[test]
+    fn faces_that_lean_are_wider_apart_outside() {
+        let mut leaning = tooth();
+        for v in &mut leaning.vertices {
+            // the upper flange leans along x
+            v.y += if v.y > 4.5e-3 && v.x.abs() > 8e-3 {
+                0.1 * v.x
+            } else {
+                0.0
+            };
+        }
+        let leaning = TriMesh::new(leaning.vertices, leaning.triangles).expect("closed");
+        let room = leaning.room(0.0, 0.5e-3).expect("between flanges");
+        assert!(room.widest[1] > room.faces[1] + 1e-3, "{room:?}");
+    }
+
+    #[test]
+    fn there_is_none_without_flanges_or_between_low_ribs() {
+        let (plain, ribs) = (
+            joined(&[([-6.0, 6.0], [-6.0, 7.0], [-10.0, 10.0])]),
+            joined(&[
+                ([-6.0, 6.0], [-6.0, 7.0], [-10.0, 10.0]),
+                ([-6.4, 6.4], [-3.0, -2.0], [-10.4, 10.4]),
+                ([-6.4, 6.4], [2.0, 3.0], [-10.4, 10.4]),
+            ]),
+        );
+        assert_eq!(plain.room(0.1e-3, 0.5e-3), None);
+        assert_eq!(ribs.room(0.1e-3, 0.5e-3), None);
+        assert!(ribs.room(0.1e-3, 0.3e-3).is_some());
+        let bar = generate::cylinder(8e-3, 20e-3, 64).expect("a bar");
+        assert_eq!(bar.room(0.0, 0.5e-3), None);
+    }
+}
