@@ -507,6 +507,28 @@ fn an_ensemble_of_a_run_leaves_a_folder_a_member() {
     finished(run(&["--force"]), 0);
 }
 
+/// `--force` removed the very scene that it was to wind.
+#[test]
+fn a_scene_in_the_folder_is_not_removed_with_the_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let text = "[spindle]\nturns = 0.4\n";
+    std::fs::write(&scene, text).unwrap();
+    let ensemble = ["run", "--ensemble", "2", "--force"];
+    let sweep = ["sweep", "--over", "spindle.speed=60:70:2", "--force"];
+    for words in [&ensemble[..], &sweep[..]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+        command
+            .args(words)
+            .arg(&scene)
+            .arg("--out")
+            .arg(folder.path());
+        let said = complaint(command, 2);
+        assert!(said.contains("copy the scene"), "{said}");
+        assert_eq!(std::fs::read_to_string(&scene).unwrap(), text);
+    }
+}
+
 /// A run in the folder of a sweep and a sweep in that of a run left files of both, and each was gone on with.
 #[test]
 fn runs_and_sweeps_do_not_share_a_folder() {

@@ -52,6 +52,7 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     }
     let directory = args.directory(&settings);
     folder::refuse_occupied(&directory, args.force)?;
+    folder::refuse_own_scene(&directory, name)?;
     let mut all = Vec::new();
     for member in 1..=count {
         let mut one = quiet(args);

@@ -96,6 +96,18 @@ fn clear(directory: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
+/// An error where this scene lies in the folder as that of an earlier run, so that making room there would remove it.
+pub(super) fn refuse_own_scene(directory: &Path, scene: &str) -> Result<(), Failure> {
+    let own = fs::canonicalize(directory.join("scene.toml")).ok();
+    match own.is_some() && own == fs::canonicalize(scene).ok() {
+        true => Err(Failure::Resume {
+            directory: directory.display().to_string(),
+            reason: "the scene lies in this folder and would be removed with the run in it; copy the scene, or --out for another folder".to_owned(),
+        }),
+        false => Ok(()),
+    }
+}
+
 /// Removes all that a run left, for a sweep or an ensemble in its place.
 pub(super) fn clear_run(directory: &Path) -> Result<(), Failure> {
     drop(hold(directory)?);

@@ -1,6 +1,7 @@
 //! `coilwind sweep`: many runs of one scene on all cores, one table.
 
 use super::failure::Failure;
+use super::folder;
 use super::scene::SceneArgs;
 use super::shell::quoted;
 use super::sweep_files as files;
@@ -70,6 +71,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         let more = grid.warnings(&warnings)?;
         more.iter().for_each(|w| eprintln!("warning: {w}"));
     }
+    folder::refuse_own_scene(&args.out, &args.scene.scene)?;
     let ledger = Ledger::open(&args.out, &grid, args.find_max.is_some(), args.force)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads)
