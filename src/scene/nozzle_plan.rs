@@ -160,7 +160,9 @@ impl SceneSettings {
     fn layers(&self, d: f64, extent: &Extent, problems: &mut Problems) -> Option<Layers> {
         let w = &self.winding;
         let distance = |[low, high]: [f64; 2]| high - low;
-        let (width, widest) = match extent.window {
+        // A table says itself where the nozzle goes; the plan then only says where wire is meant to climb.
+        let by_table = self.traverse.mode == "table" && self.core.flange.inner_distance == 0.0;
+        let (width, widest) = match extent.window.filter(|_| !by_table) {
             Some(room) => (Some(distance(room.faces)), Some(distance(room.widest))),
             None => (None, None),
         };
