@@ -61,6 +61,24 @@ say_what_was_skipped() {
 }
 step() { printf '\n== %s (at %d s)\n' "$*" $((SECONDS - began)); }
 
+# Runs a function on the second core, for steps that keep one busy. What it prints comes at `join`.
+beside=
+beside() {
+    # In a group of its own, so that all of it can be ended.
+    set -m
+    "$@" >"$target/beside.log" 2>&1 &
+    beside=$!
+    set +m
+}
+join() {
+    local code=0
+    wait "$beside" || code=$?
+    beside=
+    cat "$target/beside.log"
+    if [ $code != 0 ]; then exit $code; fi
+}
+trap 'if [ -n "$beside" ]; then kill -- -"$beside" 2>/dev/null || true; fi' EXIT
+
 # What several stages need is built by the first of them.
 command_built=false
 build_command() {
@@ -110,20 +128,20 @@ lab() {
     step "scenes with a known defect, a sample"
     COILWIND_COMMAND=$command python3 scripts/labelled.py --sample --out "$target/labelled" | tail -n 1
 
-    step long runs, short
-    COILWIND_COMMAND=$command scripts/endurance.sh --short
-
     build_fmu
-    step benchmarks at their coarsest
+    step "benchmarks at their coarsest; beside them long runs, short, and results as recorded"
+    beside coarse_benchmarks
+    COILWIND_COMMAND=$command scripts/endurance.sh --short
+    COILWIND_COMMAND=$command scripts/same_results.sh
+    join
+}
+coarse_benchmarks() {
     local log=$target/bench-quick.log
     if ! COILWIND_COMMAND=$command COILWIND_FMU=$fmu scripts/bench.sh --quick >"$log" 2>&1; then
         tail -n 40 "$log"
         exit 1
     fi
     tail -n 1 "$log"
-
-    step results as recorded
-    COILWIND_COMMAND=$command scripts/same_results.sh
 }
 
 docs() {
@@ -143,6 +161,12 @@ docs() {
         skip site "$missing"
     fi
 
+    step "films, calibration, control, sweeps through the FMU, beside the following"
+    # Before both, which use them.
+    scripts/venv.sh render >/dev/null
+    scripts/venv.sh study >/dev/null
+    beside studies
+
     missing=$(scripts/missing_tools.sh browser)
     if [ -z "$missing" ]; then
         step "report in a browser"
@@ -151,16 +175,19 @@ docs() {
         skip "report in a browser" "$missing"
     fi
 
-    step "films, calibration, control, sweeps through the FMU"
-    COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_RENDER_PYTHON=$(scripts/venv.sh render) \
-        "$(scripts/venv.sh study)" -m pytest -q -rs tests/study
-
     step what pages tell a reader to type
     "$python" scripts/docs/check_commands.py
+
+    step "films and the others, to their end"
+    join
 
     step tests of these checks
     say_what_was_skipped docs
     "$python" -m pytest -q -rs tests/docs
+}
+studies() {
+    COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_RENDER_PYTHON=$(scripts/venv.sh render) \
+        "$(scripts/venv.sh study)" -m pytest -q -rs tests/study
 }
 
 rust() {
@@ -171,23 +198,21 @@ rust() {
 fmu() {
     build_command
     build_fmu
-    local python missing needs importers= machine=
-    missing=$(scripts/missing_tools.sh portable)
-    if [ -z "$missing" ]; then
+    local python missing portable needs importers= machine=
+    portable=$(scripts/missing_tools.sh portable)
+    if [ -z "$portable" ]; then
         # From here on the FMU is the portable one.
         step portable FMU
         scripts/build_fmu.sh --portable
-        step portable FMU from another directory
-        scripts/check_reproducible.sh
     else
-        skip "portable FMU" "$missing"
+        skip "portable FMU" "$portable"
     fi
 
     step validation of the FMU
     python=$(scripts/venv.sh)
     "$python" -m fmpy validate "$fmu"
 
-    step tests of the FMU
+    step "tests of the FMU, beside the following"
     for needs in c sanitizer valgrind wine importers; do
         missing=$(scripts/missing_tools.sh $needs)
         if [ -n "$missing" ]; then skip "tests that need: $needs" "$missing"; fi
@@ -197,10 +222,21 @@ fmu() {
         importers=$(scripts/venv.sh importers)
         machine=$(scripts/venv.sh machine)
     fi
+    beside fmu_tests "$python" "$importers" "$machine"
+
+    if [ -z "$portable" ]; then
+        step portable FMU from another directory
+        scripts/check_reproducible.sh
+    fi
+
+    step "tests of the FMU, to their end"
     say_what_was_skipped fmu
+    join
+}
+fmu_tests() {
     # -rs names the tests that were skipped, with the reason.
-    COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_IMPORTERS_PYTHON=$importers \
-        COILWIND_MACHINE_PYTHON=$machine "$python" -m pytest -q -rs tests/fmpy
+    COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_IMPORTERS_PYTHON=$2 COILWIND_MACHINE_PYTHON=$3 \
+        "$1" -m pytest -q -rs tests/fmpy
 }
 
 echo "Stages, with minutes from nothing on two cores (less where target/ holds builds):"
