@@ -28,7 +28,8 @@ FAR = ["nozzle.distance_mm=30", "tensioner.tension=8"]
 COARSE = ["spindle.turns=6", "solver.tolerance=2e-5"]
 BOBBIN = ["bobbin", *(word for setting in TRAILS + FAR + COARSE for word in ("--set", setting))]
 BRACKET = (1100, 1500)
-TOOTH = ["tooth", "--set", "winding.layers=1"]
+# As it is the scene has hardly a defect: here its nozzle stands twice as far away.
+TOOTH = ["tooth", "--set", "winding.layers=1", "--set", "nozzle.distance_mm=60", "--set", "traverse.advance_deg=130"]
 SPEEDS, TENSIONS, MAP_MEMBERS = (60, 340, 8), (10, 35, 6), 8
 SAMPLE = 3
 

@@ -212,3 +212,42 @@ fn modes_stepped_in_time_have_the_frequency_of_theory() {
         assert!((f / theory - 1.0).abs() < 5e-3, "bending {f} {theory}");
     }
 }
+
+/// A ring of no radius ended in a panic, and wire that nothing holds in an overflow of memory.
+#[test]
+fn inputs_without_a_meaning_are_told_and_not_computed() {
+    let options = VerifyOptions::default();
+    let manner = options.manner().expect("the default");
+    for (kind, input, value, told) in [
+        ("spinning_ring", "R_m", 0.0, "above 0"),
+        ("spinning_ring", "R_m", -1.0, "above 0"),
+        ("spinning_ring", "R_m", 1e9, "edges"),
+        ("capstan", "F0_N", 0.0, "above 0"),
+        ("capstan", "R_m", 1e9, "edges"),
+        ("groove_seat", "pitch_m", 0.0, "above 0"),
+    ] {
+        let mut file = packed(kind);
+        file.cases.truncate(1);
+        file.cases[0].inputs.insert(input.to_owned(), value.into());
+        let mut said = String::new();
+        let run = run_file(&file, &manner, |records, _| {
+            let errors = records.iter().filter_map(|record| record.error.as_deref());
+            said.extend(errors);
+        });
+        let said = run.map_or_else(|error| error.to_string(), |()| said);
+        assert!(said.contains(told), "{kind} {input} = {value}: {said}");
+    }
+}
+
+/// A wire that is let go slowly springs back to the same curvature in steps of any tolerance; let go at once it swings, and yields once more.
+#[test]
+fn springback_does_not_hang_on_the_tolerance() {
+    for tolerance in ["2e-7", "1e-8"] {
+        let args = VerifyOptions {
+            kinds: vec!["mandrel_springback".to_owned()],
+            set: vec![format!("solver.tolerance={tolerance}")],
+            ..VerifyOptions::default()
+        };
+        assert_eq!(run(&args, |_| ()), Ok(true), "{tolerance}");
+    }
+}

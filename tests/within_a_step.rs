@@ -243,9 +243,11 @@ fn slopes_predict_better_than_the_value_held() {
             ("turns_wound", o.turns_wound),
             ("layon_angle", o.layon_angle),
             ("layon_position", o.layon_position),
+            ("tensioner_position", o.tensioner_position),
+            ("nozzle_y", o.nozzle_y),
         ]
     };
-    let mut missed = [[0.0_f64; 2]; 9];
+    let mut missed = [[0.0_f64; 2]; 11];
     for _ in 0..100 {
         let before = *sim.outputs();
         let (now, rates) = (seen(&before), seen(sim.output_rates()));
@@ -266,6 +268,11 @@ fn slopes_predict_better_than_the_value_held() {
             (held / 100.0).sqrt(),
             (led / 100.0).sqrt()
         );
-        assert!(led <= 1.001 * held, "{name}: {:.3}", (led / held).sqrt());
+        let most = match name {
+            // the tensioner rests on its brake, or goes on
+            "tensioner_position" | "nozzle_y" => 0.2,
+            _ => 1.001,
+        };
+        assert!(led <= most * held, "{name}: {:.3}", (led / held).sqrt());
     }
 }

@@ -153,10 +153,29 @@ pub fn render(picture: &Picture) -> Vec<[u8; 3]> {
         let mean = sum / f64::from(SUPERSAMPLING * SUPERSAMPLING);
         [mean.x, mean.y, mean.z].map(|light| encoding.byte(light))
     };
-    (0..height)
-        .flat_map(|y| (0..width).map(move |x| (x, y)))
-        .map(|(x, y)| pixel(x, y))
-        .collect()
+    let mut pixels = vec![[0; 3]; (width * height) as usize];
+    in_bands(&mut pixels, width as usize, |x, y| {
+        pixel(x as u32, y as u32)
+    });
+    pixels
+}
+
+/// Gives each pixel of rows of this width its value by column and row, on all processors.
+fn in_bands(pixels: &mut [[u8; 3]], width: usize, value: impl Fn(usize, usize) -> [u8; 3] + Sync) {
+    let rows = pixels.len() / width.max(1);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    // (rows of the background are done soon: more bands than processors)
+    let of_band = rows.div_ceil(8 * threads).max(1);
+    let value = &value;
+    std::thread::scope(|scope| {
+        for (band, pixels) in pixels.chunks_mut(of_band * width.max(1)).enumerate() {
+            scope.spawn(move || {
+                for (k, pixel) in pixels.iter_mut().enumerate() {
+                    *pixel = value(k % width, band * of_band + k / width);
+                }
+            });
+        }
+    });
 }
 
 /// Points that must be in the picture: the core's section over the length of the coil, and the

@@ -112,6 +112,7 @@ impl SceneSettings {
         let round = (bend, cylinder);
         let solver = self.solver_for(integrator, twist, (wire.diameter, span), round);
         self.check_spacing(&solver, &wire, &extent, &mut problems);
+        self.check_stiffness(&core, &wire, &mut problems);
         let window = self.window(extent.window, &mut problems);
         let mut warnings = self.warnings(&solver, &wire, &core, (&extent, window), &nozzle_law);
         warnings.extend(laws.and_then(|laws| self.rough_laws(&laws)));

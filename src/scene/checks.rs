@@ -4,7 +4,7 @@ use super::build::{COARSEST, FINEST};
 use super::extent::{Extent, ROUNDING};
 use super::impossible::si;
 use super::problems::Problems;
-use super::{Integrator, NozzleLaw, SceneError, Solver};
+use super::{Core, Integrator, NozzleLaw, SceneError, Solver};
 use crate::rod::Section;
 use crate::settings::SceneSettings;
 
@@ -191,6 +191,21 @@ impl SceneSettings {
                     format!("at most friction.static, {}", si(self.friction.static_)),
                 ),
             });
+        }
+    }
+
+    /// Contact that lets wire sink in by its radius has the centreline in the surface: a run is in doubt from its first corner on.
+    pub(super) fn check_stiffness(&self, core: &Core, wire: &Section, problems: &mut Problems) {
+        let Some(corner) = core.corner() else {
+            return;
+        };
+        let least = self.tensioner.tension / (corner + wire.radius()) / wire.radius();
+        if self.contact.stiffness < least {
+            problems.add(self.impossible(
+                "contact.stiffness",
+                "the set tension draws the wire into the tightest bend by more than half its diameter",
+                format!("at least {} N/m2", si(least)),
+            ));
         }
     }
 

@@ -150,15 +150,22 @@ pub struct Flange {
 }
 
 impl Core {
+    /// Radius of its corners, or of a round core, m; a mesh does not tell.
+    pub(super) fn corner(&self) -> Option<f64> {
+        match self {
+            Self::RoundedBox { corner_radius, .. } => Some(*corner_radius),
+            Self::Cylinder { radius, .. } => Some(*radius),
+            Self::Mesh { .. } => None,
+        }
+    }
+
     /// Radius that the core's corners bend this wire to under this `tension` (N), m; a mesh does not tell.
     ///
     /// That of its centreline on them, or where it is stiffer, what an elastica of its bending rigidity beyond yield has in the
     /// middle of a right angle.
     pub(super) fn bend(&self, wire: &Section, tension: f64) -> f64 {
-        let corner = match self {
-            Self::RoundedBox { corner_radius, .. } => *corner_radius,
-            Self::Cylinder { radius, .. } => *radius,
-            Self::Mesh { .. } => return f64::INFINITY,
+        let Some(corner) = self.corner() else {
+            return f64::INFINITY;
         };
         let rigidity = match wire.m_y.is_finite() {
             true => wire.ei_p,

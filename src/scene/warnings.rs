@@ -249,12 +249,7 @@ impl SceneSettings {
                 .to_owned();
             warn("solver.twist", message);
         }
-        let corner = match *core {
-            Core::RoundedBox { corner_radius, .. } => Some(corner_radius),
-            Core::Cylinder { radius, .. } => Some(radius),
-            Core::Mesh { .. } => None,
-        };
-        if let Some(corner) = corner {
+        if let Some(corner) = core.corner() {
             let bend = corner + wire.radius();
             let near = solver.spacing_near;
             if near > bend {

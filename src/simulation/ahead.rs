@@ -50,7 +50,7 @@ impl Winding {
         self.take_course(course, first);
         self.reset_extremes();
         let before = self.statistics();
-        let most = course.left(self.run.time).min(self.longest_return());
+        let most = course.ahead_of(self.run.time).min(self.longest_return());
         let stepped = self.step(most);
         self.tell_of_trouble(before);
         stepped?;

@@ -40,23 +40,45 @@ fn turn_at(angle: f64) -> u32 {
 }
 
 impl Winding {
-    /// Inputs must not send the nozzle into the circle that the core and its flanges sweep, as long as there is wire to wind.
-    pub(super) fn check_circle(&mut self, end: &Inputs) {
-        let Some(core) = self.sys.model.core.as_ref().filter(|_| !self.run.over) else {
+    /// Distance from the axis that inputs must not send the nozzle within as long as there is wire to wind, m: there it would
+    /// meet the core, its flanges or the wire on them.
+    fn circle(&self) -> Option<f64> {
+        let core = self.sys.model.core.as_ref().filter(|_| !self.run.over)?;
+        Some(core.radius_max() + self.scene.wire.radius())
+    }
+
+    /// Share of the way to where the inputs `end` send the nozzle at which it comes within [`Self::circle`], if it does.
+    pub(super) fn meets_circle(&self, end: &Inputs) -> Option<f64> {
+        let circle = self.circle()?;
+        let (from, to) = (self.sys.state.support[1].point, nozzle_of(&self.scene, end));
+        let way = [to.x - from.x, to.z - from.z];
+        // square of the distance from the axis over the share: a u^2 + 2 b u + c + circle^2
+        let a = way[0] * way[0] + way[1] * way[1];
+        let b = from.x * way[0] + from.z * way[1];
+        let c = from.x * from.x + from.z * from.z - circle * circle;
+        if c <= 0.0 {
+            return Some(0.0);
+        }
+        let under = b * b - a * c;
+        if b >= 0.0 || under < 0.0 {
+            return None;
+        }
+        let share = (-b - under.sqrt()) / a;
+        (share <= 1.0).then_some(share)
+    }
+
+    /// Ends winding where the nozzle is, on its way to where the inputs `end` send it.
+    pub(super) fn note_circle_met(&mut self, end: &Inputs) {
+        let Some(circle) = self.circle() else {
             return;
         };
-        let (exit, sweeps) = (nozzle_of(&self.scene, end), core.radius_max());
-        let from_axis = libm::hypot(exit.x, exit.z);
-        if from_axis > sweeps + self.scene.wire.radius() {
-            return;
-        }
         let text = format!(
-            "nozzle_offset_x = {} m and nozzle_offset_z = {} m send the nozzle to {:.3} mm from the axis, into the circle of {:.3} mm that the core sweeps with its flanges; keep it, and half a wire, outside of that circle",
+            "nozzle_offset_x = {} m and nozzle_offset_z = {} m send the nozzle within {:.3} mm of the axis, into the circle that the core sweeps with its flanges and wire on it; keep it outside of that circle",
             end.nozzle_offset_x,
             end.nozzle_offset_z,
-            1e3 * from_axis,
-            1e3 * sweeps
+            1e3 * circle
         );
+        let exit = self.sys.state.support[1].point;
         let place = Spin::new(self.sys.state.spindle.angle).to_core(exit);
         let (angle, _) = self.wound_to(self.lift_off());
         self.note_end_at(DefectKind::Collision, angle, place, text);

@@ -19,6 +19,8 @@ pub(super) struct Course {
     acceleration: f64,
     /// when a stretch of the scene's own motion ends, s; none for what a master gives
     until: Option<f64>,
+    /// when a master that changes its inputs in even intervals changes them next, s
+    next: Option<f64>,
 }
 
 /// A communication step as a master gives it.
@@ -89,6 +91,15 @@ impl Course {
             rates,
             acceleration,
             until: None,
+            next: None,
+        }
+    }
+
+    /// The same, which goes on for as long as the one `before` did, if a master changes its inputs in even intervals.
+    pub(super) fn as_long_as(self, before: &Self) -> Self {
+        Self {
+            next: Some(self.start + (self.start - before.start)),
+            ..self
         }
     }
 
@@ -111,6 +122,7 @@ impl Course {
             },
             acceleration: travel * drive.acceleration,
             until: Some(if is_over { until } else { until.min(end) }),
+            next: None,
         }
     }
 
@@ -122,6 +134,13 @@ impl Course {
     /// How much of it is left at `time`, s.
     pub(super) fn left(&self, time: f64) -> f64 {
         self.until.map_or(f64::INFINITY, |until| until - time)
+    }
+
+    /// How far a step may go from `time` on, s: to its end, and to where the inputs may change.
+    pub(super) fn ahead_of(&self, time: f64) -> f64 {
+        let change = self.next.map(|next| next - time);
+        let change = change.filter(|left| *left > ROUNDING * time);
+        self.left(time).min(change.unwrap_or(f64::INFINITY))
     }
 
     /// Speed, nozzle position and set tension at `time`, s.
@@ -161,6 +180,7 @@ impl Course {
         };
         self.start.is_finite()
             && self.until.is_none_or(|until| until > self.start)
+            && self.next.is_none_or(|next| next > self.start)
             && self.acceleration.is_finite()
             && self.rates.tension_setpoint.is_finite()
             && check_finite(&self.inputs, 0.0).is_ok()

@@ -1,6 +1,7 @@
 //! Steps that end at the communication point: inputs for a communication step, or the scene's own motion profile.
 
 use super::nozzle_place::nozzle_of;
+use super::outputs::raise_as;
 use super::rates::rates_of;
 use super::{SimError, WORTH_A_STEP, Winding};
 use crate::integrate::SolverStatistics;
@@ -33,13 +34,54 @@ impl Winding {
     }
 
     /// Advances by `dt`, s, with the motion that `source` gives the machine: the one way through a step.
+    ///
+    /// Where its inputs send the nozzle into the core, winding ends when it gets there.
     fn advance_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
         self.check_step(dt)?;
-        if let Source::Inputs { inputs, rates } = &source {
-            check_finite(inputs, self.run.time)?;
-            check_finite(&inputs.after(rates, dt), self.run.time)?;
-            self.check_circle(&inputs.after(rates, dt));
-        }
+        let Source::Inputs { inputs, rates } = source else {
+            return self.go_by(source, dt);
+        };
+        let end = inputs.after(&rates, dt);
+        check_finite(&inputs, self.run.time)?;
+        check_finite(&end, self.run.time)?;
+        let Some(share) = self.meets_circle(&end) else {
+            return self.go_by(source, dt);
+        };
+        // the nozzle goes evenly from where it is to where it is sent
+        let (now, [before, after]) = (self.inputs(), [share * dt, (1.0 - share) * dt]);
+        let sent = |from: f64, to: f64, rate: f64| from + share * (to - from) - rate * before;
+        let until = Inputs {
+            nozzle_position: sent(
+                now.nozzle_position,
+                end.nozzle_position,
+                rates.nozzle_position,
+            ),
+            nozzle_offset_x: sent(
+                now.nozzle_offset_x,
+                end.nozzle_offset_x,
+                rates.nozzle_offset_x,
+            ),
+            nozzle_offset_z: sent(
+                now.nozzle_offset_z,
+                end.nozzle_offset_z,
+                rates.nozzle_offset_z,
+            ),
+            ..inputs
+        };
+        let source = |inputs: Inputs| Source::Inputs { inputs, rates };
+        self.go_by(source(until), before)?;
+        self.note_circle_met(&end);
+        let told = self.run.outputs;
+        self.go_by(source(inputs.after(&rates, before)), after)?;
+        let o = &mut self.run.outputs;
+        o.wire_tension_max = o.wire_tension_max.max(told.wire_tension_max);
+        o.wire_tension_min = o.wire_tension_min.min(told.wire_tension_min);
+        raise_as(o, &told);
+        Ok(())
+    }
+
+    /// See [`Self::advance_by`].
+    fn go_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
         let span = self.run.owed + dt;
         if span < WORTH_A_STEP {
             self.run.owed = span;

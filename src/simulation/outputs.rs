@@ -114,7 +114,7 @@ impl Winding {
             height,
             plastic_strain,
             tension,
-            time: self.run.time,
+            time: self.sys.state.time,
         }
     }
 
@@ -138,6 +138,8 @@ impl Winding {
             return self.update_broken();
         }
         self.raise_flags();
+        // a flag that holds in the step in which winding ends holds no longer after it
+        self.run.was_slack &= !self.run.over;
         let layon = self.layon();
         let residual = self
             .sys

@@ -17,12 +17,14 @@ pub(super) fn rates_of(
 ) -> Outputs {
     let mut rates = Outputs {
         spindle_angle: speed,
+        nozzle_y: (after.nozzle_y - before.nozzle_y) / dt,
         ..Outputs::default()
     };
     if winding.run.over || winding.is_quiescent() {
         return rates;
     }
     rates.fed_length = after.feed_speed;
+    rates.tensioner_position = after.tensioner_speed;
     // More wire laid than was fed: a stretch landed at once, which says nothing about the next step.
     let laid = (after.wire_length - before.wire_length).abs();
     if laid <= LANDED * (after.fed_length - before.fed_length).abs() {

@@ -146,7 +146,8 @@ impl Simulation {
 
     /// Returns the first time derivatives of the outputs at the last communication point, per s.
     ///
-    /// - `spindle_angle` and `fed_length`: the speeds themselves.
+    /// - `spindle_angle`, `fed_length` and `tensioner_position`: the speeds themselves.
+    /// - `nozzle_y`: the mean speed over the communication step.
     /// - `free_length`: the change over the communication step; 0 where a stretch of wire landed in it.
     /// - `layon_*`, `turns_wound`: 0. Wire swings about a corner and lands on the next, so that these go in jumps.
     /// - `wire_tension`, `spindle_torque`, `feed_speed`: 0. The free span rings at a period of a millisecond, so that

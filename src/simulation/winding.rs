@@ -9,6 +9,7 @@ use crate::measure::Coil;
 use crate::scene::Scene;
 use crate::signals::{Event, EventKind, Inputs, Outputs};
 use crate::system::System;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -91,7 +92,11 @@ impl Winding {
     }
 
     pub(super) fn report(&mut self, kind: EventKind, text: String) {
-        let turn = self.run.outputs.turns_wound;
+        // (those of the communication point before may be turns old)
+        let turn = match self.run.over {
+            true => self.run.outputs.turns_wound,
+            false => self.layon().angle.max(0.0) / TAU,
+        };
         self.run.events.push(Event {
             time: self.sys.state.time,
             turn,

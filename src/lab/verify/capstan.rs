@@ -61,8 +61,8 @@ pub(super) fn ratio_on(
     ctx: &Context,
     drum: impl FnOnce(f64, f64) -> Result<Shape, VerifyError>,
 ) -> Result<Answers, VerifyError> {
-    let (mu, wrap) = (ctx.number("mu")?, ctx.number("wrap_rad")?);
-    let (radius, hold) = (ctx.number("R_m")?, ctx.number("F0_N")?);
+    let (mu, wrap) = (ctx.number("mu")?, ctx.positive("wrap_rad")?);
+    let (radius, hold) = (ctx.positive("R_m")?, ctx.positive("F0_N")?);
     let section = ctx.elastic();
     let drum = drum(radius, section.radius())?;
     let mut capstan = Capstan::new(ctx, &section, mu, wrap, radius, hold, drum)?;
@@ -109,7 +109,7 @@ impl Capstan {
         let fit = (SPACING[0] * bending).min(SPACING[1] * bend);
         let edge = ctx.spacing.unwrap_or(fit);
         let total = 2.0 * leg + wrap * bend;
-        let edges = (total / edge).ceil() as usize;
+        let edges = ctx.few_enough((total / edge).ceil())?;
         let h = total / edges as f64;
         // node 0 at the held end; the arc runs from pi/2 + wrap down to pi/2
         let point = |s: f64| {

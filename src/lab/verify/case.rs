@@ -156,12 +156,17 @@ impl Context<'_> {
     /// Even number of edges for a wire of `length` whose own spacing would be `spacing`.
     pub fn edges(&self, length: f64, spacing: f64) -> Result<usize, VerifyError> {
         let pairs = 0.5 * length / self.spacing.unwrap_or(spacing);
-        if pairs.is_nan() || pairs > 0.5 * MOST_EDGES {
-            return Err(VerifyError::NoAnswer(format!(
-                "{length} m of wire would need more than {MOST_EDGES} edges"
-            )));
+        self.few_enough(2.0 * pairs.ceil().max(2.0))
+    }
+
+    /// So many edges, unless that is more than a case may ask for.
+    pub fn few_enough(&self, edges: f64) -> Result<usize, VerifyError> {
+        if edges <= MOST_EDGES {
+            return Ok(edges as usize);
         }
-        Ok(2 * (pairs.ceil() as usize).max(2))
+        Err(VerifyError::NoAnswer(format!(
+            "the wire would need {edges} edges, and at most {MOST_EDGES} are computed"
+        )))
     }
 
     /// The same for wire that is far from all that it could touch: a wind has longer edges there, which grow from those

@@ -200,7 +200,11 @@ pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, Ve
         },
     )?;
     if !args.json {
-        print(&format!("{right} of {all} right, {seconds:.1} s"));
+        let nothing = match all {
+            0 => ": no number of these cases counts for this preset",
+            _ => "",
+        };
+        print(&format!("{right} of {all} right, {seconds:.1} s{nothing}"));
     }
     Ok(right == all)
 }

@@ -73,22 +73,13 @@ fn follow_as(
     method.follow(sys, apply).map_err(no_answer)
 }
 
-/// Moves to equilibrium under the present loads and supports; without twist, see [`follow`].
-pub(super) fn settle(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
-    settle_as(ctx, sys, Needs::Plane)
-}
-
-/// The same with twist.
+/// Moves to equilibrium under the present loads and supports, with twist.
 pub(super) fn settle_with_twist(ctx: &Context, sys: &mut System) -> Result<(), VerifyError> {
-    settle_as(ctx, sys, Needs::Rolls)
-}
-
-fn settle_as(ctx: &Context, sys: &mut System, needs: Needs) -> Result<(), VerifyError> {
     if ctx.integrator != Integrator::Implicit {
         relax(sys, &Limits::default())?;
         return Ok(());
     }
-    sys.model.twist = twist(ctx, sys, needs);
+    sys.model.twist = twist(ctx, sys, Needs::Rolls);
     if ctx.winds() {
         return QuasiStatic::new(ctx, sys, false).rest(sys);
     }

@@ -161,7 +161,8 @@ impl CaseFile {
             section(wire).map_err(|(key, problem)| bad(&format!("wire.{key}"), problem))?;
         let list = field("cases")?
             .as_array()
-            .ok_or_else(|| bad("cases", "a list is wanted".to_owned()))?;
+            .filter(|list| !list.is_empty())
+            .ok_or_else(|| bad("cases", "a list of at least one case is wanted".to_owned()))?;
         let cases = list
             .iter()
             .enumerate()

@@ -10,7 +10,7 @@ const DRAG: f64 = 2.0;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
-    let (pitch, lam) = (ctx.number("pitch_m")?, ctx.number("lam")?);
+    let (pitch, lam) = (ctx.positive("pitch_m")?, ctx.number("lam")?);
     let section = ctx.elastic();
     let places = [-0.5 * pitch, 0.5 * pitch];
     // from a diameter above the neighbours' axes, clear of both; positive lam pushes left, to -y

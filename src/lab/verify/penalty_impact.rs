@@ -20,7 +20,7 @@ const STEPS: f64 = 200.0;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
-    let (mass, stiffness) = (ctx.number("mass_kg")?, ctx.number("k_N_per_m")?);
+    let (mass, stiffness) = (ctx.positive("mass_kg")?, ctx.positive("k_N_per_m")?);
     let (speed, damping_ratio) = (ctx.number("v_m_per_s")?, ctx.number("damping_ratio")?);
     let section = ctx.elastic();
     let r = section.radius();

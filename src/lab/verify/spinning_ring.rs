@@ -49,9 +49,10 @@ const SOFTNESS: f64 = 0.3;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
-    let (omega, radius) = (ctx.number("omega_rad_per_s")?, ctx.number("R_m")?);
-    let pull = ctx.number("T0_N")?;
+    let (omega, radius) = (ctx.number("omega_rad_per_s")?, ctx.positive("R_m")?);
+    let pull = ctx.positive("T0_N")?;
     let section = ctx.elastic();
+    ctx.few_enough(edges(ctx, radius) as f64)?;
     let wound = Wound::settled(ctx, &section, radius, pull)?;
     let load = wound.load_at(omega, ASKED)?;
     // towards lift-off along the measured loads, which are close to linear in the squared speed

@@ -46,7 +46,7 @@ const HALVINGS: usize = 16;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
-    let (length, pull) = (ctx.number("L_m")?, ctx.number("T_N")?);
+    let (length, pull) = (ctx.positive("L_m")?, ctx.number("T_N")?);
     let section = ctx.elastic();
     let bending_lengths = length * (pull.max(0.0) / section.ei).sqrt();
     // of a string, and of a wire without tension

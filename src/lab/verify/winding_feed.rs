@@ -78,10 +78,10 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
 
 /// The scene of the case: an ideal string on its core.
 pub(super) fn string(ctx: &Context) -> Result<Scene, VerifyError> {
-    let (width_x, height_z) = (ctx.number("core_w_m")?, ctx.number("core_h_m")?);
+    let (width_x, height_z) = (ctx.positive("core_w_m")?, ctx.positive("core_h_m")?);
     let corner_radius = ctx.number("corner_radius_m")?;
-    let distance = ctx.number("nozzle_distance_m")?;
-    let tension = ctx.number("T0_N")?;
+    let distance = ctx.positive("nozzle_distance_m")?;
+    let tension = ctx.positive("T0_N")?;
     let mut scene = SceneSettings::default()
         .build()
         .map_err(|e| VerifyError::NoAnswer(e.to_string()))?;
