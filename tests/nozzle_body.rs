@@ -156,7 +156,7 @@ fn a_nozzle_in_the_circle_of_the_core_is_a_collision_and_no_failed_run() {
     let texts = told(&mut sim);
     assert!(
         texts.len() == 1
-            && texts[0].contains("into the circle of 6.000 mm")
+            && texts[0].contains("wire of turn 1 reaches 6.70")
             && texts[0].contains("nozzle_offset_x"),
         "{texts:?}"
     );

@@ -142,15 +142,7 @@ pub fn render(picture: &Picture) -> Vec<[u8; 3]> {
     };
     let encoding = Encoding::new();
     let pixel = |x, y| {
-        let mut sum = V3::zeros();
-        for sub in 0..SUPERSAMPLING * SUPERSAMPLING {
-            let column = x * SUPERSAMPLING + sub % SUPERSAMPLING;
-            sum += view.pixel(
-                column as usize,
-                (y * SUPERSAMPLING + sub / SUPERSAMPLING) as usize,
-            );
-        }
-        let mean = sum / f64::from(SUPERSAMPLING * SUPERSAMPLING);
+        let mean = view.pixel(x, y);
         [mean.x, mean.y, mean.z].map(|light| encoding.byte(light))
     };
     let mut pixels = vec![[0; 3]; (width * height) as usize];
@@ -370,33 +362,83 @@ struct View<'a> {
     reach: f64,
 }
 
+/// What is seen in a drawn pixel.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// column and row
+    at: (usize, usize),
+    material: u32,
+    point: V3,
+    /// towards the viewer's side
+    normal: V3,
+    ray: V3,
+}
+
 impl View<'_> {
-    fn pixel(&self, column: usize, row: usize) -> V3 {
+    /// Colour of a pixel shown: where one even surface fills it, it is lit once.
+    fn pixel(&self, x: u32, y: u32) -> V3 {
+        let at = |sub: u32| {
+            let (column, row) = (sub % SUPERSAMPLING, sub / SUPERSAMPLING);
+            let drawn = (x * SUPERSAMPLING + column, y * SUPERSAMPLING + row);
+            (drawn.0 as usize, drawn.1 as usize)
+        };
+        let seen: [Option<Seen>; DRAWN] = std::array::from_fn(|sub| self.seen_at(at(sub as u32)));
+        if let [Some(first), .., Some(last)] = seen
+            && seen.iter().flatten().all(|other| is_even(&first, other))
+            && seen.iter().all(Option::is_some)
+        {
+            let discs = [first, last].map(|seen| self.disc.turned_for(seen.at.0, seen.at.1));
+            return self.colour(&first, &discs);
+        }
+        let colour = |sub: usize| match &seen[sub] {
+            Some(seen) => self.colour(seen, &[self.disc.turned_for(seen.at.0, seen.at.1)]),
+            None => self.behind(at(sub as u32)),
+        };
+        (0..DRAWN).map(colour).sum::<V3>() / DRAWN as f64
+    }
+
+    /// The background in a drawn pixel.
+    fn behind(&self, (column, row): (usize, usize)) -> V3 {
+        let aside = (column as f64 + 0.5) / self.seen.width as f64 - 0.5;
+        background((row as f64 + 0.5) / self.seen.height as f64, aside)
+    }
+
+    fn seen_at(&self, (column, row): (usize, usize)) -> Option<Seen> {
         let id = self.seen.triangle[row * self.seen.width + column];
-        let (x, y) = (column as f64 + 0.5, row as f64 + 0.5);
         if id == NONE {
-            let aside = x / self.seen.width as f64 - 0.5;
-            return background(y / self.seen.height as f64, aside);
+            return None;
         }
         let triangle = &self.scene.triangles[id as usize];
-        let ray = self.camera.ray(x, y);
+        let ray = self.camera.ray(column as f64 + 0.5, row as f64 + 0.5);
         let (point, normal) = hit(self.scene, triangle, self.camera.eye, ray);
-        let normal = if normal.dot(&ray) > 0.0 {
-            -normal
-        } else {
-            normal
+        Some(Seen {
+            at: (column, row),
+            material: triangle.material,
+            point,
+            normal: if normal.dot(&ray) > 0.0 {
+                -normal
+            } else {
+                normal
+            },
+            ray,
+        })
+    }
+
+    /// Colour of a surface by samples over these discs.
+    fn colour(&self, seen: &Seen, discs: &[Disc]) -> V3 {
+        let mean = |share: &dyn Fn(&Disc) -> f64| {
+            discs.iter().map(share).sum::<f64>() / discs.len() as f64
         };
-        let disc = self.disc.turned_for(column, row);
         let lighting = Lighting {
             key: self.light.towards(),
             up: self.camera.up(),
-            viewer: -ray,
-            lit: self.lit(point, normal, &disc),
-            open: self.open(point, normal, (column, row), &disc),
+            viewer: -seen.ray,
+            lit: mean(&|disc| self.lit(seen.point, seen.normal, disc)),
+            open: mean(&|disc| self.open(seen.point, seen.normal, seen.at, disc)),
         };
         shade(
-            &self.scene.materials[triangle.material as usize],
-            normal,
+            &self.scene.materials[seen.material as usize],
+            seen.normal,
             &lighting,
         )
     }
@@ -444,6 +486,17 @@ impl View<'_> {
         }
         (1.0 - 2.2 * hidden / DISC as f64).clamp(0.2, 1.0)
     }
+}
+
+/// Pixels drawn per pixel shown.
+const DRAWN: usize = (SUPERSAMPLING * SUPERSAMPLING) as usize;
+
+/// Cosine of the angle between normals up to which drawn pixels of one material show one even surface. Chosen: eight degrees, as a wire turns
+/// from a drawn pixel to the next where it is 14 of them across.
+const EVEN: f64 = 0.99;
+
+fn is_even(a: &Seen, b: &Seen) -> bool {
+    a.material == b.material && a.normal.dot(&b.normal) > EVEN
 }
 
 /// Samples of a disc; each pixel shown has [`SUPERSAMPLING`] squared differently turned discs.

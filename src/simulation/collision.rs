@@ -94,12 +94,21 @@ impl Winding {
             return;
         }
         let (angle, _) = self.wound_to(node);
-        let text = format!(
-            "the coil has grown into the nozzle: wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm; set nozzle.distance to more, or let the nozzle travel so that fewer turns lie on each other",
+        let met = format!(
+            "wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm",
             turn_at(angle),
             1e3 * reach,
             1e3 * distance
         );
+        let text = if distance < self.scene.nozzle.distance {
+            format!(
+                "the nozzle has met the coil: {met}; keep nozzle_offset_x and nozzle_offset_z such that it stays outside of the wire"
+            )
+        } else {
+            format!(
+                "the coil has grown into the nozzle: {met}; set nozzle.distance to more, or let the nozzle travel so that fewer turns lie on each other"
+            )
+        };
         self.note_end(DefectKind::Collision, node, text);
     }
 
