@@ -43,6 +43,7 @@ def test_slopes_are_those_of_the_outputs(slave):
     names = [
         "wire_tension", "spindle_torque", "feed_speed", "free_length", "turns_wound",
         "layon_position", "layon_angle", "spindle_angle", "fed_length", "gap_width",
+        "tensioner_position",
     ]
     references = slave.references(names)
     before = [slave.get(name) for name in names]
@@ -56,7 +57,8 @@ def test_slopes_are_those_of_the_outputs(slave):
     # the free span goes on as in the last step; where wire is laid goes in jumps
     assert slopes[3] == pytest.approx((after[3] - before[3]) / tiny, rel=1e-6, abs=1e-6)
     assert slopes[4:7] == [0.0, 0.0, 0.0]
-    assert slopes[7:] == [slave.get("spindle_speed"), slave.get("feed_speed"), 0.0]
+    speeds = [slave.get(name) for name in ("spindle_speed", "feed_speed", "tensioner_speed")]
+    assert slopes[7:] == [*speeds[:2], 0.0, speeds[2]]
     state = slave.fmu.getFMUstate()
     slave.fmu.doStep(40 * 1e-4 + tiny, tiny)
     slave.fmu.setFMUstate(state)
