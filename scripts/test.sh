@@ -20,9 +20,9 @@ stages=(lint lab docs rust fmu)
 minutes_of() {
     case $1 in
         lint) echo 6 ;;
-        lab) echo 16 ;;
+        lab) echo 12 ;;
         docs) echo 9 ;;
-        rust) echo 10 ;;
+        rust) echo 11 ;;
         fmu) echo 11 ;;
     esac
 }
