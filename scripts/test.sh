@@ -116,7 +116,8 @@ lint() {
 
 lab() {
     build_command
-    step exact answers
+    step "exact answers; beside them the FMU, most of whose building keeps one core busy"
+    beside scripts/build_fmu.sh
     "$command" verify
     "$command" verify --preset paper
     local file
@@ -128,7 +129,10 @@ lab() {
     step "scenes with a known defect, a sample"
     COILWIND_COMMAND=$command python3 scripts/labelled.py --sample --out "$target/labelled" | tail -n 1
 
-    build_fmu
+    step "the FMU, to its end"
+    join
+    fmu_built=true
+
     step "benchmarks at their coarsest; beside them long runs, short, and results as recorded"
     beside coarse_benchmarks
     COILWIND_COMMAND=$command scripts/endurance.sh --short
@@ -161,11 +165,11 @@ docs() {
         skip site "$missing"
     fi
 
-    step "films, calibration, control, sweeps through the FMU, beside the following"
+    step "films, calibration, control, sweeps through the FMU, tests of these checks, beside the following"
     # Before both, which use them.
     scripts/venv.sh render >/dev/null
     scripts/venv.sh study >/dev/null
-    beside studies
+    beside studies "$python"
 
     missing=$(scripts/missing_tools.sh browser)
     if [ -z "$missing" ]; then
@@ -179,15 +183,13 @@ docs() {
     "$python" scripts/docs/check_commands.py
 
     step "films and the others, to their end"
-    join
-
-    step tests of these checks
     say_what_was_skipped docs
-    "$python" -m pytest -q -rs tests/docs
+    join
 }
 studies() {
     COILWIND_COMMAND=$command COILWIND_FMU=$fmu COILWIND_RENDER_PYTHON=$(scripts/venv.sh render) \
         "$(scripts/venv.sh study)" -m pytest -q -rs tests/study
+    "$1" -m pytest -q -rs tests/docs
 }
 
 rust() {

@@ -1,5 +1,6 @@
 //! What happens in a long communication step is told with the time, place and turn at which it happened.
 
+use coilwind::measure::DefectKind;
 use coilwind::settings::SceneSettings;
 use coilwind::signals::EventKind;
 use coilwind::simulation::Simulation;
@@ -78,6 +79,50 @@ fn a_defect_is_told_with_the_time_at_which_its_wire_came_to_rest() {
     assert!(turns.len() >= 3, "{events:?}");
     for (k, turn) in turns.iter().enumerate() {
         assert!(*turn > (k + 1) as f64, "{turns:?}");
+    }
+}
+
+/// A collision's message had the turns of the communication point before.
+#[test]
+fn the_end_of_a_run_is_told_with_the_turns_wound_by_then() {
+    let mut sim = fig8();
+    let mut inputs = sim.inputs();
+    inputs.spindle_speed = 60.0;
+    inputs.nozzle_offset_x = -52e-3;
+    inputs.nozzle_position += 0.7e-3 * 60.0 * 0.2 / TAU;
+    sim.advance(inputs, 0.2).expect("goes on");
+    let events = sim.drain_events();
+    let end = events.iter().find(|e| e.kind == EventKind::Collision);
+    let turn = end.expect("a collision").turn;
+    assert!((turn - sim.outputs().turns_wound).abs() < 0.05, "{turn}");
+    assert!(turn > 1.5);
+}
+
+/// What happened to wire of the second layer, while that of the first was coming to rest, was of the first.
+#[test]
+fn a_fault_is_of_the_layer_that_is_being_laid() {
+    let mut settings = SceneSettings::load("bobbin").expect("packed");
+    for (key, value) in [
+        ("solver.tolerance", "1e-5"),
+        ("core.flange.inner_distance_mm", "2.5"),
+        ("nozzle.y_start_mm", "-0.9"),
+        ("start.clamp_y_mm", "-0.9"),
+        ("winding.turns_per_layer", "3"),
+        ("winding.layers", "3"),
+    ] {
+        settings.set_text(key, value).expect("a setting");
+    }
+    let scene = settings.build().expect("valid");
+    for (turns, layer) in [(2.3, 1), (3.6, 2), (6.6, 3)] {
+        let mut sim = Simulation::new(&scene).expect("starts");
+        let until = sim.motion_profile().time_at(turns * TAU);
+        sim.advance_profile(until).expect("goes on");
+        let mut inputs = sim.inputs();
+        inputs.nozzle_offset_x = -sim.scene().nozzle.distance;
+        sim.advance(inputs, 1e-3).expect("goes on");
+        let defects = sim.defects();
+        let end = defects.iter().find(|d| d.kind == DefectKind::Collision);
+        assert_eq!(end.expect("a collision").layer, layer, "{turns} turns");
     }
 }
 

@@ -79,6 +79,7 @@ pub(crate) fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => return not_understood(&error),
     };
+    terminal::outlive_file_limit();
     let result = match cli.command {
         Command::Run(args) => match (args.ensemble, &args.resume) {
             (Some(count), _) => ensemble::run(&args, count),

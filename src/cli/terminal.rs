@@ -1,4 +1,4 @@
-//! Standard output, and requests to stop.
+//! Standard output, and signals.
 
 use super::failure::Failure;
 use std::sync::Arc;
@@ -17,6 +17,17 @@ pub(super) fn stop_flag() -> Arc<AtomicBool> {
         eprintln!("warning: Ctrl-C will end the run without results");
     }
     flag
+}
+
+/// Lets a write fail that a limit on the size of files (`ulimit -f`) forbids, as it does on a full disk. The signal that comes
+/// with it would end the program without a word.
+pub(super) fn outlive_file_limit() {
+    #[cfg(unix)]
+    {
+        let seen = Arc::new(AtomicBool::new(false));
+        // without the handler all else works
+        let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, seen);
+    }
 }
 
 /// Writes to standard output; a reader that has seen enough (`| head`) is no failure.

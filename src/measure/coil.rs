@@ -153,7 +153,7 @@ pub struct Coil {
     pub(crate) records: PersistentVec<Record, STATIONS_PER_TURN>,
     /// latest station by polar station and `floor(y / d)`
     pub(super) buckets: Buckets,
-    passes: Passes,
+    pub(super) passes: Passes,
 }
 
 /// Settled nodes in a saved state, and what they were laid by.

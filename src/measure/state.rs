@@ -198,6 +198,14 @@ impl Coil {
         self.records.last().map_or(1, |record| record.station.layer)
     }
 
+    /// Layer of wire that need not have settled, at this winding angle, rad: that of the last settled wire, and one more for each
+    /// time that the nozzle has turned since.
+    pub(crate) fn layer_at(&self, angle: f64) -> u32 {
+        let settled = self.end_angle().map_or(0.0, |(angle, _)| angle);
+        let pass = |angle: f64| self.passes.at(angle).0;
+        self.layer() + pass(angle.max(settled)) - pass(settled)
+    }
+
     /// Extent of the settled wire along y with its thickness, m.
     pub fn coil_width(&self) -> f64 {
         self.nodes

@@ -58,7 +58,6 @@ impl Winding {
 
     /// The same of what happened at an angle along the wire from the clamp, rad, at a place in the core frame, m.
     pub(super) fn note_end_at(&mut self, kind: DefectKind, angle: f64, place: V3, text: String) {
-        self.run.over = true;
         self.keep_fault(kind, angle, place);
         let event = match kind {
             DefectKind::Collision => EventKind::Collision,
@@ -66,6 +65,7 @@ impl Winding {
             _ => EventKind::Break,
         };
         self.report(event, text);
+        self.run.over = true;
     }
 
     /// Angle along the wire from the clamp to a live node, rad, and its place in the core frame, m; what is not laid yet counts
@@ -88,7 +88,7 @@ impl Winding {
         self.run.faults.push(Defect {
             kind,
             turn: (angle / TAU) as u32 + 1,
-            layer: self.coil.layer(),
+            layer: self.coil.layer_at(angle),
             angle_deg: (angle % TAU).to_degrees(),
             time_s: now,
             until_s: (kind == DefectKind::Slack).then_some(now),
