@@ -38,7 +38,8 @@ import numpy as np
 import folder as folders
 from failure import Interrupted, Mistake, told
 
-ANGLES = {"angle_deg": np.radians(1.0), "angle_rad": 1.0, "turns": 2.0 * np.pi}
+TURN = 2.0 * np.pi
+ANGLES = {"angle_deg": np.radians(1.0), "angle_rad": 1.0, "turns": TURN}
 LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
 UNITS = {
     "tension": {"N": 1.0, "mN": 1e-3, "cN": 1e-2},
@@ -59,6 +60,11 @@ NEAR = 0.99
 SETTLED = 0.8
 # Measured and computed levels that differ by more than this factor are of other units.
 FOREIGN = 8.0
+# Of the turns of the run: over less a curve is told, and over so much less it must be in another unit of the angle (a radian taken
+# for a degree is 1/57).
+SHORT, FOREIGN_ANGLE = 0.25, 0.04
+# Measured values that each parameter takes, so that noise can be told from a fit.
+LEAST = 5
 # Of 1: above it, residuals are not noise, or two parameters cannot be told apart.
 CORRELATED = 0.95
 AUTOCORRELATED = 0.5
@@ -78,6 +84,8 @@ class Curve:
     values: np.ndarray
     # standard deviation of the noise
     sigma: float = 1.0
+    # of the turns of the run
+    share: float = 1.0
 
 
 def read_curves(path):
@@ -192,12 +200,17 @@ class Model:
         covered = (curve.angle >= angle[0] - 1e-6) & (curve.angle <= angle[-1] + 1e-6) if angle.size > 1 else np.zeros(1, bool)
         # How much wire settles depends on the parameters a little; what has not counts for nothing.
         if np.mean(covered) < (SETTLED if curve.quantity == "height" else 1.0):
-            turns = 2.0 * np.pi
             low, high = (angle[0], angle[-1]) if angle.size else (0.0, 0.0)
             raise Mistake(
-                f"{curve.source}: {curve.column} is measured from {curve.angle[0] / turns:.2f} to {curve.angle[-1] / turns:.2f} turns, "
-                f"{'settled wire of the run goes' if curve.quantity == 'height' else 'the run goes'} from {low / turns:.2f} to "
-                f"{high / turns:.2f}; wind more with --set spindle.turns=N, or cut the file"
+                f"{curve.source}: {curve.column} is measured from {curve.angle[0] / TURN:.2f} to {curve.angle[-1] / TURN:.2f} turns, "
+                f"{'settled wire of the run goes' if curve.quantity == 'height' else 'the run goes'} from {low / TURN:.2f} to "
+                f"{high / TURN:.2f}; wind more with --set spindle.turns=N, or cut the file"
+            )
+        curve.share = np.ptp(curve.angle) / np.ptp(angle)
+        if curve.share < FOREIGN_ANGLE:
+            raise Mistake(
+                f"{curve.source}: {curve.column} is measured over {np.ptp(curve.angle) / TURN:.3g} of the {np.ptp(angle) / TURN:.3g} turns of the run; "
+                "is the angle in the unit of its column (angle_deg, angle_rad, turns)? If so, wind less with --set spindle.turns=N"
             )
         return np.where(covered, np.interp(curve.angle, angle, values), np.nan)
 
@@ -209,6 +222,10 @@ def columns(path, *names):
         places = [header.index(name) for name in names]
         rows = [[float(row[place]) for place in places] for row in reader]
     return np.array(rows).reshape(-1, len(names)).T
+
+
+def too_few(points, parameters):
+    return Mistake(f"{points} measured values are too few for {parameters} parameters; measure at {LEAST * parameters} angles or more")
 
 
 def check_levels(curves, computed):
@@ -304,6 +321,9 @@ def calibrate(fit):
     model, parameters = fit.model, len(fit.starts)
     start = fit.computed([np.zeros(parameters)])[0]
     check_levels(model.curves, start)
+    points = sum(curve.angle.size for curve in model.curves)
+    if points < LEAST * parameters:
+        raise too_few(points, parameters)
     for curve in model.curves:
         curve.sigma = np.std(curve.values) or 1.0
     found = fit.settle(fit.solve(np.zeros(parameters)))
@@ -362,6 +382,8 @@ def warnings_of(names, answer, curves):
     for curve, values in zip(curves, computed):
         if (along := autocorrelation(curve.values - values)) > AUTOCORRELATED:
             yield f"what is left of {curve.column} is no noise (autocorrelation {along:.2f}): the scene differs from the machine in something else, and the intervals are too narrow"
+        if curve.share < SHORT:
+            yield f"{curve.column} is measured over {curve.share:.0%} of the turns of the run: see that the angle is in the unit of its column"
     if not found.success:
         yield "the search ended before it converged; start again from these values"
 
@@ -376,7 +398,7 @@ def draw(path, curves, computed):
     plt.rcParams.update(STYLE)
     figure, axes = plt.subplots(2, len(curves), figsize=(5.2 * len(curves) + 1, 4.6), squeeze=False, sharex="col", layout="constrained", height_ratios=[2, 1])
     for (above, below), curve, values in zip(axes.T, curves, computed):
-        turns = curve.angle / (2.0 * np.pi)
+        turns = curve.angle / TURN
         above.plot(turns, curve.values / curve.unit, ".", color=COLOURS[0], markersize=2.5, label="measured")
         above.plot(turns, values / curve.unit, color=COLOURS[3], linewidth=1.1, label="fitted")
         above.set_ylabel(curve.column)
@@ -450,7 +472,7 @@ def run(args):
     curves = [curve for path in args.measured for curve in read_curves(path)]
     points = sum(curve.angle.size for curve in curves)
     if points <= len(args.fit):
-        raise Mistake(f"{points} measured values are too few for {len(args.fit)} parameters")
+        raise too_few(points, len(args.fit))
     with tempfile.TemporaryDirectory() as folder:
         model = Model(args.command, args.scene, args.set, [], curves, folder)
         names, starts = starts_of(model, args.fit)

@@ -208,6 +208,14 @@ smooth! {
     wire_resistance, flange_clearance, turn_in_layer,
 }
 
+impl Outputs {
+    /// Takes a tension, N, into the extremes.
+    pub(crate) fn meet_tension(&mut self, tension: f64) {
+        self.wire_tension_min = self.wire_tension_min.min(tension);
+        self.wire_tension_max = self.wire_tension_max.max(tension);
+    }
+}
+
 /// What kind of thing happened.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum EventKind {

@@ -236,3 +236,28 @@ fn a_spindle_that_turns_the_other_way() {
         ONE_ITERATE_MORE,
     );
 }
+
+/// Wire that was wound backwards counted for nothing until the core had gone round by 18 degrees.
+#[test]
+fn a_run_that_starts_backwards_starts_as_its_mirror_image() {
+    for name in ["fig8", "bobbin", "tooth"] {
+        let scene = SceneSettings::load(name).unwrap().build().unwrap();
+        let [there, back] = [60.0, -60.0].map(|spindle_speed| {
+            let inputs = Inputs {
+                spindle_speed,
+                ..Simulation::new(&scene).unwrap().inputs()
+            };
+            let mut sim = Simulation::starting_with(&scene, inputs).unwrap();
+            let start = *sim.outputs();
+            sim.advance(inputs, 2e-3).unwrap();
+            (start, *sim.outputs())
+        });
+        assert!(there.0.turns_wound > 0.0, "{name}");
+        for (there, back) in [(there.0, back.0), (there.1, back.1)] {
+            let both = [there.turns_wound, back.turns_wound];
+            assert!((both[0] - both[1]).abs() < 1e-6, "{name}: {both:?}");
+            let both = [there.layon_angle, back.layon_angle];
+            assert!((both[0] - both[1]).abs() < 1e-6, "{name}: {both:?}");
+        }
+    }
+}

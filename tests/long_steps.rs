@@ -2,7 +2,7 @@
 
 use coilwind::measure::DefectKind;
 use coilwind::settings::SceneSettings;
-use coilwind::signals::EventKind;
+use coilwind::signals::{EventKind, Inputs};
 use coilwind::simulation::Simulation;
 use std::f64::consts::TAU;
 
@@ -98,6 +98,28 @@ fn the_end_of_a_run_is_told_with_the_turns_wound_by_then() {
     assert!(turn > 1.5);
 }
 
+/// The core went on through the wire that had not come to rest: turns lay inside it in the files of the run.
+#[test]
+fn wire_goes_round_with_the_core_after_the_end() {
+    let mut sim = fig8();
+    let mut inputs = sim.inputs();
+    inputs.spindle_speed = 100.0;
+    sim.advance(inputs, 0.1).expect("goes on");
+    inputs.nozzle_offset_x = -sim.scene().nozzle.distance;
+    sim.advance(inputs, 1e-3).expect("goes on");
+    assert_eq!(sim.outputs().defect_count_collision, 1);
+    let (before, angle) = (sim.centreline(), sim.outputs().spindle_angle);
+    sim.advance(inputs, 0.05).expect("goes on");
+    assert!((sim.outputs().spindle_angle - angle - 5.0).abs() < 1e-6);
+    let after = sim.centreline();
+    let (old, new) = (&before.points, &after.points);
+    assert_eq!(old.len(), new.len());
+    let far = old.iter().zip(new).map(|(a, b)| (a - b).norm());
+    assert!(far.fold(0.0, f64::max) < 1e-12);
+    let frames = before.frames.iter().zip(&after.frames);
+    assert!(frames.map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) < 1e-12);
+}
+
 /// What happened to wire of the second layer, while that of the first was coming to rest, was of the first.
 #[test]
 fn a_fault_is_of_the_layer_that_is_being_laid() {
@@ -123,6 +145,69 @@ fn a_fault_is_of_the_layer_that_is_being_laid() {
         let defects = sim.defects();
         let end = defects.iter().find(|d| d.kind == DefectKind::Collision);
         assert_eq!(end.expect("a collision").layer, layer, "{turns} turns");
+    }
+}
+
+/// A gap in wire that came to rest and loose again within a step raised its flag, and left kind, turn and time at 0.
+#[test]
+fn a_defect_that_is_unwound_within_its_step_is_the_last_one() {
+    let wind = |parts: u32| {
+        let mut sim = fig8();
+        let mut inputs = sim.inputs();
+        let dt = 1e-3;
+        for k in 0..108 {
+            inputs.spindle_speed = (f64::from(k) * 10.0).min(100.0);
+            inputs.nozzle_position += 1.3e-3 * inputs.spindle_speed * dt / TAU;
+            sim.advance(inputs, dt).expect("goes on");
+        }
+        assert_eq!(sim.outputs().defect_count, 0);
+        let (rate, long) = (-2600.0, 0.1 / f64::from(parts));
+        for k in 0..parts {
+            inputs.spindle_speed = 100.0 + rate * long * f64::from(k);
+            let rates = Inputs {
+                spindle_speed: rate,
+                ..Inputs::HELD
+            };
+            sim.advance_ramped(inputs, rates, long).expect("goes on");
+        }
+        *sim.outputs()
+    };
+    let [long, short] = [1, 200].map(wind);
+    assert_eq!((long.defect_count, short.defect_count), (0, 0), "unwound");
+    assert!(long.defect_gap);
+    let gap = DefectKind::Gap.code();
+    assert_eq!((long.defect_kind, short.defect_kind), (gap, gap));
+    assert_eq!(long.defect_turn, short.defect_turn);
+    assert!((long.defect_time - short.defect_time).abs() < 1e-3);
+    assert!(long.defect_size > 0.0);
+}
+
+/// Where a step ended between steps of the method, the next one's extremes could leave out the tension that had been told there.
+#[test]
+fn extremes_hold_the_tension_at_both_ends() {
+    let mut sim = fig8();
+    sim.step_beyond(true);
+    let mut inputs = sim.inputs();
+    let mut random: u32 = 1;
+    for k in 0..600 {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let dt = libm::exp10(-6.0 + 3.2 * f64::from(random >> 8) / f64::from(1 << 24));
+        let before = sim.outputs().wire_tension;
+        inputs.spindle_speed = 120.0;
+        inputs.nozzle_position += 0.7e-3 * 120.0 * dt / TAU;
+        if random >> 30 == 0 {
+            inputs.tension_setpoint = 15.0 + 0.1 * f64::from(random >> 27 & 7);
+        }
+        sim.advance(inputs, dt).expect("goes on");
+        let o = sim.outputs();
+        for told in [before, o.wire_tension] {
+            assert!(
+                (o.wire_tension_min..=o.wire_tension_max).contains(&told),
+                "step {k}: {told} N outside {} to {} N",
+                o.wire_tension_min,
+                o.wire_tension_max
+            );
+        }
     }
 }
 

@@ -103,6 +103,37 @@ fn a_value_that_contradicts_the_scene_is_told() {
     assert!(warnings(&messages).is_empty(), "{messages:?}");
 }
 
+/// A start value that left a scene without its flanges ended the start, and no word said that the scene's own values were lost.
+#[test]
+fn values_that_overrule_the_scene_are_told_where_it_cannot_start() {
+    let mut instance = Instance::for_tests();
+    set_text(&mut instance, "scene.file", "bobbin");
+    set(&mut instance, "core.flange.inner_distance", 0.0);
+    set(&mut instance, "winding.turns_per_layer", 0.0);
+    instance.enter_initialization_mode().expect("enters");
+    instance
+        .exit_initialization_mode()
+        .expect_err("no flanges, no turns");
+    let told = warnings(&instance.end_call()).join("\n");
+    assert!(told.contains("scene.file bobbin has 20"), "{told}");
+}
+
+/// The nozzle's input was told to hold where a law moves the nozzle.
+#[test]
+fn an_input_that_a_law_leaves_unused_is_told_so() {
+    let (mut instance, messages) = started(0.0, |i| {
+        set_text(i, "scene.file", "bobbin");
+        set_text(i, "traverse.mode", "orthocyclic");
+        set(i, "nozzle_position", 1e-3);
+    });
+    let told = warnings(&messages).join("\n");
+    assert!(
+        told.contains("nozzle_position = 0.001 m was set and has no effect"),
+        "{told}"
+    );
+    assert!((real(&mut instance, "nozzle_y") - 1e-3).abs() > 1e-3);
+}
+
 #[test]
 fn friction_can_be_lowered_one_call_at_a_time() {
     let (mut instance, _) = started(0.0, |i| set(i, "spindle_speed", 10.0));

@@ -195,6 +195,13 @@ impl Parameters {
         (self.settings.friction, self.settings.defects)
     }
 
+    /// Returns these parameters with other tunable ones.
+    pub(crate) fn tuned(&self, friction: Friction, defects: DefectLimits) -> Self {
+        let mut tuned = self.clone();
+        (tuned.settings.friction, tuned.settings.defects) = (friction, defects);
+        tuned
+    }
+
     /// Returns what was set explicitly, by value reference, apart from `scene.file`.
     pub(crate) fn explicit(&self) -> impl Iterator<Item = (u32, &Value)> {
         self.explicit
@@ -251,8 +258,14 @@ impl Parameters {
             "nozzle_position" => "nozzle.y_start",
             _ => return None,
         };
-        let given = self.settings.origin(parameter) != Origin::Default;
         let (name, unit) = (input.name, unit_of(input));
+        if name == "nozzle_position" && self.settings.nozzle_follows_law() {
+            let mode = &self.settings.traverse.mode;
+            return (value != scene).then(|| {
+                format!("{name} = {value}{unit} was set and has no effect: by {TRAVERSE_MODE} = {mode} the nozzle starts at {scene}{unit}")
+            });
+        }
+        let given = self.settings.origin(parameter) != Origin::Default;
         (given && value != scene).then(|| {
             format!("{name} = {value}{unit} was set and holds; the scene starts it at {scene}{unit}, by {parameter}")
         })

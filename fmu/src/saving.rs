@@ -133,8 +133,8 @@ fn other_bytes_are_refused_with_the_reason() {
     assert!(matches!(
         changed(8),
         BytesError::Version {
-            found: 4,
-            expected: 5
+            found: 7,
+            expected: 6
         }
     ));
     assert!(matches!(changed(20), BytesError::Guid { .. }));
@@ -307,4 +307,38 @@ fn a_failed_step_can_be_taken_back() {
     );
     set(&mut instance, "spindle_speed", 0.0);
     instance.do_step(1.02, 0.02).expect("standing is easy");
+}
+
+/// Bytes held what was set, and not what the simulation had taken over by then: the last step was gone through again with the friction
+/// of the next, and wire that the old friction held at rest stayed there.
+#[test]
+fn what_the_next_step_takes_over_is_pending_in_bytes_too() {
+    let mut instance = started();
+    wind(&mut instance, 0, 200);
+    let time = 1.0 + 200.0 * STEP;
+    set(&mut instance, "friction.kinetic", 0.02);
+    set(&mut instance, "friction.static", 0.03);
+    let saved = instance.snapshot();
+    let mut other = Instance::for_tests();
+    other.restore(&read(&bytes(&saved)).expect("a state"));
+    let asked = ["wire_tension", "fed_length", "spindle_torque"].map(reference);
+    let known = [reference("tension_setpoint")];
+    let ask = |i: &mut Instance| i.directional_derivative(&asked, &known, &[1.0]);
+    let (here, there) = (ask(&mut instance), ask(&mut other));
+    assert_eq!(here.expect("derivatives"), there.expect("derivatives"));
+    let outputs = [
+        "wire_tension",
+        "fed_length",
+        "spindle_torque",
+        "solver_steps",
+    ]
+    .map(reference);
+    for k in 0..20 {
+        let now = time + f64::from(k) * STEP;
+        for i in [&mut instance, &mut other] {
+            i.do_step(now, STEP).expect("a step");
+        }
+        let read = |i: &mut Instance| i.get::<f64>(&outputs).expect("outputs");
+        assert_eq!(read(&mut instance), read(&mut other), "step {k}");
+    }
 }

@@ -19,7 +19,10 @@ use crate::error::{BytesError, Error};
 use crate::instance::LastStep;
 use crate::lifecycle::State;
 use crate::parameters::{Parameters, SavedParameters};
+use coilwind::measure::DefectLimits;
 use coilwind::output::Mark;
+use coilwind::scene::Scene;
+use coilwind::settings::Friction;
 use coilwind::signals::Inputs;
 use coilwind::simulation::Simulation;
 use serde::{Deserialize, Serialize};
@@ -29,7 +32,7 @@ use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"\x89CoilFMU";
 /// Version of the format. It changes whenever the bytes of the same state do.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 /// Bytes of a GUID with its braces.
 const GUID: usize = 38;
 const HEADER: usize = 8 + 4 + GUID + 8 + 4;
@@ -76,12 +79,51 @@ struct Contents {
 /// A [`SavedRun`] in the form that is encoded.
 #[derive(Serialize, Deserialize)]
 struct RunBytes {
-    simulation: Vec<u8>,
+    simulation: SimulationBytes,
     inputs: Inputs,
     rates: Inputs,
     /// The last step: the simulation as it began, inputs, their derivatives, length.
-    last: Option<(Vec<u8>, Inputs, Inputs, f64)>,
+    last: Option<(SimulationBytes, Inputs, Inputs, f64)>,
     mark: Option<Mark>,
+}
+
+/// A simulation in the form that is encoded, with the tunable parameters that it has taken over. Others may have been set since,
+/// which the next step takes over.
+#[derive(Serialize, Deserialize)]
+struct SimulationBytes {
+    friction: Friction,
+    defects: DefectLimits,
+    bytes: Vec<u8>,
+}
+
+impl SimulationBytes {
+    /// # Errors
+    ///
+    /// If the simulation cannot be encoded.
+    fn of(simulation: &Simulation) -> Result<Self, Error> {
+        let scene = simulation.scene();
+        Ok(Self {
+            friction: scene.friction,
+            defects: scene.defects,
+            bytes: simulation.to_bytes()?,
+        })
+    }
+
+    /// Returns the simulation, of an instance with these `parameters`, whose scene is `scene`.
+    ///
+    /// # Errors
+    ///
+    /// If the bytes are not those of a simulation of that scene, or the tunable parameters are not valid.
+    fn restored(&self, parameters: &Parameters, scene: &Scene) -> Result<Simulation, Error> {
+        let mut simulation = if (self.friction, self.defects) == parameters.tunable() {
+            Simulation::from_bytes(scene, &self.bytes)?
+        } else {
+            let (scene, _) = parameters.tuned(self.friction, self.defects).scene()?;
+            Simulation::from_bytes(&scene, &self.bytes)?
+        };
+        simulation.step_beyond(scene.solver.features.steps_beyond);
+        Ok(simulation)
+    }
 }
 
 impl Snapshot {
@@ -95,13 +137,13 @@ impl Snapshot {
             Some(run) => {
                 let last = match run.last.as_deref() {
                     Some(last) => {
-                        let simulation = last.simulation.to_bytes()?;
+                        let simulation = SimulationBytes::of(&last.simulation)?;
                         Some((simulation, last.inputs, last.rates, last.step))
                     }
                     None => None,
                 };
                 Some(RunBytes {
-                    simulation: run.simulation.to_bytes()?,
+                    simulation: SimulationBytes::of(&run.simulation)?,
                     inputs: run.inputs,
                     rates: run.rates,
                     last,
@@ -158,14 +200,9 @@ impl Snapshot {
         let run = match contents.run {
             Some(run) => {
                 let (scene, _) = parameters.scene()?;
-                let restored = |bytes: &[u8]| -> Result<Simulation, Error> {
-                    let mut simulation = Simulation::from_bytes(&scene, bytes)?;
-                    simulation.step_beyond(scene.solver.features.steps_beyond);
-                    Ok(simulation)
-                };
                 let last = match run.last {
                     Some((simulation, inputs, rates, step)) => Some(Arc::new(LastStep {
-                        simulation: restored(&simulation)?,
+                        simulation: simulation.restored(&parameters, &scene)?,
                         inputs,
                         rates,
                         step,
@@ -173,7 +210,7 @@ impl Snapshot {
                     None => None,
                 };
                 Some(SavedRun {
-                    simulation: restored(&run.simulation)?,
+                    simulation: run.simulation.restored(&parameters, &scene)?,
                     inputs: run.inputs,
                     rates: run.rates,
                     last,

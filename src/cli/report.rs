@@ -6,7 +6,7 @@ use super::folder;
 use super::shell::begin_again;
 use super::terminal::print;
 use clap::Args;
-use coilwind::output::{ReportError, write_report};
+use coilwind::output::{ReportError, missing_files, write_report};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `report`.
@@ -38,6 +38,11 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
         }
     }
     write_report(&directories, &page).map_err(what_would_do)?;
+    for directory in &directories {
+        for name in missing_files(directory) {
+            eprintln!("warning: {} is missing, and the page goes without it", directory.join(name).display());
+        }
+    }
     print(&format!("report: {}\n", page.display()))
 }
 

@@ -236,7 +236,8 @@ impl Work {
                 value(n - 1)
             ),
             n => format!(
-                "{name} = {} is the highest value without a defect; {} is not free of them\n",
+                "{name} = {} is the highest value without a defect; {} is not free of them\n\
+                 values that were not wound are taken to be free below and not above; a sweep without --find-max shows whether they are\n",
                 value(n - 1),
                 value(n)
             ),

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Limits of the defect flags.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DefectLimits {
     /// gap above which a station counts, diameters
     pub gap: f64,

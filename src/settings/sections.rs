@@ -1,5 +1,7 @@
 //! Sections of a scene whose leaves a run reads as they are given.
 
+use serde::{Deserialize, Serialize};
+
 /// Eyelet on +x: position fixed, direction free, wire slides through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nozzle {
@@ -175,7 +177,7 @@ pub struct Contact {
 }
 
 /// Stick-slip friction, wire on core and wire on wire.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Friction {
     /// coefficient at rest
     pub static_: f64,

@@ -66,7 +66,7 @@ impl Winding {
         }
         self.run.acceleration = drive.acceleration;
         if first {
-            self.sys.begin_drive(&drive);
+            self.begin_drive(&drive);
         } else {
             self.sys
                 .continue_drive(&drive, course.at(self.run.time).nozzle_position);

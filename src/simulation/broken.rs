@@ -1,16 +1,37 @@
 //! Wire that has parted: the machine goes on, the wire stays as it was.
 
 use super::Winding;
+use crate::math::{Spin, turn_about_y};
 use crate::system::Drive;
 
 impl Winding {
-    /// Lets spindle and nozzle go on by `drive` for `dt`, s; all else stays as it was.
+    /// Gives the machine the motion at the start of `drive`. The nozzle holds no wire that has parted.
+    pub(super) fn begin_drive(&mut self, drive: &Drive) {
+        let end = self.sys.state.rod.x.last().copied();
+        self.sys.begin_drive(drive);
+        if let (true, Some(end), Some(x)) = (self.run.over, end, self.sys.state.rod.x.last_mut()) {
+            *x = end;
+        }
+    }
+
+    /// Lets spindle and nozzle go on by `drive` for `dt`, s; all wire goes round with the core, as it was on it.
     pub(super) fn turn_on(&mut self, dt: f64, drive: &Drive) {
         if dt > 0.0 {
             self.sys.guide_nozzle(drive, dt);
         }
         self.sys.state.time += dt;
-        self.sys.state.spindle = self.sys.state.spindle.after(dt);
+        let before = self.sys.state.spindle;
+        let after = before.after(dt);
+        self.sys.state.spindle = after;
+        let (from, to) = (Spin::new(before.angle), Spin::new(after.angle));
+        let turn = turn_about_y(after.angle - before.angle);
+        let rod = &mut self.sys.state.rod;
+        rod.x
+            .iter_mut()
+            .for_each(|x| *x = to.to_lab(from.to_core(*x)));
+        rod.frame
+            .iter_mut()
+            .for_each(|frame| *frame = turn * *frame);
         let support = &mut self.sys.state.support[1];
         support.point += support.velocity * dt;
     }

@@ -95,6 +95,7 @@ impl Simulation {
         if self.talk.wait > 0 {
             return self.step_to_the_point(|winding| {
                 winding.advance_ramped(inputs, rates, dt)?;
+                winding.run.outputs.meet_tension(told.wire_tension);
                 let both = [&told, &winding.run.outputs];
                 winding.run.rates = rates_of(winding, both, dt, winding.inputs().spindle_speed);
                 Ok(())
@@ -181,10 +182,13 @@ impl Simulation {
         &mut self,
         step: impl FnOnce(&mut Winding) -> Result<(), SimError>,
     ) -> Result<(), SimError> {
+        // (between steps of the method, what was told is not what the winding has there)
+        let told = self.outputs().wire_tension;
         self.settle()?;
         let winding = self.pool.own(&mut self.now);
         winding.run.events.clear();
         let gone = step(winding);
+        winding.run.outputs.meet_tension(told);
         self.talk.events.append(&mut winding.run.events);
         gone
     }
@@ -277,6 +281,7 @@ impl Simulation {
     ) -> Result<(), SimError> {
         let mut served = self.talk.served.unwrap_or_else(|| Served::at(&self.now));
         served.begin(dt, &self.now);
+        served.outputs.meet_tension(told.wire_tension);
         let point = served.time;
         let near = ROUNDING * point;
         loop {
@@ -354,7 +359,7 @@ impl Winding {
     fn go_along(&mut self, course: &Course, duration: f64) -> Result<(), SimError> {
         let drive = course.drive(self.run.time, duration);
         let before = self.statistics();
-        self.sys.begin_drive(&drive);
+        self.begin_drive(&drive);
         let gone = self.through(&drive);
         self.tell_of_trouble(before);
         gone
@@ -387,7 +392,7 @@ impl Winding {
         self.finish();
         let mut told = *point;
         if !self.run.over {
-            told.meet(self.run.outputs.wire_tension);
+            told.outputs.meet_tension(self.run.outputs.wire_tension);
         }
         keep_told(&mut self.run.outputs, &told.outputs);
         self.run.rates = point.rates;

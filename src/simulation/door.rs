@@ -138,7 +138,7 @@ impl Winding {
 
     /// Goes through the interval of one drive.
     pub(super) fn follow(&mut self, drive: &Drive) -> Result<(), SimError> {
-        self.sys.begin_drive(drive);
+        self.begin_drive(drive);
         self.through(drive)
     }
 

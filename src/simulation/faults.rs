@@ -16,9 +16,7 @@ impl Winding {
     /// Keeps the extremes of the tension, and notes where the wire goes slack.
     pub(super) fn watch_tension(&mut self) {
         let t = self.wire_tension();
-        let o = &mut self.run.outputs;
-        o.wire_tension_min = o.wire_tension_min.min(t);
-        o.wire_tension_max = o.wire_tension_max.max(t);
+        self.run.outputs.meet_tension(t);
         let slack = t < SLACK;
         if slack {
             self.note_slack();
@@ -114,8 +112,22 @@ impl Winding {
         )
     }
 
+    /// Puts the defect that was found last into the outputs. It stays there when its wire comes loose, and one found before is the
+    /// last in the settled wire.
+    pub(super) fn keep_last_defect(&mut self) {
+        let found = self.last_defect();
+        let o = &mut self.run.outputs;
+        if let Some(last) = found.filter(|last| last.time >= o.defect_time) {
+            o.defect_kind = last.kind.code();
+            o.defect_turn = f64::from(last.turn);
+            o.defect_angle = last.angle;
+            o.defect_time = last.time;
+            o.defect_size = last.size;
+        }
+    }
+
     /// The defect that was found last, at the place where it was found: that of settled wire, or slack or a break.
-    pub(super) fn last_defect(&self) -> Option<DefectPlace> {
+    fn last_defect(&self) -> Option<DefectPlace> {
         let fault = self.run.faults.last().map(|fault| DefectPlace {
             kind: fault.kind,
             size: 0.0,

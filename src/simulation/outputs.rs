@@ -148,7 +148,7 @@ impl Winding {
         let worst = self.coil.worst();
         let tension = self.wire_tension();
         let count = self.coil.defect_count() as usize + self.run.faults.len();
-        let last_defect = self.last_defect();
+        self.keep_last_defect();
         let raised = self.coil.raised();
         let faults = [
             DefectKind::Break,
@@ -163,8 +163,7 @@ impl Winding {
         let o = &mut self.run.outputs;
         o.wire_tension = tension;
         // A change of the mesh may have moved it since the last look.
-        o.wire_tension_min = o.wire_tension_min.min(tension);
-        o.wire_tension_max = o.wire_tension_max.max(tension);
+        o.meet_tension(tension);
         o.defect_break = faults[0] > 0;
         o.defect_count = count as i32;
         let raised = |kind: DefectKind| raised[kind as usize] as i32;
@@ -183,13 +182,6 @@ impl Winding {
             o.defect_count_collision,
             o.defect_count_runaway,
         ] = faults;
-        if let Some(last) = last_defect {
-            o.defect_kind = last.kind.code();
-            o.defect_turn = f64::from(last.turn);
-            o.defect_angle = last.angle;
-            o.defect_time = last.time;
-            o.defect_size = last.size;
-        }
         o.bulge_height = worst.bulge_height;
         o.gap_width = worst.gap_width;
         o.overlap_depth = worst.overlap_depth;

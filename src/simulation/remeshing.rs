@@ -458,6 +458,7 @@ impl Winding {
         if !names.is_empty()
             && let Some(d) = self.coil.last_defect()
         {
+            self.keep_last_defect();
             self.report(
                 EventKind::Defect,
                 format!(

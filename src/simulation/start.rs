@@ -224,7 +224,6 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
     }
     sys.model.core = Some(surface.clone());
     sys.model.twist = scene.solver.twist;
-    let direction = if scene.spindle.speed < 0.0 { -1.0 } else { 1.0 };
     let coil = Coil::new(CoilSpec {
         diameter: section.diameter,
         limits: scene.defects,
@@ -233,8 +232,8 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         jumps: scene.nozzle_law.jumps().into(),
         crossover: (scene.nozzle_law.crossover()).map(|[step, angle]| Crossover { step, angle }),
         start_angle: polar_angle(clamp_core),
-        direction,
-        traverse: scene.nozzle_law.sense() * direction,
+        direction: way_round,
+        traverse: scene.nozzle_law.sense(),
         clamp_arc: 0.0,
         corner_angle: corner_angle(&scene.core),
     });

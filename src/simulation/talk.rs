@@ -90,15 +90,8 @@ impl Served {
 
     /// Takes note of the end of a step within the communication step.
     pub(super) fn pass(&mut self, winding: &Winding) {
-        self.meet(winding.run.outputs.wire_tension);
+        self.outputs.meet_tension(winding.run.outputs.wire_tension);
         raise_as(&mut self.outputs, &winding.run.outputs);
-    }
-
-    /// Takes note of a tension, N.
-    pub(super) fn meet(&mut self, tension: f64) {
-        let o = &mut self.outputs;
-        o.wire_tension_min = o.wire_tension_min.min(tension);
-        o.wire_tension_max = o.wire_tension_max.max(tension);
     }
 
     /// Reads the outputs between the winding and the `end` of the step ahead of it.
@@ -118,7 +111,7 @@ impl Served {
             None => *start,
         };
         outputs.spindle_angle = start.spindle_angle + course.turned(now.run.time, self.time);
-        self.meet(outputs.wire_tension);
+        self.outputs.meet_tension(outputs.wire_tension);
         outputs.nozzle_y = inputs.nozzle_position;
         keep_told(&mut outputs, &self.outputs);
         (self.outputs, self.inputs) = (outputs, inputs);

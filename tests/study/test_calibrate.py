@@ -204,6 +204,8 @@ def test_a_fit_that_ends_at_an_end_of_its_range_is_none(calibrate, measured, tmp
         ("turns,tension_N\n0.4,15\n0.3,15\n", [], "turns has to rise from row to row"),
         ("turns,tension_N\n", [], "holds no measurement"),
         ("turns,tension_N\n0.3,15\n", [], "1 measured values are too few for 1 parameters"),
+        ("turns,tension_N\n0.3,15\n1.3,15\n", [], "2 measured values are too few for 1 parameters; measure at 5 angles or more"),
+        ("angle_deg,tension_N\n0.1,15\n8.7,15\n", [], "is measured over 0.0239 of the 1.4 turns of the run; is the angle in the unit of its column"),
         ("turns,tension_N\n0.3,15000\n0.4,15000\n", [], "tension_N is 1.01e+03 times what the scene gives (14.8)"),
         ("turns,tension_N\n0.3,15\n2.5,15\n", [], "from 0.30 to 2.50 turns, the run goes from 0.00 to 1.40; wind more with --set spindle.turns=N"),
         ("turns,height_mm\n0.3,0.1\n1.38,0.1\n2,0.1\n", [], "settled wire of the run goes from"),

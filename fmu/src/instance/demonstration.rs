@@ -34,7 +34,7 @@ impl Instance {
                 .all(|(r, x)| starts_so(r, &x))
             && self.parameters.explicit().all(|(r, x)| starts_so(r, x));
         if self.demonstrates {
-            let text = "no input and no parameter was set, so the FMU demonstrates: spindle and nozzle \
+            let text = "inputs and parameters are as in modelDescription.xml, so the FMU demonstrates: spindle and nozzle \
                         follow a programme of its own; set spindle_speed or nozzle_position to drive them";
             self.messages.push(Message {
                 status: Status::Ok,

@@ -43,8 +43,10 @@ impl Instance {
     ///
     /// If the scene is not valid or has no valid start.
     pub(crate) fn exit_initialization_mode(&mut self) -> Result<(), Error> {
-        self.start()?;
+        let started = self.start().map(|_| ());
+        // (a scene that has no valid start may have lost values of its file)
         self.warn_of_contradictions();
+        started?;
         self.begin_demonstration();
         self.record();
         self.state = State::StepComplete;

@@ -6,11 +6,13 @@
 mod array;
 mod error;
 mod folder;
+mod missing;
 mod read_vtp;
 
 use super::{OutputError, write_whole_bytes};
 pub use error::ReportError;
 use folder::Run;
+pub use missing::missing_files;
 use serde::Serialize;
 use std::path::Path;
 

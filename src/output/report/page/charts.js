@@ -1,5 +1,8 @@
 // Curves over the turns of the spindle, by uPlot.
 
+/** Kinds that happen to the wire at an instant. The others are found in wire at rest. */
+const HAPPENS = new Set(["slack", "break", "collision", "runaway"]);
+
 /** Tension and torque of a run; a click goes to that place of the wire. */
 function charts(run) {
   const history = run.history;
@@ -9,10 +12,15 @@ function charts(run) {
   const forward = turns.every((turn, k) => k === 0 || turn >= turns[k - 1]);
   const x = forward ? turns : Array.from(history.time, (time) => 1e3 * time);
   const axis = forward ? "Turns of the spindle" : "Time, ms";
-  const marks = forward ? run.defects.map((d) => [d.turn - 1 + d.angle_deg / STATIONS, d.kind]) : [];
+  const when = (d) => (forward ? run.turnsAt(d.time_s) : 1e3 * d.time_s);
+  const laid = (d) => (forward ? d.turn - 1 + d.angle_deg / STATIONS : null);
+  const marks = run.defects.map((d) => [HAPPENS.has(d.kind) ? when(d) : laid(d), d.kind]).filter(([at]) => at != null);
   const plain = (array, scale = 1) => Array.from(array, (value) => scale * value);
   const go = forward ? (turn) => run.goTo(turn) : () => {};
-  const note = marks.length ? "Dashed: defects, where they lie on the wire." : null;
+  const happened = marks.some(([, kind]) => HAPPENS.has(kind));
+  const lying = marks.some(([, kind]) => !HAPPENS.has(kind)) ? "defects, where they lie on the wire" : null;
+  const words = [lying, happened ? `${[...HAPPENS].join(", ")}, when they happened` : null].filter(Boolean);
+  const note = words.length ? `Dashed: ${words.join("; ")}.` : null;
   const torque = plain(history.torque, 1e3);
   return [
     chart("Tension at the nozzle", axis, x, "N", [
@@ -30,9 +38,11 @@ function chart(title, axis, x, unit, curves, marks, go, note) {
   const section = el("section", { class: "card chart" }, el("div", { class: "bar" }, el("h2", {}, title)), box,
     note ? el("p", { class: "note" }, note) : null);
   const grid = { stroke: () => css("--line"), width: 1 };
+  // (as wide as the longest number beside the label)
+  const wide = (u, values) => Math.max(46, 26 + 7 * Math.max(0, ...(values ?? []).map((value) => String(value).length)));
   const axes = [
     { label: axis, labelSize: 20, labelFont: "12px system-ui", font: "12px system-ui", stroke: () => css("--soft"), grid, ticks: grid, size: 34 },
-    { label: unit, labelSize: 18, labelFont: "12px system-ui", font: "12px system-ui", stroke: () => css("--soft"), grid, ticks: grid, size: 46 },
+    { label: unit, labelSize: 18, labelFont: "12px system-ui", font: "12px system-ui", stroke: () => css("--soft"), grid, ticks: grid, size: wide },
   ];
   const tell = (u, value) => (value == null ? "–" : `${digits(value)} ${unit}`);
   const series = curves.map((curve) => ({

@@ -131,7 +131,7 @@ function legend(key, colours, values, runs) {
     const named = present.map((layer) => [layer === 0 ? "not at rest" : `${layer}`, layerColour(layer)]);
     return [el("div", {}, label), keys(named)];
   }
-  const found = kindsOf(runs).map((kind) => [kind.ball ? `${kind.name} (ball)` : kind.name, kind.colour]);
+  const found = kindsOf(runs).map((kind) => [kind.ball ? `${kind.name} (ball)` : kind.name, kind.ball ? pageColour(kind.name) : kind.colour]);
   return [el("div", {}, label), keys([["none", PLAIN], ...found])];
 }
 

@@ -1,6 +1,8 @@
 // The page: reads the data, and lays out one run, or two side by side.
 
 const GOOD = ["aligned", "single"];
+/** Kinds after which no more is wound. */
+const ENDS = new Set(["break", "collision", "runaway"]);
 const BAD = DEFECTS.map((kind) => kind.name);
 
 /** What the parts of the page need of a run. */
@@ -93,7 +95,8 @@ class Run {
 function head(run) {
   const s = run.summary;
   const kind = GOOD.includes(s.verdict) ? "good" : s.verdict === "marginal" ? "fair" : BAD.includes(s.verdict) ? "bad" : "";
-  const status = { done: "wound to its end", interrupted: "interrupted", failed: s.reasons ? "failed before its planned end" : `failed: ${s.reason}` }[s.status] ?? s.status;
+  const end = run.defects.find((defect) => ENDS.has(defect.kind));
+  const status = { done: end ? `winding ended with a ${end.kind}` : "wound to its end", interrupted: "interrupted", failed: s.reasons ? "failed before its planned end" : `failed: ${s.reason}` }[s.status] ?? s.status;
   const rpm = (s.speed_rad_per_s * 30) / Math.PI;
   const meta = [status, `${fixed(s.turns_wound, 2)} turns wound, ${fixed(s.turns_settled, 2)} at rest`,
     `${duration(s.simulated_s)} simulated`, `${digits(s.speed_rad_per_s)} rad/s (${Math.round(rpm)} rpm) at the end`, `folder ${run.name}`];
@@ -175,7 +178,7 @@ function layOut(run) {
     run.view ? run.view.card() : nothing("Coil", noWire),
     el("div", { class: "two" }, defects(run), trust(run)),
     curves.length ? el("div", { class: "two" }, ...curves) : nothing("Tension and torque", "history.csv is missing."),
-    defectMap(run) ?? nothing("Defect map", "No wire has come to rest."),
+    defectMap(run) ?? nothing("Defect map", run.stations ? "No wire has come to rest." : "stations.csv is missing."),
     crossSection(run) ?? nothing("Cross-section", noWire));
 }
 

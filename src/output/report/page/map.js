@@ -4,7 +4,8 @@
 function defectMap(run) {
   const stations = run.stations;
   if (!stations || stations.arc.length === 0) return null;
-  const turns = Math.ceil(stations.arc.length / STATIONS);
+  // (a defect may lie in wire that has not come to rest)
+  const turns = Math.max(Math.ceil(stations.arc.length / STATIONS), ...run.defects.map((defect) => defect.turn));
   const left = 44, bottom = 40, top = 6, right = 14;
   const row = Math.min(30, Math.max(3, 420 / turns));
   const measure = (key, of = stations) => {
@@ -67,14 +68,16 @@ function defectMap(run) {
     const angle = Math.floor(((event.offsetX - left) / (board.clientWidth - left - right)) * STATIONS);
     const turn = Math.floor((event.offsetY - top) / row);
     const index = turn * STATIONS + angle;
-    return angle >= 0 && angle < STATIONS && turn >= 0 && index < values.length ? { angle, turn, index } : null;
+    return angle >= 0 && angle < STATIONS && turn >= 0 && turn < turns ? { angle, turn, index } : null;
   };
   board.addEventListener("mousemove", (event) => {
     const at = under(event);
     tip.hidden = !at;
     if (!at) return;
-    const parts = [`turn ${at.turn + 1}, ${at.angle}°`, `gap ${mm(stations.gap[at.index])}`,
-      `height ${mm(stations.bulge[at.index])}`, `layer ${stations.layer[at.index]}`];
+    const parts = [`turn ${at.turn + 1}, ${at.angle}°`];
+    if (at.index < values.length) {
+      parts.push(`gap ${mm(stations.gap[at.index])}`, `height ${mm(stations.bulge[at.index])}`, `layer ${stations.layer[at.index]}`);
+    } else parts.push("not at rest");
     tip.textContent = parts.join("  ·  ");
     tip.style.left = `${Math.max(0, Math.min(event.offsetX + 12, board.clientWidth - tip.offsetWidth))}px`;
     tip.style.top = `${event.offsetY + 16}px`;

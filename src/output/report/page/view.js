@@ -70,7 +70,7 @@ class View {
 
   /** A ball at a defect that marks no wire. */
   ball(defect) {
-    const ball = new Vendor.Mesh(BALL, new Vendor.MeshLambertMaterial({ color: defectOf(defect.kind).colour }));
+    const ball = new Vendor.Mesh(BALL, new Vendor.MeshLambertMaterial({ color: lineColour(defect.kind) }));
     ball.position.set(...defect.place_m).multiplyScalar(SCALE);
     ball.scale.setScalar(0.9 * this.run.diameter * SCALE);
     ball.defect = defect;
@@ -136,6 +136,7 @@ class View {
   theme() {
     this.scene.background = new Vendor.Color(css("--view"));
     this.mark.material.color.set(css("--accent"));
+    for (const ball of this.balls) ball.material.color.set(lineColour(ball.defect.kind));
     this.core?.material.color.set(css("--core"));
     this.draw();
   }
@@ -241,10 +242,14 @@ class View {
 
   slider() {
     const frames = this.run.frames;
-    const last = frames.length - 1;
+    const times = frames.map((frame) => frame.time);
+    // A run that failed or was stopped ends after its last frame: the wire there is that of the coil.
+    const end = this.run.summary.simulated_s;
+    if (end > times[frames.length - 1] * (1 + SAME)) times.push(end);
+    const last = times.length - 1;
     const output = el("output", {});
     const name = (frame) => {
-      const time = frames[frame].time;
+      const time = times[frame];
       const turns = this.run.turnsAt(time);
       output.textContent = `${duration(time)}${turns == null ? "" : `, ${turns.toFixed(2)} turns`}`;
     };
@@ -255,7 +260,7 @@ class View {
     const set = (frame) => {
       input.value = frame;
       name(frame);
-      this.show(frame);
+      this.show(frame < frames.length ? frame : null);
     };
     let timer = null;
     const play = el("button", {
@@ -264,7 +269,7 @@ class View {
         if (timer) return halt();
         if (Number(input.value) === last) set(0);
         play.textContent = "Pause";
-        timer = setInterval(() => (Number(input.value) < last ? set(Number(input.value) + 1) : halt()), Math.max(60, 6000 / frames.length));
+        timer = setInterval(() => (Number(input.value) < last ? set(Number(input.value) + 1) : halt()), Math.max(60, 6000 / times.length));
       },
     }, "Play");
     const halt = () => {
