@@ -159,7 +159,7 @@ def write_table(scenes, results, total):
         wrong = complaints(scene, found)
         rows.append([scene.name, scene.made, scene.core, scene.layers, f"{scene.speed:g}", label,
                      found.in_words(), "; ".join(wrong) or "yes"])
-    tables.write(tables.TABLES, "labelled", "scripts/labelled.py --refined 76 --write",
+    tables.write(tables.TABLES, "labelled", "scripts/labelled.py --refined 88 --write",
                  "Scenes with a known defect", total + ".", tables.table(head, rows))
 
 

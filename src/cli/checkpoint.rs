@@ -141,6 +141,7 @@ impl Checkpoint {
             let has = |name: &str| directory.join(name).exists();
             resume(match (has("summary.json"), has("scene.toml")) {
                 (true, _) => "the run has ended; wind it again with --force, or look at it with coilwind report".to_owned(),
+                _ if has("1/summary.json") => "the ensemble has ended; wind it again with --force, or look at a member with coilwind report".to_owned(),
                 (_, true) => format!("{FILE} is missing; {}", begin_again(directory)),
                 _ => format!(
                     "there is no run that could go on ({FILE} is missing); begin one with: coilwind run SCENE --out {}",

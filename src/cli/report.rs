@@ -40,7 +40,10 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
     write_report(&directories, &page).map_err(what_would_do)?;
     for directory in &directories {
         for name in missing_files(directory) {
-            eprintln!("warning: {} is missing, and the page goes without it", directory.join(name).display());
+            eprintln!(
+                "warning: {} is missing, and the page goes without it",
+                directory.join(name).display()
+            );
         }
     }
     print(&format!("report: {}\n", page.display()))

@@ -57,7 +57,9 @@ mod tests {
     fn what_is_not_there_is_named() {
         let folder = tempfile::tempdir().expect("a folder");
         let put = |name: &str| fs::write(folder.path().join(name), "").expect("a file");
-        ["history.csv", "stations.csv"].map(put);
+        ["history.csv", "stations.csv"]
+            .iter()
+            .for_each(|name| put(name));
         assert!(missing_files(folder.path()).is_empty(), "no geometry");
         put("coil.vtp");
         assert_eq!(missing_files(folder.path()), ["core.vtp"]);

@@ -17,9 +17,9 @@ function charts(run) {
   const marks = run.defects.map((d) => [HAPPENS.has(d.kind) ? when(d) : laid(d), d.kind]).filter(([at]) => at != null);
   const plain = (array, scale = 1) => Array.from(array, (value) => scale * value);
   const go = forward ? (turn) => run.goTo(turn) : () => {};
-  const happened = marks.some(([, kind]) => HAPPENS.has(kind));
+  const happened = [...HAPPENS].filter((kind) => marks.some(([, marked]) => marked === kind));
   const lying = marks.some(([, kind]) => !HAPPENS.has(kind)) ? "defects, where they lie on the wire" : null;
-  const words = [lying, happened ? `${[...HAPPENS].join(", ")}, when they happened` : null].filter(Boolean);
+  const words = [lying, happened.length ? `${happened.join(", ")}, at the instant of it` : null].filter(Boolean);
   const note = words.length ? `Dashed: ${words.join("; ")}.` : null;
   const torque = plain(history.torque, 1e3);
   return [
