@@ -8,6 +8,9 @@ use std::sync::Arc;
 /// Chosen: a turn, and the quarter in which wire follows from one place to the next.
 const HUNG_BACK: f64 = 1.25 * TAU;
 
+/// A pass of less wire than this, rad, is no layer. Chosen: layers may be a turn long, of which a crossover takes a part.
+const SHORTEST: f64 = 0.75 * TAU;
+
 /// A pass: wire laid while the nozzle went one way along y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Pass {
@@ -96,6 +99,16 @@ impl Passes {
             found = pass;
         }
         (number.max(1), found)
+    }
+
+    /// How many layers begin after one winding angle and up to another, rad: passes that follow one which filled a layer.
+    pub(crate) fn layers_begun(&self, after: f64, until: f64) -> u32 {
+        let (mut before, mut count) = (0.0, 0);
+        for pass in self.judged().skip(1).take_while(|p| p.from <= until) {
+            count += u32::from(pass.from > after && pass.from - before >= SHORTEST);
+            before = pass.from;
+        }
+        count
     }
 
     /// The passes without those in which the nozzle hung back.

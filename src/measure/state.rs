@@ -199,11 +199,10 @@ impl Coil {
     }
 
     /// Layer of wire that need not have settled, at this winding angle, rad: that of the last settled wire, and one more for each
-    /// time that the nozzle has turned since.
+    /// layer that the nozzle has begun since.
     pub(crate) fn layer_at(&self, angle: f64) -> u32 {
         let settled = self.end_angle().map_or(0.0, |(angle, _)| angle);
-        let pass = |angle: f64| self.passes.at(angle).0;
-        self.layer() + pass(angle.max(settled)) - pass(settled)
+        self.layer() + self.passes.layers_begun(settled, angle)
     }
 
     /// Extent of the settled wire along y with its thickness, m.

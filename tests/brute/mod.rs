@@ -18,21 +18,34 @@ pub struct Minimum {
     pub normal: V3,
 }
 
-/// The wire's quadratic spline at `t`, segment plus share; straight halves at both ends.
-pub fn on_wire(q: &[V3], t: f64) -> V3 {
+/// The three points that shape the wire at `t`, segment plus share, and the share.
+fn shaped_by(q: &[V3], t: f64) -> ([V3; 3], f64) {
     let last = q.len() - 1;
     let k = (t.floor() as usize).min(last);
-    let s = t - k as f64;
     let before = if k == 0 { q[0] * 2.0 - q[1] } else { q[k - 1] };
     let after = if k == last {
         q[last] * 2.0 - q[last - 1]
     } else {
         q[k + 1]
     };
-    before * (0.5 * (1.0 - s) * (1.0 - s)) + q[k] * (0.5 + s - s * s) + after * (0.5 * s * s)
+    ([before, q[k], after], t - k as f64)
 }
 
-/// All local minima nearer than `reach`, both ends of the wire included: samples, then thirds.
+/// The wire's quadratic spline at `t`, segment plus share; straight halves at both ends.
+pub fn on_wire(q: &[V3], t: f64) -> V3 {
+    let ([before, here, after], s) = shaped_by(q, t);
+    before * (0.5 * (1.0 - s) * (1.0 - s)) + here * (0.5 + s - s * s) + after * (0.5 * s * s)
+}
+
+/// Its derivative by `t`.
+fn along_wire(q: &[V3], t: f64) -> V3 {
+    let ([before, here, after], s) = shaped_by(q, t);
+    before * (s - 1.0) + here * (1.0 - 2.0 * s) + after * s
+}
+
+/// All local minima nearer than `reach`, both ends of the wire included: samples, then halves where the slope changes its sign,
+/// else thirds. Thirds find a minimum no better than to the root of rounding: by 0.05 nm wrong, which the push of wire that lay
+/// 0.4 diameters deep in a bend showed.
 pub fn minima(q: &[V3], p: V3, reach: f64) -> Vec<Minimum> {
     let first = SAMPLES / 2;
     let last = (q.len() - 1) * SAMPLES + SAMPLES / 2;
@@ -54,7 +67,17 @@ pub fn minima(q: &[V3], p: V3, reach: f64) -> Vec<Minimum> {
                 continue;
             }
             let (mut a, mut b) = (at(i.max(first + 1) - 1), at((i + 1).min(last)));
+            let slope = |t: f64| (on_wire(q, t) - p).dot(&along_wire(q, t));
+            let turns = slope(a) < 0.0 && slope(b) > 0.0;
             for _ in 0..80 {
+                if turns {
+                    let middle = 0.5 * (a + b);
+                    match slope(middle) < 0.0 {
+                        true => a = middle,
+                        false => b = middle,
+                    }
+                    continue;
+                }
                 let (c, d) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
                 if distance(c) <= distance(d) {
                     b = d;
