@@ -86,7 +86,7 @@ impl Simulation {
         let nozzle = self.inputs().nozzle_position;
         let given = Given::new(self.time(), inputs, rates, dt, nozzle);
         let before = self.talk.travel.replace((given.rates.nozzle_position, dt));
-        let told = *self.outputs();
+        let (told, told_tension) = (*self.outputs(), self.told_tension());
         if self.goes_on_as(&given) {
             self.talk.wait = self.talk.wait.saturating_sub(1);
         } else {
@@ -95,7 +95,9 @@ impl Simulation {
         if self.talk.wait > 0 {
             return self.step_to_the_point(|winding| {
                 winding.advance_ramped(inputs, rates, dt)?;
-                winding.run.outputs.meet_tension(told.wire_tension);
+                if let Some(told) = told_tension {
+                    winding.run.outputs.meet_tension(told);
+                }
                 let both = [&told, &winding.run.outputs];
                 winding.run.rates = rates_of(winding, both, dt, winding.inputs().spindle_speed);
                 Ok(())
@@ -182,15 +184,22 @@ impl Simulation {
         &mut self,
         step: impl FnOnce(&mut Winding) -> Result<(), SimError>,
     ) -> Result<(), SimError> {
-        // (between steps of the method, what was told is not what the winding has there)
-        let told = self.outputs().wire_tension;
+        let told = self.told_tension();
         self.settle()?;
         let winding = self.pool.own(&mut self.now);
         winding.run.events.clear();
         let gone = step(winding);
-        winding.run.outputs.meet_tension(told);
+        if let Some(told) = told {
+            winding.run.outputs.meet_tension(told);
+        }
         self.talk.events.append(&mut winding.run.events);
         gone
+    }
+
+    /// The tension that was told at the last communication point, N, an end of the next step: between steps of the method it is not
+    /// what the winding has there. `None` once wire has parted.
+    fn told_tension(&self) -> Option<f64> {
+        (!self.now.run.over).then_some(self.outputs().wire_tension)
     }
 
     /// Whether steps need not end at communication points, as far as inputs do not matter.
@@ -281,7 +290,9 @@ impl Simulation {
     ) -> Result<(), SimError> {
         let mut served = self.talk.served.unwrap_or_else(|| Served::at(&self.now));
         served.begin(dt, &self.now);
-        served.outputs.meet_tension(told.wire_tension);
+        if !self.now.run.over {
+            served.outputs.meet_tension(told.wire_tension);
+        }
         let point = served.time;
         let near = ROUNDING * point;
         loop {
