@@ -60,8 +60,7 @@ NEAR = 0.99
 SETTLED = 0.8
 # Measured and computed levels that differ by more than this factor are of other units.
 FOREIGN = 8.0
-# Of the turns of the run: over less a curve is told, and over so much less it must be in another unit of the angle (a radian taken
-# for a degree is 1/57).
+# Shares of the run's turns: a curve over less than the first is told of, over less than the second its angle has another unit (1/57).
 SHORT, FOREIGN_ANGLE = 0.25, 0.04
 # Measured values that each parameter takes, so that noise can be told from a fit.
 LEAST = 5
@@ -321,8 +320,7 @@ def calibrate(fit):
     model, parameters = fit.model, len(fit.starts)
     start = fit.computed([np.zeros(parameters)])[0]
     check_levels(model.curves, start)
-    points = sum(curve.angle.size for curve in model.curves)
-    if points < LEAST * parameters:
+    if (points := sum(curve.angle.size for curve in model.curves)) < LEAST * parameters:
         raise too_few(points, parameters)
     for curve in model.curves:
         curve.sigma = np.std(curve.values) or 1.0
