@@ -3,7 +3,7 @@
 mod common;
 
 use coilwind::scene::Scene;
-use coilwind::settings::SceneSettings;
+use coilwind::settings::{NozzleFollows, SceneSettings};
 use coilwind::signals::Inputs;
 use coilwind::simulation::Simulation;
 use common::fig8;
@@ -147,4 +147,31 @@ fn the_input_of_the_nozzle_counts_where_no_law_is_asked_for() {
     };
     run.advance(to, 1e-3).expect("goes on");
     assert_eq!(run.inputs().nozzle_position, 1e-3);
+}
+
+/// The flange that the scene's own law would reach was told of runs in which that law moves nothing, and refused their start.
+#[test]
+fn a_law_that_nothing_follows_is_not_judged() {
+    let told = |follows, name: &str, value: f64| {
+        let mut settings = SceneSettings::load("tooth").expect("packed");
+        settings
+            .set_text(name, &value.to_string())
+            .expect("a value");
+        match settings.build_for(follows) {
+            Ok((_, warnings)) => warnings
+                .iter()
+                .map(|w| format!("{} {}", w.key, w.message))
+                .collect(),
+            Err(error) => error.to_string(),
+        }
+    };
+    let past = told(NozzleFollows::Law, "nozzle.y_start", -11e-3);
+    assert!(past.contains("past a flange"), "{past}");
+    let told = [("nozzle.y_start", -11e-3), ("traverse.per_turn", 8e-4)]
+        .map(|(name, value)| told(NozzleFollows::Input, name, value));
+    assert!(told[0].starts_with("start.clamp_y"), "{told:?}");
+    assert_eq!(
+        told[1],
+        "traverse.per_turn has no effect: the nozzle follows its input; set traverse.mode = by-angle"
+    );
 }

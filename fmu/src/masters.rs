@@ -484,6 +484,22 @@ fn the_nozzle_follows_a_law_where_the_importer_asks_for_one() {
     assert!(helical > at && told >= 1, "{helical} {told}");
 }
 
+/// The scene's own way, whose layers fill the window, refused the start of a nozzle that does not follow it.
+#[test]
+fn a_nozzle_that_follows_its_input_starts_anywhere() {
+    let (_, messages) = started(0.0, |i| {
+        set_text(i, "scene.file", "tooth");
+        for name in ["nozzle.y_start", "start.clamp_y"] {
+            set(i, name, 2e-3);
+        }
+    });
+    let told = warnings(&messages);
+    assert!(
+        told.iter().all(|text| text.contains("was set and holds")),
+        "{told:?}"
+    );
+}
+
 /// Importers that set no texts choose by number; a number wins over the text, and 0 leaves it.
 #[test]
 fn a_choice_can_be_made_by_its_number() {

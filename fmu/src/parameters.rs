@@ -307,7 +307,7 @@ impl Parameters {
     ///
     /// [`Error::Scene`] if the parameters do not make a valid scene.
     pub(crate) fn scene(&self) -> Result<(Scene, Vec<Warning>), Error> {
-        let built = self.settings.build_with_warnings();
+        let built = self.settings.build_for(self.settings.nozzle_follows());
         Ok(built.map_err(Self::by_the_fmu)?)
     }
 

@@ -3,8 +3,9 @@
 use super::failure::Failure;
 use super::signals::{Grid, Signals};
 use coilwind::scene::Scene;
+use coilwind::settings::{NozzleFollows, SceneSettings};
 use coilwind::signals::Inputs;
-use coilwind::simulation::{SimError, Simulation};
+use coilwind::simulation::{MotionProfile, SimError, Simulation};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -15,6 +16,16 @@ pub(super) struct Motion {
     pub(super) inputs: Option<(PathBuf, f64)>,
     /// simulated time at which to stop, s
     pub(super) stop_time: Option<f64>,
+}
+
+impl Motion {
+    /// What the nozzle follows: in a run of the scene's own motion, its law.
+    pub(super) fn nozzle_follows(&self, settings: &SceneSettings) -> NozzleFollows {
+        match self.inputs {
+            Some(_) => settings.nozzle_follows(),
+            None => NozzleFollows::Law,
+        }
+    }
 }
 
 /// How far a drive is.
@@ -50,13 +61,14 @@ pub(super) enum Drive {
 }
 
 impl Drive {
+    /// The drive of a scene; of sampled inputs, the nozzle's is not among them where it follows the scene's law.
     pub(super) fn new(
         motion: &Motion,
         scene: &Scene,
-        simulation: &Simulation,
+        follows: NozzleFollows,
     ) -> Result<Self, Failure> {
         let Some((path, step)) = &motion.inputs else {
-            let end = simulation.motion_profile().end();
+            let end = MotionProfile::new(scene).end();
             let end = motion.stop_time.map_or(end, |stop| stop.min(end));
             return Ok(Self::MotionProfile {
                 interval: scene.output.history_interval,
@@ -65,14 +77,14 @@ impl Drive {
             });
         };
         let signals = Signals::read(path)?;
-        if simulation.nozzle_follows_law() && signals.has("nozzle_position") {
+        if follows == NozzleFollows::Law && signals.has("nozzle_position") {
             return Err(twice(path));
         }
         let end = motion.stop_time.unwrap_or(signals.end());
         if end <= 0.0 {
             return Err(no_duration(path));
         }
-        let held = signals.before(0.0, simulation.inputs());
+        let held = signals.before(0.0, scene.start_inputs());
         Ok(Self::Signals {
             held,
             grid: Grid::new(*step, end),

@@ -46,7 +46,9 @@ enum Member {
 /// have ended.
 pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     let name = args.scene.as_deref().unwrap_or_default();
-    let (settings, _, warnings) = SceneSettings::load_and_build(name, &args.set)?;
+    let motion = args.motion();
+    let follows = |settings: &SceneSettings| motion.nozzle_follows(settings);
+    let (settings, _, warnings) = SceneSettings::load_and_build(name, &args.set, follows)?;
     if !args.quiet {
         warnings.iter().for_each(|w| eprintln!("warning: {w}"));
     }
@@ -57,7 +59,7 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     for member in 1..=count {
         let mut one = quiet(args);
         one.set.extend(members::setting(&settings, member, count));
-        SceneSettings::load_and_build(name, &one.set)?;
+        SceneSettings::load_and_build(name, &one.set, follows)?;
         let out = directory.join(member.to_string());
         folder::refuse_occupied(&out, args.force)?;
         one.out = Some(out);
@@ -65,7 +67,7 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     }
     let geometry = !args.no_geometry;
     let ensemble = Ensemble {
-        plan: Plan::new(&settings, &args.motion(), args.frames, geometry)?,
+        plan: Plan::new(&settings, &motion, args.frames, geometry)?,
         members: count,
         no_report: args.no_report,
     };

@@ -13,7 +13,7 @@ use clap::builder::NonEmptyStringValueParser;
 use coilwind::measure::{Defect, DefectKind, Verdict};
 use coilwind::output::{Ending, History, Mark, OutputError, Snapshot, write_report, write_results};
 use coilwind::scene::{Scene, assignment};
-use coilwind::settings::SceneSettings;
+use coilwind::settings::{NozzleFollows, SceneSettings};
 use coilwind::simulation::{SimError, Simulation};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -259,12 +259,15 @@ fn stuck(failure: Failure, directory: &Path) -> Failure {
 /// A new run.
 fn begin(args: &RunArgs) -> Result<Start, Failure> {
     let name = args.scene.as_deref().unwrap_or_default();
+    let motion = args.motion();
     let (settings, scene, warnings) = match args.settings.as_deref().cloned() {
         Some(settings) => {
-            let (scene, warnings) = settings.build_with_warnings()?;
+            let (scene, warnings) = settings.build_for(motion.nozzle_follows(&settings))?;
             (settings, scene, warnings)
         }
-        None => SceneSettings::load_and_build(name, &args.set)?,
+        None => SceneSettings::load_and_build(name, &args.set, |settings| {
+            motion.nozzle_follows(settings)
+        })?,
     };
     if !args.quiet {
         warnings
@@ -275,17 +278,18 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
         scene: name.to_owned(),
         reason,
     };
-    let motion = args.motion();
-    let by_law = motion.inputs.is_some() && settings.nozzle_follows_law();
-    let simulation = match by_law {
-        true => Simulation::starting_by_law(&scene, settings.start_inputs()),
-        false => Simulation::new(&scene),
+    let follows = motion.nozzle_follows(&settings);
+    let drive = Drive::new(&motion, &scene, follows)?;
+    let simulation = match (&drive, follows) {
+        (Drive::MotionProfile { .. }, _) => Simulation::new(&scene),
+        (Drive::Signals { held, .. }, NozzleFollows::Law) => {
+            Simulation::starting_by_law(&scene, *held)
+        }
+        (Drive::Signals { held, .. }, NozzleFollows::Input) => {
+            Simulation::starting_with(&scene, *held)
+        }
     };
     let mut simulation = simulation.map_err(start_failure)?;
-    let drive = Drive::new(&motion, &scene, &simulation)?;
-    if let Drive::Signals { held, .. } = &drive {
-        simulation.set_start(*held).map_err(start_failure)?;
-    }
     simulation.step_beyond(reaches_beyond(&motion, &scene));
     let directory = args.directory(&settings);
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
@@ -323,11 +327,12 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let checkpoint = Checkpoint::read(directory)?;
     let plan = checkpoint.plan;
     plan.check_inputs()?;
-    let (scene, _): (Scene, _) = plan.settings.build_with_warnings()?;
+    let follows = plan.motion.nozzle_follows(&plan.settings);
+    let (scene, _): (Scene, _) = plan.settings.build_for(follows)?;
     let mut simulation = Simulation::from_bytes(&scene, &checkpoint.state)
         .map_err(|error| refuse(format!("{error}; begin again with --force")))?;
     simulation.step_beyond(reaches_beyond(&plan.motion, &scene));
-    let mut drive = Drive::new(&plan.motion, &scene, &simulation)?;
+    let mut drive = Drive::new(&plan.motion, &scene, follows)?;
     if !drive.go_on(checkpoint.place) {
         return Err(refuse(
             "the checkpoint contradicts itself; begin again with --force".to_owned(),

@@ -3,7 +3,7 @@
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
 use coilwind::scene::{Scene, SceneError, Warning, assignment};
-use coilwind::settings::SceneSettings;
+use coilwind::settings::{NozzleFollows, SceneSettings};
 
 /// A scene and what to change in it.
 #[derive(Args, Debug)]
@@ -19,6 +19,6 @@ pub(super) struct SceneArgs {
 impl SceneArgs {
     /// Defaults, then the scene, then every `--set` in its order; and the scene that this makes.
     pub(super) fn build(&self) -> Result<(SceneSettings, Scene, Vec<Warning>), SceneError> {
-        SceneSettings::load_and_build(&self.scene, &self.set)
+        SceneSettings::load_and_build(&self.scene, &self.set, |_| NozzleFollows::Law)
     }
 }

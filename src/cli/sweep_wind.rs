@@ -4,7 +4,7 @@ use super::drive::{Drive, Motion};
 use super::failure::Failure;
 use super::sweep_row::Row;
 use coilwind::measure::{DefectKind, UNJUDGED};
-use coilwind::settings::SceneSettings;
+use coilwind::settings::{NozzleFollows, SceneSettings};
 use coilwind::simulation::{SimError, Simulation};
 use cpu_time::ThreadTime;
 use std::sync::Arc;
@@ -30,7 +30,7 @@ pub(super) fn wind(
                 inputs: None,
                 stop_time: None,
             };
-            let mut drive = Drive::new(&motion, &scene, &simulation)?;
+            let mut drive = Drive::new(&motion, &scene, NozzleFollows::Law)?;
             let mut tension = simulation.outputs().wire_tension;
             let mut extremes = (tension, tension);
             let failed = loop {

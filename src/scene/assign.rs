@@ -5,7 +5,7 @@ use super::error::Warning;
 use super::key::{Key, resolve};
 use super::problems::Problems;
 use super::{Scene, SceneError};
-use crate::settings::{Origin, SceneSettings};
+use crate::settings::{NozzleFollows, Origin, SceneSettings};
 use crate::variables::{Access, Kind, Value, Variable, by_name, parse_scaled, scaled, table};
 
 impl SceneSettings {
@@ -29,7 +29,7 @@ impl SceneSettings {
     }
 
     /// Sets leaves by name from texts, as [`set_text`](Self::set_text) does, then builds the scene; tells all that is
-    /// wrong at once.
+    /// wrong at once. The nozzle of the run follows what `follows` says of them.
     ///
     /// # Errors
     ///
@@ -38,6 +38,7 @@ impl SceneSettings {
     pub fn load_and_build(
         name_or_path: &str,
         set: &[(String, String)],
+        follows: impl Fn(&Self) -> NozzleFollows,
     ) -> Result<(Self, Scene, Vec<Warning>), SceneError> {
         let mut problems = Problems::default();
         let (mut settings, found) = Self::load_with(name_or_path)?;
@@ -45,7 +46,7 @@ impl SceneSettings {
         for (name, text) in set {
             problems.note(settings.set_text(name, text));
         }
-        let built = problems.note(settings.build_with_warnings());
+        let built = problems.note(settings.build_for(follows(&settings)));
         let (scene, warnings) = problems.finish_with(built)?;
         Ok((settings, scene, warnings))
     }

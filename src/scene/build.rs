@@ -12,7 +12,7 @@ use super::{
 use crate::geometry::Room;
 use crate::geometry::stl::{self, StlError};
 use crate::rod::Twist;
-use crate::settings::{SceneSettings, SolverSettings, Spindle};
+use crate::settings::{NozzleFollows, SceneSettings, SolverSettings, Spindle};
 use std::path::{Path, PathBuf};
 
 /// Node spacing near the core that goes with a tolerance, m, for wire of `diameter`, m: 0.3 mm to 2e-6 m for 0.7 mm.
@@ -57,6 +57,15 @@ impl SceneSettings {
     ///
     /// Those of [`build`](Self::build).
     pub fn build_with_warnings(&self) -> Result<(Scene, Vec<Warning>), SceneError> {
+        self.build_for(NozzleFollows::Law)
+    }
+
+    /// The same for a run whose nozzle follows that.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`build`](Self::build). Where the scene's own law would send the nozzle is no error where it follows an input.
+    pub fn build_for(&self, follows: NozzleFollows) -> Result<(Scene, Vec<Warning>), SceneError> {
         self.check_ranges()?;
         let mut problems = Problems::default();
         let wire = problems.note(section(self));
@@ -66,9 +75,13 @@ impl SceneSettings {
         let wire = wire.map(|wire| wire.section);
         let core = self.core(&mut problems);
         let core = problems.note(core);
-        let law = core
-            .as_ref()
-            .and_then(|(_, extent)| self.nozzle_law(wire.as_ref(), extent, &mut problems));
+        let mut way = Problems::default();
+        let law = core.as_ref().and_then(|(_, extent)| {
+            self.nozzle_law(wire.as_ref(), extent, (&mut problems, &mut way))
+        });
+        if follows == NozzleFollows::Law {
+            problems.append(way);
+        }
         self.check_motion_and_friction(law.as_ref(), &mut problems);
         if let (Some(wire), Some((_, extent))) = (&wire, &core) {
             self.check_core(wire, extent, &mut problems);
@@ -114,7 +127,13 @@ impl SceneSettings {
         self.check_spacing(&solver, &wire, &extent, &mut problems);
         self.check_stiffness(&core, &wire, &mut problems);
         let window = self.window(extent.window, &mut problems);
-        let mut warnings = self.warnings(&solver, &wire, &core, (&extent, window), &nozzle_law);
+        let mut warnings = self.warnings(
+            &solver,
+            &wire,
+            &core,
+            (&extent, window),
+            (&nozzle_law, follows),
+        );
         warnings.extend(laws.and_then(|laws| self.rough_laws(&laws)));
         warnings.extend(self.yielding_exit(&wire, &extent));
 

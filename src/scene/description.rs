@@ -7,6 +7,7 @@ use crate::rod::{RoundLaws, Section, Twist};
 use crate::settings::{
     Contact, Freeze, Friction, Nozzle, Output, Spindle, Start, Tensioner, Traverse, Winding,
 };
+use crate::signals::Inputs;
 use std::path::PathBuf;
 
 /// The description of a run, which does not change while it runs.
@@ -59,6 +60,18 @@ pub struct Scene {
     pub defects: DefectLimits,
     /// what is recorded
     pub output: Output,
+}
+
+impl Scene {
+    /// Inputs before the first step: core at rest, nozzle where its law begins, set tension.
+    pub fn start_inputs(&self) -> Inputs {
+        Inputs {
+            spindle_speed: 0.0,
+            nozzle_position: self.nozzle_law.start(),
+            tension_setpoint: self.tensioner.tension,
+            ..Inputs::HELD
+        }
+    }
 }
 
 /// Solver set-up.

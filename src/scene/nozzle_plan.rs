@@ -102,12 +102,13 @@ impl SceneSettings {
         matches!(self.traverse.mode.as_str(), "orthocyclic" | "helical")
     }
 
-    /// The nozzle's way, and what is wrong with it; of a nozzle that leads this `wire`, where there is one.
+    /// The nozzle's way; of a nozzle that leads this `wire`, where there is one. Of what is wrong, the second `problems` are those
+    /// of where it goes.
     pub(super) fn nozzle_law(
         &self,
         wire: Option<&Section>,
         extent: &Extent,
-        problems: &mut Problems,
+        (problems, of_way): (&mut Problems, &mut Problems),
     ) -> Option<NozzleLaw> {
         let t = &self.traverse;
         let diameter = self.wire.outer_diameter();
@@ -124,7 +125,7 @@ impl SceneSettings {
                 let places = self.orthocyclic(&layers);
                 if self.leads_trail() {
                     // the wire stays in the window, the nozzle swings past its places
-                    self.check_way(&places, diameter, extent, problems);
+                    self.check_way(&places, diameter, extent, of_way);
                     let led = problems.note(self.led(&layers, wire?, extent))?;
                     return Some(self.for_run(led));
                 }
@@ -142,7 +143,7 @@ impl SceneSettings {
             }
         };
         // The places of all turns, also those that a nozzle ahead of them leaves out.
-        self.check_way(&law, diameter, extent, problems);
+        self.check_way(&law, diameter, extent, of_way);
         Some(self.for_run(law))
     }
 

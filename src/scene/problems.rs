@@ -16,6 +16,11 @@ impl Problems {
         }
     }
 
+    /// Adds all of `others`.
+    pub(super) fn append(&mut self, others: Self) {
+        others.0.into_iter().for_each(|error| self.add(error));
+    }
+
     /// The value, if there is one; otherwise its error is added.
     pub(super) fn note<T>(&mut self, result: Result<T, SceneError>) -> Option<T> {
         result.map_err(|error| self.add(error)).ok()

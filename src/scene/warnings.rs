@@ -5,7 +5,7 @@ use super::extent::Extent;
 use super::impossible::si;
 use super::{Core, Integrator, NozzleLaw, Solver, Window};
 use crate::rod::{RoundLaws, Section, Twist};
-use crate::settings::SceneSettings;
+use crate::settings::{NozzleFollows, Origin, SceneSettings};
 
 /// Keys that only some values of a choice read: of the shape of the core, or of how the nozzle moves.
 struct KeysOf {
@@ -33,6 +33,7 @@ const ROUGH: f64 = 15.0;
 
 const SHAPE: &str = "core.shape";
 const MODE: &str = "traverse.mode";
+const PER_TURN: &str = "traverse.per_turn";
 
 /// All keys that depend on a choice.
 const KEYS_OF_CHOICES: [KeysOf; 11] = [
@@ -48,7 +49,7 @@ const KEYS_OF_CHOICES: [KeysOf; 11] = [
         &["core.length_y", "core.insulation"],
     ),
     keys_of(SHAPE, &["mesh"], &["core.file", "core.unit"]),
-    keys_of(MODE, &["by-input", "by-angle"], &["traverse.per_turn"]),
+    keys_of(MODE, &["by-input", "by-angle"], &[PER_TURN]),
     keys_of(
         MODE,
         &["orthocyclic"],
@@ -108,7 +109,7 @@ impl SceneSettings {
         let key = match self.traverse.mode.as_str() {
             "table" => "traverse.file",
             _ if self.traverse.lead != 0.0 => "traverse.lead",
-            "by-angle" if self.nozzle.y_start != farthest => "traverse.per_turn",
+            "by-angle" if self.nozzle.y_start != farthest => PER_TURN,
             _ => "nozzle.y_start",
         };
         let message = format!(
@@ -127,9 +128,10 @@ impl SceneSettings {
         wire: &Section,
         core: &Core,
         (extent, window): (&Extent, Option<Window>),
-        law: &NozzleLaw,
+        (law, follows): (&NozzleLaw, NozzleFollows),
     ) -> Vec<Warning> {
-        let mut warnings = self.keys_without_effect();
+        let by_law = follows == NozzleFollows::Law;
+        let mut warnings = self.keys_without_effect(follows);
         let mut warn = |key: &'static str, message: String| {
             let (origin, value) = (self.told_origin(key), self.shown(key));
             warnings.push(Warning {
@@ -152,9 +154,10 @@ impl SceneSettings {
             );
         }
         let last = law.position(law.end());
-        if self.traverse.mode == "by-angle" && beside(last) && !beside(self.nozzle.y_start) {
+        let by_angle = by_law && self.traverse.mode == "by-angle";
+        if by_angle && beside(last) && !beside(self.nozzle.y_start) {
             let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
-            warn("traverse.per_turn", message);
+            warn(PER_TURN, message);
         }
         let table = self.traverse.mode == "table";
         if self.winds_layers() || table {
@@ -212,7 +215,7 @@ impl SceneSettings {
             );
             warn(key, message);
         }
-        if let Some((key, message)) = self.nozzle_past_a_flange(wire, extent, law) {
+        if by_law && let Some((key, message)) = self.nozzle_past_a_flange(wire, extent, law) {
             warn(key, message);
         }
         let first = self.nozzle.y_start;
@@ -291,7 +294,8 @@ impl SceneSettings {
 
     /// Keys that were given for another choice. The scene that a run keeps has the keys of every choice; there the default says
     /// nothing.
-    fn keys_without_effect(&self) -> Vec<Warning> {
+    fn keys_without_effect(&self, follows: NozzleFollows) -> Vec<Warning> {
+        let by_law = follows == NozzleFollows::Law;
         let usual = Self::default();
         let mut all = KEYS_OF_CHOICES.iter().flat_map(|of| of.keys);
         let has_all = all.all(|key| self.origins.contains_key(key));
@@ -319,7 +323,8 @@ impl SceneSettings {
                 continue;
             }
             let others = of.values.join(" or ");
-            for &key in of.keys {
+            let keys = of.keys.iter().filter(|key| by_law || **key != PER_TURN);
+            for &key in keys {
                 warn(
                     key,
                     format!(
@@ -327,6 +332,11 @@ impl SceneSettings {
                     ),
                 );
             }
+        }
+        if !by_law && self.origin(PER_TURN) == Origin::Set {
+            let message =
+                "has no effect: the nozzle follows its input; set traverse.mode = by-angle";
+            warn(PER_TURN, message.to_owned());
         }
         if self.spindle.file.is_empty() {
             let message = "has no effect: there is no table without spindle.file";

@@ -214,6 +214,15 @@ impl WireSettings {
     }
 }
 
+/// What the nozzle of a run follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NozzleFollows {
+    /// the scene's own law of the core's angle
+    Law,
+    /// the input `nozzle_position`
+    Input,
+}
+
 impl SceneSettings {
     /// Inputs before the first step: core at rest, nozzle where the motion profile starts, set
     /// tension.
@@ -244,6 +253,14 @@ impl SceneSettings {
     /// name. A scene file's mode is for runs of its own motion.
     pub fn nozzle_follows_law(&self) -> bool {
         self.traverse.mode != BY_INPUT && self.origin("traverse.mode") == Origin::Set
+    }
+
+    /// What the nozzle of a run follows that is driven by inputs.
+    pub fn nozzle_follows(&self) -> NozzleFollows {
+        match self.nozzle_follows_law() {
+            true => NozzleFollows::Law,
+            false => NozzleFollows::Input,
+        }
     }
 
     /// Where the value of a leaf came from, by the name of its variable.

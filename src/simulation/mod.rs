@@ -35,6 +35,7 @@ mod saved;
 mod start;
 mod step_derivatives;
 mod stepping;
+mod straight_wire;
 mod summary;
 mod talk;
 mod told;

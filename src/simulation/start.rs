@@ -7,6 +7,7 @@ use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_place::nozzle_of;
 use super::nozzle_way::Traverse;
 use super::run_state::RunState;
+use super::straight_wire::{check_way, clear_angle};
 use super::{MotionProfile, SimError, Winding};
 use crate::contact::{ContactLaw, LineModel, NodalModel, damping_for_restitution};
 use crate::feed::{Feed, FeedSpec, LineWire, Pulley};
@@ -23,7 +24,6 @@ use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene, si};
 use crate::signals::{Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
-use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
@@ -63,49 +63,6 @@ fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
     }
 }
 
-/// Depth of straight wire in the core that is none, as a share of the wire's radius.
-const GRAZES: f64 = 1e-4;
-
-/// Angle of the core, rad, at which straight wire from the `clamp` (core frame, m) to the `nozzle` (m) passes the core: as near to
-/// `angle(0)` as can be. Wire that is clamped in a hollow leads over its edge. `angle` is that of a core turned back by so much.
-fn clear_angle(
-    scene: &Scene,
-    surface: &Surface,
-    (clamp, nozzle): (V3, V3),
-    angle: impl Fn(f64) -> f64,
-) -> f64 {
-    let radius = scene.wire.radius();
-    let is_clear = |back: f64| {
-        let nozzle = Spin::new(angle(back)).to_core(nozzle);
-        let along = (nozzle - clamp).normalize();
-        let spacing = 0.5 * scene.solver.spacing_near;
-        let looks = (2.0 * surface.radius_max() / spacing) as usize;
-        (1..=looks).all(|k| {
-            let place = clamp + along * (spacing * k as f64);
-            surface.nearest(place).distance > radius * (1.0 - GRAZES)
-        })
-    };
-    if is_clear(0.0) {
-        return angle(0.0);
-    }
-    let (mut deep, mut clear) = (0.0, 1e-3);
-    while !is_clear(clear) {
-        (deep, clear) = (clear, 2.0 * clear);
-        if clear > FRAC_PI_2 {
-            return angle(0.0);
-        }
-    }
-    for _ in 0..40 {
-        let middle = 0.5 * (deep + clear);
-        *(if is_clear(middle) {
-            &mut clear
-        } else {
-            &mut deep
-        }) = middle;
-    }
-    angle(clear)
-}
-
 /// Builds the system at rest, an empty coil and the core angle at the start.
 fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
     let surface = Arc::new(core_surface(&scene.core)?);
@@ -140,6 +97,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         }),
         _ => aside + way_round * turned,
     };
+    check_way(scene, &surface, (clamp_core, nozzle), angle0)?;
     let clamp = Spin::new(angle0).to_lab(clamp_core);
     let points = line_of_nodes(scene, &surface, clamp, nozzle, angle0);
     let tension = inputs.tension_setpoint;
@@ -296,13 +254,7 @@ fn line_of_nodes(scene: &Scene, surface: &Surface, clamp: V3, nozzle: V3, angle:
 impl Winding {
     /// Wire clamped to the core and straight to the nozzle at the set tension, everything at rest.
     pub(super) fn new(scene: &Scene) -> Result<Self, SimError> {
-        let inputs = Inputs {
-            spindle_speed: 0.0,
-            nozzle_position: scene.nozzle_law.start(),
-            tension_setpoint: scene.tensioner.tension,
-            ..Inputs::HELD
-        };
-        Self::starting_with(scene, inputs)
+        Self::starting_with(scene, scene.start_inputs())
     }
 
     /// The same with these inputs at the start.

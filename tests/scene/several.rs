@@ -2,7 +2,7 @@
 
 use crate::common::{assert_says, parse, refused};
 use coilwind::scene::SceneError;
-use coilwind::settings::SceneSettings;
+use coilwind::settings::{NozzleFollows, SceneSettings};
 
 /// `check` stopped at the first of these.
 #[test]
@@ -13,7 +13,9 @@ fn all_that_is_wrong_is_told_at_once() {
                 [friction]\nstatic = 0.1\nkinetic = 0.3\n[tensioner]\ntension = 1e9\n[start]\nclamp_y_mm = 90\n";
     std::fs::write(&scene, text).unwrap();
     let set = [("solver.tolerance_um".to_owned(), "-1".to_owned())];
-    let error = SceneSettings::load_and_build(scene.to_str().unwrap(), &set).expect_err("refused");
+    let error =
+        SceneSettings::load_and_build(scene.to_str().unwrap(), &set, |_| NozzleFollows::Law)
+            .expect_err("refused");
     let SceneError::Several { errors } = &error else {
         panic!("one of many: {error}");
     };

@@ -1,0 +1,164 @@
+//! The straight wire of the start: from the clamp past the core to the nozzle.
+
+use super::SimError;
+use crate::geometry::Surface;
+use crate::math::{Spin, V3};
+use crate::scene::{Scene, si};
+use std::f64::consts::FRAC_PI_2;
+
+/// Depth of straight wire in the core that is none, as a share of the wire's radius.
+const GRAZES: f64 = 1e-4;
+
+/// Halvings of an angle or a way until what passes is told from what does not.
+const HALVINGS: u32 = 40;
+
+/// Places where straight wire from the `clamp` to the `nozzle` may be in the core: all core frame, m.
+fn places(
+    scene: &Scene,
+    surface: &Surface,
+    clamp: V3,
+    nozzle: V3,
+) -> impl Iterator<Item = V3> + use<> {
+    let (way, along) = ((nozzle - clamp).norm(), (nozzle - clamp).normalize());
+    let spacing = 0.5 * scene.solver.spacing_near;
+    let looks = (way.min(2.0 * surface.radius_max()) / spacing) as usize;
+    (1..=looks).map(move |k| clamp + along * (spacing * k as f64))
+}
+
+/// Angle of the core, rad, at which straight wire from the `clamp` (core frame, m) to the `nozzle` (m) passes the core: as near to
+/// `angle(0)` as can be. Wire that is clamped in a hollow leads over its edge. `angle` is that of a core turned back by so much.
+pub(super) fn clear_angle(
+    scene: &Scene,
+    surface: &Surface,
+    (clamp, nozzle): (V3, V3),
+    angle: impl Fn(f64) -> f64,
+) -> f64 {
+    let radius = scene.wire.radius();
+    let is_clear = |back: f64| {
+        let nozzle = Spin::new(angle(back)).to_core(nozzle);
+        places(scene, surface, clamp, nozzle)
+            .all(|place| surface.nearest(place).distance > radius * (1.0 - GRAZES))
+    };
+    if is_clear(0.0) {
+        return angle(0.0);
+    }
+    let (mut deep, mut clear) = (0.0, 1e-3);
+    while !is_clear(clear) {
+        (deep, clear) = (clear, 2.0 * clear);
+        if clear > FRAC_PI_2 {
+            return angle(0.0);
+        }
+    }
+    angle(last_clear(clear, deep, is_clear))
+}
+
+/// The value next to `blocked` that still passes, from a `clear` one on.
+fn last_clear(mut clear: f64, mut blocked: f64, passes: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (blocked + clear);
+        *(if passes(middle) {
+            &mut clear
+        } else {
+            &mut blocked
+        }) = middle;
+    }
+    clear
+}
+
+/// Checks that no part of the core, a flange say, holds the axis of straight wire from the `clamp` (core frame, m) to the `nozzle`
+/// (m), with the core turned to `angle`, rad.
+///
+/// # Errors
+///
+/// If one does, with the places of the nozzle from which wire leads past it.
+pub(super) fn check_way(
+    scene: &Scene,
+    surface: &Surface,
+    (clamp, nozzle): (V3, V3),
+    angle: f64,
+) -> Result<(), SimError> {
+    let spin = Spin::new(angle);
+    let deepest = |y: f64| {
+        let nozzle = spin.to_core(V3::new(nozzle.x, y, nozzle.z));
+        places(scene, surface, clamp, nozzle)
+            .map(|place| (surface.nearest(place).distance, place))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let passes = |y: f64| deepest(y).is_none_or(|(distance, _)| distance >= 0.0);
+    let Some((distance, place)) = deepest(nozzle.y).filter(|(distance, _)| *distance < 0.0) else {
+        return Ok(());
+    };
+    let way = format!(
+        "straight wire from the clamp at y = {} m to the nozzle at y = {} m goes through the core or a flange, {} m deep at y = {} m",
+        si(clamp.y),
+        si(nozzle.y),
+        si(-distance),
+        si(place.y)
+    );
+    let remedy = if passes(clamp.y) {
+        let last = last_clear(clamp.y, nozzle.y, passes);
+        format!(
+            "begin with the nozzle (nozzle.y_start, or the input nozzle_position) between {} and {} m",
+            si(clamp.y.min(last)),
+            si(clamp.y.max(last))
+        )
+    } else {
+        "move the clamp (start.clamp_y)".to_owned()
+    };
+    Err(SimError::setup(format!("{way}; {remedy}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Simulation;
+    use crate::settings::SceneSettings;
+    use std::path::Path;
+
+    /// Flanges 5 mm from the middle and 6 mm high; the wire is clamped beside the lower one.
+    fn started(y: f64) -> Result<(), String> {
+        let text = format!(
+            "[core.flange]\ninner_distance_mm = 10\nheight_mm = 6\nthickness_mm = 2\n\
+             [start]\nclamp_y_mm = -4.6\n[nozzle]\ny_start = {y:e}"
+        );
+        let settings =
+            SceneSettings::from_toml_str(&text, "scene.toml", Path::new("")).expect("reads");
+        let scene = settings.build().expect("a scene");
+        Simulation::new(&scene)
+            .map(|_| ())
+            .map_err(|error| error.to_string())
+    }
+
+    /// It was told as deep contact and a break at 0 s.
+    #[test]
+    fn a_start_through_a_flange_names_the_places_that_lead_past_it() {
+        let told = started(-12e-3).expect_err("wire through a flange");
+        assert!(told.contains("goes through the core or a flange"), "{told}");
+        let least = told
+            .split_once("between ")
+            .and_then(|(_, rest)| rest.split_once(" and -0.0046 m"))
+            .and_then(|(least, _)| least.parse::<f64>().ok())
+            .expect("a range up to the clamp");
+        assert!((-12e-3..-5e-3).contains(&least), "{told}");
+        started(least + 1e-6).expect("a place in that range");
+        started(least - 2e-5).expect_err("a place beyond it");
+    }
+
+    #[test]
+    fn a_clamp_in_a_flange_is_what_has_to_move() {
+        let text = "[core]\nshape = 'cylinder'\n[core.flange]\ninner_distance_mm = 10\n[start]\nclamp_y_mm = 5.5\n\
+                    [nozzle]\ny_start_mm = 4.6";
+        let settings =
+            SceneSettings::from_toml_str(text, "scene.toml", Path::new("")).expect("reads");
+        let told = settings.build().map_err(|error| error.to_string());
+        let told = told.and_then(|scene| {
+            Simulation::new(&scene)
+                .map(|_| ())
+                .map_err(|e| e.to_string())
+        });
+        assert!(
+            told.clone()
+                .is_err_and(|told| told.contains("start.clamp_y")),
+            "{told:?}"
+        );
+    }
+}
