@@ -158,6 +158,8 @@ impl Winding {
         ]
         .map(|kind| self.faults_of(kind) as i32);
         let nozzle_angle = self.nozzle_angle();
+        let began = self.run.time > 0.0;
+        self.watch_nozzle(began.then_some(self.run.outputs.nozzle_y));
         let machine = self.for_the_machine(&layon);
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
