@@ -348,6 +348,12 @@ def plan_of(args, tasks, fmu):
     }
 
 
+def most_at_once(reports):
+    """Workers that wound at the same time, at most: one that is started in place of a dead one is not another."""
+    changes = sorted((report[edge], sign) for report in reports for edge, sign in (("ended", -1), ("began", 1)))
+    return max(itertools.accumulate((sign for _, sign in changes), initial=0))
+
+
 def overhead(reports):
     """Median time between two runs of a worker, s: what Dask costs a run."""
     of_worker = {}
@@ -412,7 +418,7 @@ def run(args):
         reports = wind_fresh(args, fmu, fresh, ledger, Progress(len(tasks), len(ledger.rows), args.quiet))
     took = time.monotonic() - began
     defects, done = ledger.count("defect", "true"), ledger.count("outcome", "done")
-    workers = len({report["worker"] for report in reports})
+    workers = most_at_once(reports)
     print(
         f"{len(tasks)} runs, {len(fresh)} of them new; {defects} with a defect, {len(tasks) - done} that failed; "
         f"{took:.1f} s on {workers} workers"

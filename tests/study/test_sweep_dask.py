@@ -317,3 +317,11 @@ def test_what_was_built_is_looked_for_in_the_target_folder_of_cargo(scene, root,
         line = [sys.executable, root / f"scripts/{name}.py", scene, *words]
         said = subprocess.run(line, capture_output=True, text=True, check=False, env=env, cwd=tmp_path).stderr
         assert said == f"{name}.py: {tmp_path}/release/coilwind is missing; build it with cargo build --release\n"
+
+
+def test_a_worker_in_place_of_a_dead_one_is_no_other(sweep_dask):
+    reports = [{"worker": name, "began": began, "ended": ended} for name, began, ended in [
+        ("a", 0.0, 2.0), ("b", 0.0, 3.0), ("a2", 2.0, 4.0), ("b", 3.0, 5.0), ("", 0.0, 0.0),
+    ]]
+    assert sweep_dask.most_at_once(reports) == 2
+    assert sweep_dask.most_at_once([]) == 0
