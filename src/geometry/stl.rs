@@ -2,7 +2,8 @@
 //!
 //! The `stl_io` crate parses. Before that the bytes are put into the form it expects. It takes
 //! any file that begins with `solid ` for ASCII, although many programs write that into binary
-//! headers. And it knows only lower-case keywords and a named solid.
+//! headers. And it knows only lower-case keywords and one named solid. The solids of an ASCII file are the parts of one
+//! surface, as programs write them that name its faces, or bodies that make up the core together, as in a binary file.
 
 use super::error::MeshError;
 use super::mesh::TriMesh;
@@ -36,12 +37,6 @@ pub enum StlError {
         /// what the parser says
         reason: String,
     },
-    /// More than one `solid` in an ASCII file.
-    #[error("the STL file holds {count} solids, expected one")]
-    SeveralSolids {
-        /// how many
-        count: usize,
-    },
     /// The file unit makes no sense.
     #[error("unit = {unit} m is out of range: above 0")]
     Unit {
@@ -66,7 +61,7 @@ pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlErr
     let mut bytes = Vec::new();
     reader.seek(SeekFrom::Start(0)).map_err(StlError::Read)?;
     reader.read_to_end(&mut bytes).map_err(StlError::Read)?;
-    let (bytes, form) = normalise(bytes)?;
+    let (bytes, form) = normalise(bytes);
 
     let size = bytes.len();
     let broken = |triangles: usize, error: io::Error| StlError::NotStl {
@@ -98,28 +93,36 @@ pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlErr
 }
 
 /// Brings the bytes into the form that the parser recognises; says which form that is.
-fn normalise(mut bytes: Vec<u8>) -> Result<(Vec<u8>, &'static str), StlError> {
+fn normalise(mut bytes: Vec<u8>) -> (Vec<u8>, &'static str) {
     if is_binary(&bytes) {
         bytes[..BINARY_HEADER - 4].fill(0);
-        return Ok((bytes, "binary"));
+        return (bytes, "binary");
     }
     let Ok(text) = std::str::from_utf8(&bytes) else {
-        return Ok((bytes, "binary"));
+        return (bytes, "binary");
     };
     let text = text
         .trim_start_matches('\u{feff}')
         .trim_start()
         .to_ascii_lowercase();
-    let is_header = |line: &str| line.split_whitespace().next() == Some("solid");
+    let begins = |line: &str| line.split_whitespace().next() == Some("solid");
+    let ends = |line: &str| line.split_whitespace().next() == Some("endsolid");
     let (header, body) = text.split_once(['\n', '\r']).unwrap_or((&text, ""));
-    if !is_header(header) {
-        return Ok((bytes, "binary"));
+    if !begins(header) {
+        return (bytes, "binary");
     }
-    let count = 1 + body.lines().filter(|line| is_header(line)).count();
-    if count > 1 {
-        return Err(StlError::SeveralSolids { count });
+    if !body.lines().any(begins) {
+        return (format!("solid core\n{body}").into_bytes(), "ASCII");
     }
-    Ok((format!("solid core\n{body}").into_bytes(), "ASCII"))
+    // (the last one may have been cut off)
+    let is_whole = body
+        .lines()
+        .rfind(|line| begins(line) || ends(line))
+        .is_some_and(ends);
+    let facets = body.lines().filter(|line| !begins(line) && !ends(line));
+    let end = if is_whole { "endsolid core\n" } else { "" };
+    let facets = facets.collect::<Vec<_>>().join("\n");
+    (format!("solid core\n{facets}\n{end}").into_bytes(), "ASCII")
 }
 
 /// Whether the size is that of a binary file with the number of triangles its header names.
@@ -304,6 +307,32 @@ mod tests {
         check(&read_bytes(format!("\u{feff}  {text}")).unwrap());
     }
 
+    /// A file whose faces had names was refused as several solids.
+    #[test]
+    fn solids_of_a_file_make_up_one_surface() {
+        let (soup, faces) = (soup(), 5);
+        let parts = soup.chunks(soup.len().div_ceil(faces)).map(ascii);
+        let text = parts.collect::<String>();
+        assert_eq!(text.matches("endsolid").count(), faces);
+        check(&read_bytes(text.clone()).unwrap());
+        check(&read_bytes(text.replace('\n', "\r\n")).unwrap());
+        // cut off within the last part, and before it
+        for word in ["endloop", "endsolid"] {
+            let cut = text[..text.rfind(word).unwrap()].to_owned();
+            let error = read_bytes(cut).unwrap_err();
+            assert!(
+                matches!(error, StlError::NotStl { form: "ASCII", .. }),
+                "{error}"
+            );
+        }
+        let cut = text[..text.rfind("solid box\n  facet").unwrap()].to_owned();
+        let error = read_bytes(cut).unwrap_err();
+        assert!(
+            matches!(error, StlError::Mesh(MeshError::Open { .. })),
+            "{error}"
+        );
+    }
+
     #[test]
     fn negative_zero_and_collapsed_triangles_are_welded() {
         let mut soup = soup();
@@ -369,11 +398,7 @@ mod tests {
         let cut = text[..text.rfind("vertex").unwrap()].to_owned();
         assert_eq!(not_stl(cut.into_bytes()), ("ASCII", soup().len() - 1));
 
-        let twice = text.repeat(2);
-        assert!(matches!(
-            read_bytes(twice),
-            Err(StlError::SeveralSolids { count: 2 })
-        ));
+        assert!(matches!(read_bytes(text.repeat(2)), Err(StlError::Mesh(_))));
         for unit in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             let mut cursor = Cursor::new(binary(&soup()));
             assert!(matches!(

@@ -83,9 +83,9 @@ fn a_mesh_that_makes_no_core_is_told_with_its_key_and_place() {
         ("turned.stl", text(" part", &turned), &["inside out"]),
         ("none.stl", text(" part", &[]), &["no triangles"]),
         (
-            "several.stl",
+            "twice.stl",
             text(" part", &all).repeat(2),
-            &["2 solids, expected one"],
+            &["has 4 triangles"],
         ),
     ] {
         let said = said_of(folder.path(), name, &text).expect("must be refused");
