@@ -32,7 +32,7 @@ use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"\x89CoilFMU";
 /// Version of the format. It changes whenever the bytes of the same state do.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 /// Bytes of a GUID with its braces.
 const GUID: usize = 38;
 const HEADER: usize = 8 + 4 + GUID + 8 + 4;

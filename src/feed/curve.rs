@@ -1,10 +1,13 @@
 //! Tension over a place of the wire, as a chain of straight pieces that never falls.
 //!
-//! Masses, springs, dashpots, dry friction and slack behind the nozzle each turn one such curve into the next.
+//! Masses, springs, dashpots, dry friction, yield and slack behind the nozzle each turn one such curve into the next.
 //! During an implicit step they all are of this form, so the feed needs no unknown of its own.
 
-/// Most corners: the first, two by friction of a pulley, one each where either span goes slack and where wire would push.
-pub const MOST_CORNERS: usize = 6;
+use super::line_yield::{LineYield, MOST_LEVELS};
+
+/// Most corners: the first, two by friction of a pulley, one each where either span goes slack and where wire would push, and
+/// those where more of the line yields.
+pub const MOST_CORNERS: usize = 6 + MOST_LEVELS;
 
 /// A curve that never falls: straight between its corners, with a ray before the first and after the last.
 ///
@@ -99,6 +102,14 @@ impl Curve {
         self
     }
 
+    /// The curve with every place farther by this, m.
+    pub fn moved(mut self, by: f64) -> Self {
+        self.corners[..self.count]
+            .iter_mut()
+            .for_each(|c| c[0] += by);
+        self
+    }
+
     /// The curve with dry friction of this force added, which holds place 0.
     pub fn with_friction(mut self, force: f64) -> Self {
         let here = self.tension(0.0);
@@ -125,6 +136,31 @@ impl Curve {
         let soft = |slope: f64| slope * stiffness / (slope + stiffness);
         (self.before, self.after) = (soft(self.before), soft(self.after));
         self
+    }
+
+    /// The curve at the front of wire that gets longer for good by what it yields.
+    pub fn before_yield(self, yields: &LineYield) -> Self {
+        let mut next = Self { count: 0, ..self };
+        let mut add = |[place, tension]: [f64; 2]| {
+            next.corners[next.count] = [place + yields.longer(tension), tension];
+            next.count += 1;
+        };
+        let mut levels = yields.levels().iter().map(|level| level[0]).peekable();
+        for (k, corner) in self.corners().iter().enumerate() {
+            while let Some(tension) = levels.next_if(|tension| *tension <= corner[1]) {
+                // (nothing begins to yield along a level ray)
+                if tension < corner[1] && (k > 0 || self.before > 0.0) {
+                    add([self.place(tension), tension]);
+                }
+            }
+            add(*corner);
+        }
+        if self.after > 0.0 {
+            levels.for_each(|tension| add([self.place(tension), tension]));
+            let compliance: f64 = yields.levels().iter().map(|level| level[1]).sum();
+            next.after = 1.0 / (1.0 / self.after + compliance);
+        }
+        next
     }
 
     /// The curve with 0 wherever it was below: wire pulls and never pushes.
@@ -193,6 +229,38 @@ mod tests {
         let corners = wire.corners();
         assert_eq!(corners.len(), 3, "slack, held, out: {corners:?}");
         assert_eq!(wire.plus(1.0, 2.0).tension(2.0), front.tension(2.0) + 5.0);
+    }
+
+    /// Any place of it is that of the elastic curve and what has yielded under the same tension.
+    #[test]
+    fn yield_adds_to_the_place() {
+        let mut yields = LineYield::default();
+        for (tension, compliance) in [(2.0, 0.5), (3.0, 0.25), (4.5, 1.0)] {
+            yields.push(tension, compliance);
+        }
+        let mass = Curve::straight(3.0, 2.0);
+        for (elastic, corners) in [
+            (mass, 3),
+            (mass.with_friction(1.5), 4),
+            (
+                mass.with_friction(1.5)
+                    .before_spring(4.0, 0.5)
+                    .never_pushing(),
+                5,
+            ),
+            (Curve::straight(3.0, 0.0), 1),
+        ] {
+            let curve = elastic.before_yield(&yields);
+            assert_eq!(curve.corners().len(), corners, "{curve:?}");
+            for tension in [0.5, 1.9, 2.0, 2.7, 3.0, 4.0, 4.5, 4.8, 20.0] {
+                let place = elastic.place(tension) + yields.longer(tension);
+                if place.is_finite() && elastic.tension(elastic.place(tension)) == tension {
+                    let got = curve.tension(place);
+                    assert!((got - tension).abs() < 1e-13, "{tension}: {got}, {curve:?}");
+                }
+            }
+        }
+        assert_eq!(mass.before_yield(&LineYield::default()), mass);
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! nozzle has been in the line for longer and has seen every peak that wire behind it has. So the
 //! plastic stretch never grows from the nozzle backwards, and its steps are all there is to remember.
 
+use super::line_yield::LineYield;
 use crate::rod::{Law, Scalar};
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +49,37 @@ impl LineWire {
         } else {
             here
         }
+    }
+
+    /// How a line of `length` (m) yields to more tension after `fed` (m) of wire has passed.
+    pub fn yields(&self, law: &Law, length: f64, fed: f64) -> LineYield {
+        let mut parts = LineYield::default();
+        if law.hardening <= 0.0 || length <= 0.0 || !law.limit.is_finite() {
+            return parts;
+        }
+        let mut end = fed + length;
+        let mut part = |from: f64, state: &Scalar| {
+            let from = from.clamp(fed, end);
+            if from < end {
+                parts.push(law.limit + state.rise, (end - from) / law.hardening);
+            }
+            end = from;
+        };
+        let furthest = self.stretched.last().map_or(fed, |last| last.until);
+        part(furthest, &self.least);
+        for (k, own) in self.stretched.iter().enumerate().rev() {
+            part(
+                k.checked_sub(1)
+                    .map_or(fed, |ahead| self.stretched[ahead].until),
+                &own.state,
+            );
+        }
+        parts
+    }
+
+    /// How much longer wire is for good that goes into the line than wire of this plastic stretch, per length.
+    pub fn lengthens_by(&self, passing: f64) -> f64 {
+        self.least.strain - passing
     }
 
     /// Takes in the tension of wire that has come out, N; 0 where none comes.
@@ -137,6 +169,42 @@ mod tests {
         assert!(strain(&wire, 0.02) > 0.01);
         assert_eq!(strain(&wire, 0.02), strain(&wire, 0.5));
         assert_eq!(strain(&wire, 0.53), 0.0);
+    }
+
+    /// What the line gets longer by in a pull is the stretch of its pieces, however often they were stretched before.
+    #[test]
+    fn the_line_yields_by_what_its_wire_is_stretched() {
+        let law = law();
+        let mut wire = LineWire::default();
+        // stretch of the line's wire, m
+        let longer = |wire: &LineWire, fed: f64| -> f64 {
+            let pieces = 5000;
+            let piece = LENGTH / f64::from(pieces);
+            let at = |k| fed + (f64::from(k) + 0.5) * piece;
+            (0..pieces).map(|k| strain(wire, at(k)) * piece).sum()
+        };
+        for (fed, tension) in [
+            (0.0, 15.0),
+            (0.01, 60.0),
+            (0.11, 15.0),
+            (0.21, 50.0),
+            (0.25, 30.0),
+            (0.35, 45.0),
+        ] {
+            wire.pull(&law, LENGTH, fed, tension);
+        }
+        let fed = 0.35;
+        assert_eq!(wire.yields(&law, LENGTH, fed).levels().len(), 3);
+        for tension in [40.0, 46.0, 52.0, 61.0] {
+            let mut pulled = wire.clone();
+            let yields = wire.yields(&law, LENGTH, fed);
+            pulled.pull(&law, LENGTH, fed, tension);
+            let more = longer(&pulled, fed) - longer(&wire, fed);
+            assert!(
+                (yields.longer(tension) - more).abs() < 1e-5,
+                "{tension}: {more} {yields:?}"
+            );
+        }
     }
 
     /// The slow twin is each piece of wire with the largest tension while it was in the line.

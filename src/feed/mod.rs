@@ -7,7 +7,8 @@
 //! last edge is much stiffer than the dashpot's share, and an explicit law would cut the step.
 //!
 //! ```text
-//! m s_t'' = T_line - T_set - c_t s_t'     T_line = k (s - s_t) + c (s' - s_t'),  never below zero
+//! m s_t'' = T_line - T_set - c_t s_t'     T_line = k (x - s_t) + c (x' - s_t'),  never below zero
+//! x = s - s_p                             s_p: by how much the line's wire has got longer for good
 //! T_nozzle = T_line exp(mu_exit beta)   beta: deflection at the exit, paying out
 //! ```
 //!
@@ -18,10 +19,12 @@
 
 mod curve;
 mod line_wire;
+mod line_yield;
 
 use crate::rod::Law;
 pub use curve::{Curve, MOST_CORNERS};
 pub use line_wire::LineWire;
+pub use line_yield::LineYield;
 use serde::{Deserialize, Serialize};
 
 /// Constants of the feed.
@@ -79,6 +82,11 @@ impl FeedSpec {
         }
     }
 
+    /// Whether an elastic line lies between the nozzle and a tensioner with mass.
+    pub fn has_spring(&self) -> bool {
+        self.mass > 0.0 && self.line_stiffness.is_finite()
+    }
+
     /// Whether the line has anything with mass or friction between nozzle and tensioner.
     pub fn has_chain(&self) -> bool {
         self.pulley.is_some() || self.line_mass > 0.0
@@ -100,6 +108,8 @@ pub struct Feed {
     pub guided: f64,
     /// its rate, m/s
     pub guided_rate: f64,
+    /// by how much longer the line's wire is for good than at the start, m
+    pub longer: f64,
     /// tension in the line at the nozzle, N
     pub line_tension: f64,
     /// damper that the machine adds to the tensioner's own, N s/m
@@ -121,6 +131,7 @@ impl Feed {
             paid_rate: 0.0,
             guided: spec.pulley.map_or(0.0, |pulley| pulley.share * paid),
             guided_rate: 0.0,
+            longer: 0.0,
             line_tension: tension,
             damping: 0.0,
         }
@@ -142,7 +153,7 @@ impl Feed {
     /// length added to it, m.
     ///
     /// `plastic` is the plastic stretch of the edge and of wire that comes out, `deflection` the angle
-    /// at the exit, rad, `set` the tensioner's pull, N.
+    /// at the exit, rad, `set` the tensioner's pull, N; `yields` is how the line's wire yields.
     pub fn step(
         &mut self,
         spec: &FeedSpec,
@@ -153,11 +164,12 @@ impl Feed {
         length: f64,
         plastic: [f64; 2],
         deflection: f64,
+        yields: &LineYield,
     ) -> f64 {
         // friction at the exit holds back whichever way the wire moves
         let grip =
             libm::exp(spec.exit_friction * deflection * if self.rate >= 0.0 { 1.0 } else { -1.0 });
-        let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
+        let elastic_line = spec.has_spring();
         let damping = self.damping_on(spec);
         let line = |grown: f64| -> (f64, f64) {
             // line tension and its slope with the wire grown in this step
@@ -173,10 +185,12 @@ impl Feed {
             }
             // the tensioner moves by its momentum in this step
             let paid = self.paid + dt * self.paid_rate;
-            let t = spec.line_stiffness * (self.fed + grown - paid)
+            let t = spec.line_stiffness * (self.fed - self.longer + grown - paid)
                 + spec.line_damping * (grown / dt - self.paid_rate);
             if t > 0.0 {
-                (t, spec.line_stiffness + spec.line_damping / dt)
+                yields
+                    .tension(t, spec.line_stiffness + spec.line_damping / dt)
+                    .into()
             } else {
                 (0.0, 0.0)
             }
@@ -202,6 +216,7 @@ impl Feed {
         self.rate = grown / dt;
         self.line_tension = tension;
         if elastic_line {
+            self.longer += yields.longer(tension);
             self.paid += dt * self.paid_rate;
             self.paid_rate += dt * (tension - set) / spec.mass;
             self.paid_rate /= 1.0 + dt * damping / spec.mass;
@@ -246,7 +261,17 @@ mod tests {
         let mut t = 0.0;
         while t < end {
             length += speed(t) * dt;
-            rest += feed.step(spec, &l, 15.0, dt, rest, length, [0.0; 2], 0.0);
+            rest += feed.step(
+                spec,
+                &l,
+                15.0,
+                dt,
+                rest,
+                length,
+                [0.0; 2],
+                0.0,
+                &LineYield::default(),
+            );
             // keep the edge short: drop whole wire behind it at the same strain
             let drop = rest - 1e-3;
             rest -= drop;
@@ -313,7 +338,17 @@ mod tests {
         for longer in [-1e-6, 1e-6] {
             let mut feed = Feed::at_rest(&s, 15.0);
             let length = rest * (1.02 + 15.0 / l.modulus) + longer;
-            let grown = feed.step(&s, &l, 15.0, 1e-6, rest, length, plastic, 0.0);
+            let grown = feed.step(
+                &s,
+                &l,
+                15.0,
+                1e-6,
+                rest,
+                length,
+                plastic,
+                0.0,
+                &LineYield::default(),
+            );
             let passing = if longer > 0.0 { 0.0 } else { 0.02 };
             let free = rest * 1.02 + grown * (1.0 + passing);
             let tension = l.modulus * (length - free) / (rest + grown);

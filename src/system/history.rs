@@ -31,6 +31,8 @@ pub struct Past {
     pub guided: f64,
     /// see `guided`
     pub guided_rate: f64,
+    /// how much longer the line's wire was for good one instant back, m
+    pub longer: f64,
     /// lengths of the last two steps, s
     pub h: [f64; 2],
 }
@@ -47,6 +49,7 @@ impl Past {
         self.fed_rate = feed.rate;
         (self.paid, self.paid_rate) = (feed.paid, feed.paid_rate);
         (self.guided, self.guided_rate) = (feed.guided, feed.guided_rate);
+        self.longer = feed.longer;
     }
 
     /// Takes `wire`, m, as passed everywhere.

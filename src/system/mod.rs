@@ -190,10 +190,14 @@ impl System {
         let rest = self.state.rod.rest[e];
         let plastic = self.state.rod.stretch[e].strain;
         let coming = self.state.line_wire.next(feed.fed).strain;
+        let law = self.model.laws.stretch;
+        let yields = self
+            .state
+            .line_wire
+            .yields(&law, spec.line_length, feed.fed);
         // the line comes from beyond the nozzle, radially
         let out = V3::new(self.state.rod.x[n].x, 0.0, self.state.rod.x[n].z).normalize();
         let deflection = libm::acos((d.dot(&out) / length).clamp(-1.0, 1.0));
-        let law = self.model.laws.stretch;
         let grown = feed.step(
             spec,
             &law,
@@ -203,6 +207,7 @@ impl System {
             length,
             [plastic, coming],
             deflection,
+            &yields,
         );
         let passing = self.pass_nozzle(grown);
         let (after, plastic) = (self.state.rod.rest[e], self.state.rod.stretch[e].strain);

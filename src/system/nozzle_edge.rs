@@ -1,6 +1,7 @@
 //! The edge at the nozzle and the node before it, whose length changes as wire comes and goes.
 
 use super::System;
+use crate::feed::LineYield;
 use crate::rod::{Joint, Scalar};
 
 impl System {
@@ -15,13 +16,31 @@ impl System {
         let own = state.rod.stretch[last];
         let rest = state.rod.rest[last];
         state.rod.rest[last] = rest + grown;
-        if grown <= 0.0 {
+        let passing = if grown <= 0.0 {
             state.line_wire.take_back(before, own);
-            return own.strain;
+            own.strain
+        } else {
+            let coming = state.line_wire.next(before);
+            state.rod.stretch[last] = mixed(own, rest, coming, grown);
+            coming.strain
+        };
+        if let (Some(spec), Some(feed)) = (&self.model.feed, &mut state.feed)
+            && spec.has_spring()
+        {
+            feed.longer += state.line_wire.lengthens_by(passing) * grown;
         }
-        let coming = state.line_wire.next(before);
-        state.rod.stretch[last] = mixed(own, rest, coming, grown);
-        coming.strain
+        passing
+    }
+
+    /// How the line's wire yields in the next step; nothing where the line is no spring.
+    pub(crate) fn line_yield(&self) -> LineYield {
+        match (&self.model.feed, &self.state.feed) {
+            (Some(spec), Some(feed)) if spec.has_spring() => {
+                let law = &self.model.laws.stretch;
+                self.state.line_wire.yields(law, spec.line_length, feed.fed)
+            }
+            _ => LineYield::default(),
+        }
     }
 
     /// Unstretched length that came into the edge at the nozzle, m, where the edge is `length` (m) long, pulls by `tension`

@@ -164,7 +164,8 @@ fn feed(
     let grown = sys.grown_with_yield(length, grown, nozzle.stretched(length).tension);
     let line = nozzle.line(length);
     let set = sys.set_tension_after(step.share * step.h);
-    let next = advance(spec, feed, &sys.state.past, step, (grown, line, set));
+    let passed = (grown, line, set);
+    let next = advance(spec, feed, &sys.state.past, step, passed, &sys.line_yield());
     sys.state.past.keep_feed(feed);
     (Some(next), grown)
 }

@@ -7,7 +7,7 @@
 
 use super::scheme::StepFormula;
 use super::tensioner::{Chain, line_over_fed};
-use crate::feed::{Feed, FeedSpec, MOST_CORNERS};
+use crate::feed::{Feed, FeedSpec, LineYield, MOST_CORNERS};
 use crate::rod::Stretched;
 use crate::system::Past;
 
@@ -59,16 +59,17 @@ enum Way {
 impl NozzleEdge {
     /// `rest` is the edge's unstretched length now, and `pull` the tensioner's force. `grip` is the ratio of tension after to
     /// before the exit where wire comes out. `ea` is the wire's modulus, and `plastic` the plastic stretch of the edge and of
-    /// wire that comes out.
+    /// wire that comes out. `yields` is how the line's wire yields.
     pub(super) fn new(
         spec: &FeedSpec,
         feed: &Feed,
         past: &Past,
         step: &StepFormula,
         (rest, pull, grip, ea, plastic): (f64, f64, f64, f64, [f64; 2]),
+        yields: &LineYield,
     ) -> Self {
         let (pieces, count) = if spec.has_chain() {
-            let chain = Chain::new(spec, feed, past, step, pull);
+            let chain = Chain::new(spec, feed, past, step, (pull, yields));
             pieces_of(&chain, rest - feed.fed)
         } else {
             let (t0, slope) = line_over_fed(spec, feed, past, step, pull);
@@ -81,7 +82,7 @@ impl NozzleEdge {
             };
             let mut pieces = [Piece::default(); MOST_CORNERS];
             pieces[0] = Piece { from, a, b: slope };
-            (pieces, 1)
+            yielding(pieces, yields)
         };
         Self {
             pieces,
@@ -247,6 +248,31 @@ impl NozzleEdge {
     }
 }
 
+/// The first of `pieces`, and those on which more and more of the line yields; how many there are.
+fn yielding(
+    mut pieces: [Piece; MOST_CORNERS],
+    yields: &LineYield,
+) -> ([Piece; MOST_CORNERS], usize) {
+    let (mut count, elastic) = (1, pieces[0].b);
+    let mut compliance = 0.0;
+    for [tension, more] in yields.levels() {
+        let last = pieces[count - 1];
+        if last.b <= 0.0 {
+            break;
+        }
+        compliance += more;
+        let from = (tension - last.a) / last.b;
+        let b = 1.0 / (1.0 / elastic + compliance);
+        pieces[count] = Piece {
+            from,
+            a: tension - b * from,
+            b,
+        };
+        count += 1;
+    }
+    (pieces, count)
+}
+
 /// The line's tension over the edge's rest length, which is `ahead`, m, more than the wire passed; how many pieces it has.
 fn pieces_of(chain: &Chain, ahead: f64) -> ([Piece; MOST_CORNERS], usize) {
     let (curve, passed) = chain.at_nozzle();
@@ -324,7 +350,14 @@ mod tests {
     fn wire_and_line_pull_alike() {
         let (spec, feed, past, step) = setting();
         let ea = 48_900.0;
-        let edge = NozzleEdge::new(&spec, &feed, &past, &step, (3e-3, 15.0, 1.1, ea, [1e-4; 2]));
+        let edge = NozzleEdge::new(
+            &spec,
+            &feed,
+            &past,
+            &step,
+            (3e-3, 15.0, 1.1, ea, [1e-4; 2]),
+            &LineYield::default(),
+        );
         // so long that wire comes out
         let length = 3.36e-3 * (1.0 + 3e-4);
         let y = edge.rest(length);
@@ -333,7 +366,14 @@ mod tests {
         // the line's own law, step by step
         let line = edge.line(length);
         assert!((s.tension / line - 1.1).abs() < 1e-12);
-        let next = advance(&spec, &feed, &past, &step, (y - 3e-3, line, 15.0));
+        let next = advance(
+            &spec,
+            &feed,
+            &past,
+            &step,
+            (y - 3e-3, line, 15.0),
+            &LineYield::default(),
+        );
         let law = spec.line_stiffness * (next.fed - next.paid)
             + spec.line_damping * (next.rate - next.paid_rate);
         assert!((law - line).abs() < 1e-6, "{law} {line}");
@@ -360,6 +400,7 @@ mod tests {
             &past,
             &step,
             (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]),
+            &LineYield::default(),
         );
         let s = edge.stretched(1e-3);
         assert_eq!(s.tension, 0.0);
@@ -377,6 +418,7 @@ mod tests {
             &past,
             &step,
             (3e-3, 15.0, grip, ea, [1e-4; 2]),
+            &LineYield::default(),
         );
         let line = edge.line_at_start();
         assert!(line > 5.0, "the line pulls by {line} N");
@@ -417,7 +459,14 @@ mod tests {
         let (spec, feed, past, step) = at_rest();
         let (ea, rest, plastic) = (48_900.0, 3e-3, [0.02, 0.001]);
         for grip in [1.0, 1.3] {
-            let edge = NozzleEdge::new(&spec, &feed, &past, &step, (rest, 15.0, grip, ea, plastic));
+            let edge = NozzleEdge::new(
+                &spec,
+                &feed,
+                &past,
+                &step,
+                (rest, 15.0, grip, ea, plastic),
+                &LineYield::default(),
+            );
             let turn = rest * (1.02 + edge.line_at_start() / ea);
             let mut before = edge.stretched(turn - 2e-5);
             for k in -199..400 {
@@ -450,8 +499,15 @@ mod tests {
         (feed.paid_rate, past.paid_rate, past.paid) = (0.0, 0.0, feed.paid);
         let (ea, rest, plastic) = (48_900.0, 3e-3, [0.02, 0.001]);
         for grip in [1.0, 1.3] {
-            let edge = NozzleEdge::new(&spec, &feed, &past, &step, (rest, 15.0, grip, ea, plastic));
-            let chain = Chain::new(&spec, &feed, &past, &step, 15.0);
+            let edge = NozzleEdge::new(
+                &spec,
+                &feed,
+                &past,
+                &step,
+                (rest, 15.0, grip, ea, plastic),
+                &LineYield::default(),
+            );
+            let chain = Chain::new(&spec, &feed, &past, &step, (15.0, &LineYield::default()));
             assert!(edge.count >= 3, "back, held and out: {edge:?}");
             let (curve, passed) = chain.at_nozzle();
             let mut pieces = std::collections::BTreeSet::new();
@@ -480,6 +536,51 @@ mod tests {
         }
     }
 
+    /// The tension is the line's law with what has yielded under it, and derives from its potential.
+    #[test]
+    fn a_line_that_yields_is_longer_by_what_it_yields() {
+        let (spec, mut feed, mut past, step) = setting();
+        (feed.longer, past.longer) = (3e-4, 2e-4);
+        let mut yields = LineYield::default();
+        yields.push(30.0, 2e-4);
+        yields.push(34.0, 3e-4);
+        let state = (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]);
+        let edge = NozzleEdge::new(&spec, &feed, &past, &step, state, &yields);
+        assert_eq!(edge.count, 3);
+        let longest = 3e-3 * (1.0 + 15.0 / 48_900.0) + 2e-3;
+        let (mut seen, h) = ([0; 3], 1e-9);
+        for k in 0..2000 {
+            let length = longest - f64::from(k) * 1e-6;
+            let s = edge.stretched(length);
+            if s.tension == 0.0 {
+                continue;
+            }
+            let (rest, line) = (edge.rest(length), edge.line(length));
+            seen[edge.balanced(length, edge.way(length)).1] += 1;
+            let next = advance(
+                &spec,
+                &feed,
+                &past,
+                &step,
+                (rest - 3e-3, line, 15.0),
+                &yields,
+            );
+            let end = next.fed - next.longer;
+            let began = step.blend(feed.fed - feed.longer, past.fed[0] - past.longer);
+            let rate = (end - began) / step.gamma;
+            let law = spec.line_stiffness * (end - next.paid)
+                + spec.line_damping * (rate - next.paid_rate);
+            assert!((law - line).abs() < 1e-6, "{length}: {law} {line}");
+            let ends = [length - h, length + h].map(|length| edge.stretched(length).energy);
+            let slope = (ends[1] - ends[0]) / (2.0 * h);
+            assert!(
+                (slope / s.tension - 1.0).abs() < 1e-4,
+                "{length}: {slope} {s:?}"
+            );
+        }
+        assert!(seen.iter().all(|times| *times > 10), "{seen:?}");
+    }
+
     #[test]
     fn without_mass_and_damping_the_set_force_acts() {
         let (mut spec, mut feed, past, step) = setting();
@@ -490,6 +591,7 @@ mod tests {
             &past,
             &step,
             (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]),
+            &LineYield::default(),
         );
         for length in [2e-3, 3e-3, 4e-3] {
             let s = edge.stretched(length);

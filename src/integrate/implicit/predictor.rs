@@ -102,6 +102,7 @@ impl<const D: usize, U: Unknowns<D>> Work<D, U> {
                     sys.state.line_wire.next(feed.fed).strain,
                 ],
             ),
+            &sys.line_yield(),
         ))
     }
 }

@@ -4,7 +4,7 @@
 //! passed. Mass of the line's wire, and a pulley with its bearing, make it a [`Curve`].
 
 use super::scheme::StepFormula;
-use crate::feed::{Curve, Feed, FeedSpec, Span};
+use crate::feed::{Curve, Feed, FeedSpec, LineYield, Span};
 use crate::system::Past;
 
 /// A body on the line where the step's formula would have it without forces.
@@ -40,16 +40,18 @@ pub(super) struct Chain {
     pulley: Option<[Curve; 2]>,
     /// at the tensioner, over its place
     pull: Curve,
+    /// how the line's wire yields
+    yields: LineYield,
 }
 
 impl Chain {
-    /// `pull` is the tensioner's force, N.
+    /// `pull` is the tensioner's force, N; `yields` is how the line's wire yields, as if all of it lay at the nozzle.
     pub(super) fn new(
         spec: &FeedSpec,
         feed: &Feed,
         past: &Past,
         step: &StepFormula,
-        pull: f64,
+        (pull, yields): (f64, &LineYield),
     ) -> Self {
         let g = step.gamma;
         let body = |place: [f64; 2], speed: [f64; 2], mass: f64| Body {
@@ -66,6 +68,12 @@ impl Chain {
             [feed.rate, past.fed_rate],
             front.half_mass,
         );
+        // where the line would end at the nozzle if it had not got longer
+        let end = Body {
+            place: step.blend(feed.fed - feed.longer, past.fed[0] - past.longer),
+            ..nozzle
+        };
+        let late = feed.longer - (nozzle.place - end.place);
         let guided = body(
             [feed.guided, past.guided],
             [feed.guided_rate, past.guided_rate],
@@ -89,10 +97,11 @@ impl Chain {
                 let behind = before(at_tensioner, rear, guided, tensioner);
                 let [force, slope] = guided.inertia(g);
                 let ahead = behind.plus(force, slope).with_friction(pulley.friction);
-                (Some([ahead, behind]), before(ahead, front, nozzle, guided))
+                (Some([ahead, behind]), before(ahead, front, end, guided))
             }
-            None => (None, before(at_tensioner, front, nozzle, tensioner)),
+            None => (None, before(at_tensioner, front, end, tensioner)),
         };
+        let line = line.before_yield(yields).moved(late);
         let [force, slope] = nozzle.inertia(g);
         Self {
             gamma: g,
@@ -103,6 +112,7 @@ impl Chain {
             line,
             pulley,
             pull: at_tensioner,
+            yields: *yields,
         }
     }
 
@@ -125,6 +135,7 @@ impl Chain {
         let mut next = Feed {
             fed,
             rate: farther / g,
+            longer: feed.longer + self.yields.longer(tension),
             line_tension: line,
             ..*feed
         };
@@ -140,7 +151,8 @@ impl Chain {
     }
 }
 
-/// Line tension at zero wire passed and its slope where the line has no mass: `T = t0 + slope * fed` at the end of the step.
+/// Line tension at zero wire passed and its slope where the line has no mass: `T = t0 + slope * fed` at the end of the step, as long
+/// as no wire of it yields.
 pub(super) fn line_over_fed(
     spec: &FeedSpec,
     feed: &Feed,
@@ -164,12 +176,13 @@ pub(super) fn line_over_fed(
     }
     let paid = step.blend(feed.paid, past.paid);
     let (k, c) = (spec.line_stiffness, spec.line_damping);
-    // T = k (fed - s) + c (fed' - u) with s = s* + g u, u damped = u* + g (T - pull) / m
+    let end = step.blend(feed.fed - feed.longer, past.fed[0] - past.longer);
+    // T = k (x - s) + c (x' - u) with x = fed - longer, s = s* + g u, u damped = u* + g (T - pull) / m
     let brake = (k * g + c) / damped(damping, spec, g);
     let soft = 1.0 + brake * g / spec.mass;
     let slope = (k + c / g) / soft;
-    let t0 = (-k * paid - c * fed / g - brake * (rate - g * pull / spec.mass)) / soft;
-    (t0, slope)
+    let t0 = (-k * paid - c * end / g - brake * (rate - g * pull / spec.mass)) / soft;
+    (t0 - slope * feed.longer, slope)
 }
 
 /// By how much a damper, N s/m, of a tensioner with mass lowers its speed in a step with this gamma, s.
@@ -184,15 +197,16 @@ pub(super) fn advance(
     past: &Past,
     step: &StepFormula,
     (grown, line, pull): (f64, f64, f64),
+    yields: &LineYield,
 ) -> Feed {
     let g = step.gamma;
     let fed = feed.fed + grown;
     if spec.has_chain() {
-        return Chain::new(spec, feed, past, step, pull).advance(feed, fed, line);
+        return Chain::new(spec, feed, past, step, (pull, yields)).advance(feed, fed, line);
     }
     let rate = (fed - step.blend(feed.fed, past.fed[0])) / g;
-    let elastic_line = spec.mass > 0.0 && spec.line_stiffness.is_finite();
-    let (paid, paid_rate) = if elastic_line {
+    let has_spring = spec.has_spring();
+    let (paid, paid_rate) = if has_spring {
         let undamped = step.blend(feed.paid_rate, past.paid_rate) + g * (line - pull) / spec.mass;
         let u = undamped / damped(feed.damping_on(spec), spec, g);
         (step.blend(feed.paid, past.paid) + g * u, u)
@@ -204,6 +218,10 @@ pub(super) fn advance(
         rate,
         paid,
         paid_rate,
+        longer: match has_spring {
+            true => feed.longer + yields.longer(line),
+            false => feed.longer,
+        },
         line_tension: line,
         ..*feed
     }
@@ -213,7 +231,8 @@ pub(super) fn advance(
 mod tests {
     use super::super::scheme::Scheme;
     use super::*;
-    use crate::feed::Pulley;
+    use crate::feed::{LineWire, Pulley};
+    use crate::rod::Law;
 
     const SET: f64 = 15.0;
 
@@ -261,10 +280,17 @@ mod tests {
         for k in 1..=steps {
             let step = StepFormula::new(Scheme::Bdf2, &past, h);
             let fed = drawn(way, k as f64 * h)[0];
-            let chain = Chain::new(spec, &feed, &past, &step, SET);
+            let chain = Chain::new(spec, &feed, &past, &step, (SET, &LineYield::default()));
             let (curve, passed) = chain.at_nozzle();
             let line = curve.tension(fed - passed);
-            let next = advance(spec, &feed, &past, &step, (fed - feed.fed, line, SET));
+            let next = advance(
+                spec,
+                &feed,
+                &past,
+                &step,
+                (fed - feed.fed, line, SET),
+                &LineYield::default(),
+            );
             past.keep_feed(&feed);
             past.known = 1;
             past.h = [h, past.h[0]];
@@ -335,6 +361,63 @@ mod tests {
         }
     }
 
+    /// A tensioner that flies back is stopped by the line, which yields: its energy goes into stretched wire. The line pulled
+    /// without yielding, and the wire was stretched for nothing.
+    #[test]
+    fn stretching_the_line_takes_work() {
+        let law = Law::new(48_900.0, 1_100.0, 38.5, f64::INFINITY);
+        let (mass, speed, h) = (2e-3, 6.0, 2e-7);
+        for pulley in [None, spec(0.0).pulley] {
+            let spec = FeedSpec {
+                mass,
+                damping: 0.0,
+                line_damping: 0.0,
+                line_mass: 0.0,
+                pulley: pulley.map(|pulley| Pulley {
+                    mass: 1e-9,
+                    ..pulley
+                }),
+                ..spec(0.0)
+            };
+            let (mut feed, mut past) = moving(&spec, 0.0);
+            (feed.paid_rate, past.paid_rate) = (-speed, -speed);
+            let mut wire = LineWire::default();
+            let (mut work, mut largest, began) = (0.0, 0.0_f64, feed);
+            while feed.paid_rate < 0.0 {
+                let step = StepFormula::new(Scheme::Bdf2, &past, h);
+                let yields = wire.yields(&law, spec.line_length, feed.fed);
+                let line = if spec.has_chain() {
+                    let chain = Chain::new(&spec, &feed, &past, &step, (SET, &yields));
+                    let (curve, passed) = chain.at_nozzle();
+                    curve.tension(feed.fed - passed)
+                } else {
+                    let (t0, slope) = line_over_fed(&spec, &feed, &past, &step, SET);
+                    yields.tension(t0 + slope * feed.fed, slope)[0]
+                };
+                let next = advance(&spec, &feed, &past, &step, (0.0, line, SET), &yields);
+                work += 0.5 * (line + feed.line_tension) * (next.longer - feed.longer);
+                wire.pull(&law, spec.line_length, next.fed, line);
+                past.keep_feed(&feed);
+                past.known = 1;
+                past.h = [h, past.h[0]];
+                feed = next;
+                largest = largest.max(line);
+            }
+            let elastic = |tension: f64| 0.5 * tension * tension / spec.line_stiffness;
+            let kinetic = 0.5 * mass * (speed * speed - feed.paid_rate.powi(2));
+            let taken = elastic(feed.line_tension) - elastic(SET) + work;
+            let given = kinetic + SET * (began.paid - feed.paid);
+            assert!((taken / given - 1.0).abs() < 5e-3, "{taken} {given}");
+            // (elastic, the line would pull by 99 N)
+            assert!((38.5..45.0).contains(&largest), "{largest}");
+            let strain = feed.longer / spec.line_length;
+            assert!(
+                (wire.next(0.0).strain / strain - 1.0).abs() < 1e-3,
+                "{strain}"
+            );
+        }
+    }
+
     /// At a steady speed nothing but friction and dampers counts.
     #[test]
     fn steady_wire_feels_friction_and_no_mass() {
@@ -343,10 +426,17 @@ mod tests {
         for k in 1..=40_000 {
             let step = StepFormula::new(Scheme::Bdf2, &past, 5e-6);
             let grown = 3.0 * 5e-6 * f64::min(1.0, f64::from(k) / 2e3);
-            let chain = Chain::new(&spec, &feed, &past, &step, SET);
+            let chain = Chain::new(&spec, &feed, &past, &step, (SET, &LineYield::default()));
             let (curve, passed) = chain.at_nozzle();
             let line = curve.tension(feed.fed + grown - passed);
-            let next = advance(&spec, &feed, &past, &step, (grown, line, SET));
+            let next = advance(
+                &spec,
+                &feed,
+                &past,
+                &step,
+                (grown, line, SET),
+                &LineYield::default(),
+            );
             past.keep_feed(&feed);
             past.known = 1;
             past.h = [5e-6, past.h[0]];
