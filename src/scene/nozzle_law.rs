@@ -174,6 +174,11 @@ impl NozzleLaw {
         self.turns * TAU
     }
 
+    /// Angle from which on the nozzle goes as it goes for good, rad.
+    pub(super) fn travel_ends(&self) -> f64 {
+        self.pieces.last().map_or(0.0, |last| last.from)
+    }
+
     /// Its pieces by rising angle; the last goes on without end.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces

@@ -6,6 +6,7 @@ use super::impossible::si;
 use super::{Core, Integrator, NozzleLaw, Solver, Window};
 use crate::rod::{RoundLaws, Section, Twist};
 use crate::settings::{NozzleFollows, Origin, SceneSettings};
+use std::f64::consts::TAU;
 
 /// Keys that only some values of a choice read: of the shape of the core, or of how the nozzle moves.
 struct KeysOf {
@@ -214,6 +215,17 @@ impl SceneSettings {
                 pitch / wire.diameter - 1.0
             );
             warn(key, message);
+        }
+        if by_law && self.winds_layers() {
+            let planned = (law.travel_ends() + self.traverse.advance) / TAU;
+            let more = law.turns() - planned;
+            if more > 0.5 {
+                let message = format!(
+                    "the layers hold {} turns, and what is wound then has no place but on the last one; leave the key out, or plan more turns or layers",
+                    si(planned)
+                );
+                warn("spindle.turns", message);
+            }
         }
         if by_law && let Some((key, message)) = self.nozzle_past_a_flange(wire, extent, law) {
             warn(key, message);
