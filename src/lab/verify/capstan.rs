@@ -44,6 +44,9 @@ const SPEED: f64 = 1e-2;
 const RUN_IN: f64 = 0.08;
 /// Edge lengths over which the mean is taken; touches come and go once per edge.
 const MEAN_EDGES: f64 = 3.0;
+/// Difference of two means one after the other below which the slip is steady, and means until then at most.
+const STEADY: f64 = 0.01;
+const READINGS: u32 = 6;
 
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
@@ -67,10 +70,9 @@ pub(super) fn ratio_on(
     let drum = drum(radius, section.radius())?;
     let mut capstan = Capstan::new(ctx, &section, mu, wrap, radius, hold, drum)?;
     capstan.settle()?;
-    let mut ratios = capstan.draw()?;
-    let (first, second) = (ratios.remove(0), ratios.remove(0));
+    let [first, second] = capstan.draw()?;
     let drift = (first / second - 1.0).abs();
-    if drift.is_nan() || drift >= 0.01 {
+    if drift.is_nan() || drift >= STEADY {
         return Err(VerifyError::NoAnswer(format!(
             "no steady slip: force ratios {first:.4} and {second:.4} one after the other"
         )));
@@ -188,8 +190,8 @@ impl Capstan {
         self.step.through(&mut self.sys, 4.0 * transit, self.dt)
     }
 
-    /// Draws the wire at constant speed; mean force ratios over two stretches one after the other.
-    fn draw(&mut self) -> Result<Vec<f64>, VerifyError> {
+    /// Draws the wire at constant speed; mean force ratios over two stretches one after the other, the first that are alike.
+    fn draw(&mut self) -> Result<[f64; 2], VerifyError> {
         let speed = SPEED * self.wave;
         let last = self.sys.state.rod.nodes() - 1;
         let run_in = RUN_IN * self.bend / speed;
@@ -202,17 +204,22 @@ impl Capstan {
             self.step.through(&mut self.sys, dt, dt)?;
         }
         self.sys.model.loads.drag = 0.0;
-        let (steps, dt) = self.parts(MEAN_EDGES * self.edge / speed);
-        (0..2)
-            .map(|_| {
-                let mut mean = SmoothMean::over(steps);
-                for _ in 0..steps {
-                    self.step.through(&mut self.sys, dt, dt)?;
-                    mean.add(-self.sys.state.load.force[last].x / self.hold);
-                }
-                Ok(mean.value())
-            })
-            .collect()
+        let mut means = [f64::NAN; 2];
+        for reading in 0..READINGS {
+            // twice as long each time: in a longer one touches that come and go count for less
+            let edges = MEAN_EDGES * (1 << (reading / 2)) as f64;
+            let (steps, dt) = self.parts(edges * self.edge / speed);
+            let mut mean = SmoothMean::over(steps);
+            for _ in 0..steps {
+                self.step.through(&mut self.sys, dt, dt)?;
+                mean.add(-self.sys.state.load.force[last].x / self.hold);
+            }
+            means = [means[1], mean.value()];
+            if (means[0] / means[1] - 1.0).abs() < STEADY {
+                break;
+            }
+        }
+        Ok(means)
     }
 
     /// Parts of a time after which loads change and readings are taken: explicit steps, or enough for

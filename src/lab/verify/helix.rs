@@ -19,6 +19,10 @@ const EDGES: f64 = 300.0;
 /// the other hand.
 const ARC: f64 = PI;
 
+/// Error of the stretch, as a share of that of wire without any, at which it is found, and secants until then at most.
+const STRETCHED: f64 = 1e-3;
+const MOST_SECANTS: usize = 6;
+
 /// Twisting torque times length over bending stiffness, at most. Straight clamped wire buckles at
 /// 8.99.
 const TWIST: f64 = PI;
@@ -80,6 +84,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let points: Vec<V3> = (0..=n)
         .map(|i| helix.point(arc * i as f64 / n as f64))
         .collect();
+    let chords: Vec<f64> = points.windows(2).map(|p| (p[1] - p[0]).norm()).collect();
     let mut rod = Rod::through(&points, None);
     for j in 0..n {
         rod.frame[j] = helix.frame(arc * (j as f64 + 0.5) / n as f64);
@@ -90,11 +95,38 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         Support::clamped(points[0], helix.frame(0.0)),
         Support::clamped(points[n], helix.frame(arc)),
     ];
-    settle_with_twist(ctx, &mut sys)?;
+    stretch(ctx, &mut sys, &chords)?;
     let force = -sys.state.load.force[n];
     let couple = sys.state.load.clamp_moment[1] + points[n].cross(&force);
     Ok(vec![
         ("axial_force_N", Answer::Number(force.z)),
         ("axial_moment_Nm", Answer::Number(couple.z)),
     ])
+}
+
+/// Lets the wire settle with rest lengths such that its `chords`, m, are as long as its own pull makes them: between ends
+/// that stand, wire that is a little too long pushes.
+fn stretch(ctx: &Context, sys: &mut System, chords: &[f64]) -> Result<(), VerifyError> {
+    let (ea, edges) = (sys.model.section.ea, chords.len());
+    let mut off = |strain: f64| {
+        for (rest, chord) in sys.state.rod.rest.iter_mut().zip(chords) {
+            *rest = chord / (1.0 + strain);
+        }
+        sys.refresh();
+        settle_with_twist(ctx, sys)?;
+        let inner = &sys.state.load.tension[edges / 4..edges - edges / 4];
+        let pull = inner.iter().sum::<f64>() / inner.len() as f64;
+        Ok::<f64, VerifyError>(pull / ea - strain)
+    };
+    let mut last = (0.0, off(0.0)?);
+    let (first, mut strain) = (last.1, last.1);
+    for _ in 0..MOST_SECANTS {
+        let now = off(strain)?;
+        if now.abs() <= STRETCHED * first.abs() || now == last.1 {
+            break;
+        }
+        let next = strain - now * (strain - last.0) / (now - last.1);
+        (last, strain) = ((strain, now), next);
+    }
+    Ok(())
 }

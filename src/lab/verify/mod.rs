@@ -4,6 +4,7 @@
 //! contact and feed as a winding run, computes, and reads the answer off the result.
 
 mod axial_wave;
+mod band;
 mod bench;
 mod bending_modes;
 mod bulge_linear;

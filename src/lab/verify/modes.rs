@@ -2,6 +2,7 @@
 //!
 //! The stiffness is the central difference of the forces that time steps use, the mass is theirs.
 
+use super::band::Band;
 use super::bench::Stepper;
 use super::equilibrium::method;
 use super::{Context, VerifyError};
@@ -9,7 +10,6 @@ use crate::math::V3;
 use crate::math::align;
 use crate::scene::Integrator;
 use crate::system::System;
-use nalgebra::{DMatrix, SymmetricEigen};
 use std::f64::consts::TAU;
 
 /// Displacement in the differences, edge lengths or rad.
@@ -20,8 +20,8 @@ const AMPLITUDE: f64 = 0.02;
 const LOOKS: f64 = 100.0;
 const SWINGS: f64 = 3.0;
 
-/// Largest dense eigenvalue problem.
-const MOST_PARTS: usize = 1000;
+/// Most parts: each is moved by itself, and all forces are looked at.
+const MOST_PARTS: usize = 5000;
 
 /// Forces, or torques, of a state on every part.
 type Forces = Box<dyn FnMut(&mut System) -> Vec<f64>>;
@@ -142,37 +142,34 @@ fn modes(
             sys.state.load.torque.clone()
         }),
     };
-    let mut scaled = DMatrix::zeros(parts.len(), parts.len());
+    let mut columns = Vec::with_capacity(parts.len());
     for (column, &i) in parts.iter().enumerate() {
         let (ahead, behind, width) = nudged(sys, motion, i, &mut forces);
-        for (row, &k) in parts.iter().enumerate() {
+        let rows = parts.iter().enumerate().map(|(row, &k)| {
             let stiffness = (behind[k] - ahead[k]) / width;
-            scaled[(row, column)] = stiffness / (inertia[row] * inertia[column]).sqrt();
-        }
+            stiffness / (inertia[row] * inertia[column]).sqrt()
+        });
+        columns.push(rows.collect());
     }
     sys.evaluate(None);
-    let symmetric = (&scaled + scaled.transpose()) * 0.5;
-    let eigen = SymmetricEigen::new(symmetric);
-    let mut order: Vec<usize> = (0..parts.len()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
-    order.truncate(count);
-    if order.len() < count || !order.iter().all(|k| eigen.eigenvalues[*k] > 0.0) {
-        return Err(VerifyError::NoAnswer(
-            "the wire is not stable in this state, so it has no frequency".to_owned(),
-        ));
-    }
+    let unstable = || {
+        let reason = "the wire is not stable in this state, so it has no frequency";
+        VerifyError::NoAnswer(reason.to_owned())
+    };
+    let band = Band::of(&columns);
+    let found = band.lowest(count).ok_or_else(unstable)?;
     let all = sys.state.rod.nodes();
-    Ok(order
-        .iter()
-        .map(|&k| {
+    Ok(found
+        .into_iter()
+        .map(|(value, vector)| {
             let mut shape = vec![0.0; all];
             for (row, &i) in parts.iter().enumerate() {
-                shape[i] = eigen.eigenvectors[(row, k)] / inertia[row].sqrt();
+                shape[i] = vector[row] / inertia[row].sqrt();
             }
             let most = shape.iter().fold(0.0_f64, |m, s| m.max(s.abs()));
             shape.iter_mut().for_each(|s| *s /= most);
             Mode {
-                frequency: eigen.eigenvalues[k].sqrt() / TAU,
+                frequency: value.sqrt() / TAU,
                 shape,
             }
         })

@@ -27,7 +27,11 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         answers.push(("fixed_free_f2_Hz", Answer::Number(one[1])));
         answers.push(("fixed_fixed_f1_Hz", Answer::Number(both[0])));
     }
-    sys.state.support[1] = Support::free();
+    // a straight wire is meant: free to turn, its end would leave the axis under a torque that keeps its direction
+    sys.state.support[1] = Support {
+        hold: [false, true, true],
+        ..Support::pinned(V3::x() * length)
+    };
     follow_with_twist(ctx, &mut sys, |sys, share| {
         sys.model.loads.moments = vec![(n - 1, V3::x() * (torque * share))];
     })?;
