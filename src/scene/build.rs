@@ -1,7 +1,7 @@
 //! From settings to a scene: every leaf in range, and no two that contradict each other.
 
 use super::error::Warning;
-use super::extent::Extent;
+use super::extent::{Extent, between_turns};
 use super::features::Decisions;
 use super::impossible::si;
 use super::material::section;
@@ -203,8 +203,8 @@ impl SceneSettings {
                 format!("0 to {} m", si(most)),
             ));
         }
-        let least = self.wire.outer_diameter() + 2.0 * beside;
-        if f.inner_distance < least {
+        let wire = self.wire.outer_diameter();
+        if between_turns(f.inner_distance - 2.0 * beside, wire).is_none() {
             let reason = match beside > 0.0 {
                 true => "the wire is wider than the insulated flanges are apart",
                 false => "the wire is wider than the flanges are apart",
@@ -212,7 +212,10 @@ impl SceneSettings {
             problems.add(self.impossible(
                 "core.flange.inner_distance",
                 reason,
-                format!("at least {} m, or 0 for no flanges", si(least)),
+                format!(
+                    "at least {} m, or 0 for no flanges",
+                    si(wire + 2.0 * beside)
+                ),
             ));
         }
         Some(Flange {
@@ -279,7 +282,7 @@ impl SceneSettings {
                 }
                 let wire = self.wire.outer_diameter();
                 if let Some(room) = extent.window
-                    && room.widest[1] - room.widest[0] < wire
+                    && between_turns(room.widest[1] - room.widest[0], wire).is_none()
                 {
                     problems.add(self.impossible(
                         "wire.diameter",

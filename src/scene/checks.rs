@@ -1,7 +1,7 @@
 //! Leaves that contradict each other, each told with the leaf to change.
 
 use super::build::{COARSEST, FINEST};
-use super::extent::{Extent, ROUNDING};
+use super::extent::{Extent, ROUNDING, between_turns};
 use super::impossible::si;
 use super::problems::Problems;
 use super::{Core, Integrator, NozzleLaw, SceneError, Solver};
@@ -73,10 +73,11 @@ impl SceneSettings {
             [low, high] = room.widest;
         }
         let rounding = ROUNDING * length;
-        let (low, high) = (low + wire.radius(), high - wire.radius());
         // (between flanges that leave the wire no room no place would do: their distance has been refused)
+        let has_room = between_turns(high - low, wire.diameter).is_some();
+        let (low, high) = (low + wire.radius(), high - wire.radius());
         let within = (low - rounding..=high + rounding).contains(&self.start.clamp_y);
-        if low <= high && !within {
+        if has_room && !within {
             problems.add(self.impossible(
                 "start.clamp_y",
                 match extent.window {

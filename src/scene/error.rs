@@ -140,6 +140,9 @@ pub enum SceneError {
         /// what would do
         allowed: Box<str>,
     },
+    /// No scene, and no check that says why.
+    #[error("no scene can be made of these values, and no check says why: a fault of coilwind")]
+    Unexplained,
     /// More than one of the above, a line each.
     #[error("{}", lines(errors))]
     Several {

@@ -6,6 +6,13 @@ use crate::geometry::Room;
 /// Share of a length by which it may be missed: by faces in an STL file, which has single precision, and by sums of pitches.
 pub(super) const ROUNDING: f64 = 1e-6;
 
+/// How far the first and the last turn of wire of the diameter `d` may lie apart in a room of this `width`, m; none where the wire
+/// has no room. One wire has room between flanges that are its diameter apart.
+pub(super) fn between_turns(width: f64, d: f64) -> Option<f64> {
+    let apart = width * (1.0 + ROUNDING) - d;
+    (apart >= 0.0).then_some(apart)
+}
+
 /// Room the core takes up.
 pub(super) struct Extent {
     /// largest distance from the axis, m

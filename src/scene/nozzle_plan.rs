@@ -5,7 +5,7 @@
 
 use super::SceneError;
 use super::angle_table::Form;
-use super::extent::{Extent, ROUNDING};
+use super::extent::{Extent, ROUNDING, between_turns};
 use super::impossible::si;
 use super::nozzle_law::NozzleLaw;
 use super::nozzle_trail::Trail;
@@ -190,7 +190,8 @@ impl SceneSettings {
             return None;
         }
         let least = w.pitch.max(d);
-        let most_in = |width: f64| ((width - d) / least * (1.0 + ROUNDING)).floor() + 1.0;
+        let most_in =
+            |width: f64| between_turns(width, d).map_or(0.0, |apart| (apart / least).floor() + 1.0);
         let (fit, most) = (width.map(most_in), widest.map(most_in));
         if most.is_some_and(|most| most < 1.0) {
             // flanges so near to each other are told already
@@ -235,7 +236,7 @@ impl SceneSettings {
             problems.add(self.impossible("winding.turns_per_layer", reason, allowed));
             return None;
         }
-        let room = width.map(|width| width * (1.0 + ROUNDING) - d);
+        let room = width.map(|width| between_turns(width, d).unwrap_or(0.0));
         // with room for half a pitch more every layer has as many turns
         let has_half = |pitch: f64| room.is_none_or(|room| (turns - 0.5) * pitch <= room);
         let pitch = match (w.pitch, width) {

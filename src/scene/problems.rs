@@ -35,9 +35,23 @@ impl Problems {
         }
     }
 
-    /// The value where nothing is wrong. There is one in that case.
+    /// The value where nothing is wrong. There is one in that case; if there is none, that is told.
     pub(super) fn finish_with<T>(self, value: Option<T>) -> Result<T, SceneError> {
-        let nothing = SceneError::Several { errors: Vec::new() };
-        self.finish().and_then(|()| value.ok_or(nothing))
+        self.finish()
+            .and_then(|()| value.ok_or(SceneError::Unexplained))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The message was empty.
+    #[test]
+    fn what_is_missing_without_a_problem_is_told() {
+        let error = Problems::default().finish_with(None::<()>);
+        let said = error.expect_err("there is no value").to_string();
+        assert!(said.contains("fault of coilwind"), "{said}");
+        assert_eq!(Problems::default().finish_with(Some(1)), Ok(1));
     }
 }

@@ -522,3 +522,32 @@ fn what_cannot_be_led_is_refused_with_the_key_to_change() {
         "{warnings:?}"
     );
 }
+
+/// Sums of decimals are off in their last digits: the message was empty, or asked for at least the distance that was given.
+#[test]
+fn a_window_of_one_wire_is_wide_enough() {
+    let windows = (1..=20).flat_map(|d| (0..=10).map(move |insulation| (5 * d, 5 * insulation)));
+    for (d, insulation) in windows {
+        let disc = |window: u32| {
+            let mm = |hundredths: u32| format!("{}.{:02}", hundredths / 100, hundredths % 100);
+            let text = format!(
+                "[core]\nshape = 'cylinder'\nradius_mm = 7\n\
+                 flange = {{ inner_distance_mm = {}, insulation_mm = {} }}\n\
+                 [wire]\ndiameter_mm = {}\n[tensioner]\ntension = 0.1\n[contact]\nstiffness = 1e10\n\
+                 [nozzle]\ndistance_mm = 20\n[traverse]\nmode = 'orthocyclic'\n[winding]\nlayers = 3\n",
+                mm(window),
+                mm(insulation),
+                mm(d)
+            );
+            parse(&text).expect("parses").build()
+        };
+        let one = disc(d + 2 * insulation);
+        let law = one.unwrap_or_else(|error| panic!("{d} {insulation}: {error}"));
+        assert_eq!(law.nozzle_law.turns(), 3.0, "{d} {insulation}");
+        let narrower = disc(d + 2 * insulation - 1).expect_err("no room");
+        assert_says(
+            &narrower.to_string(),
+            &["core.flange.inner_distance", "the wire is wider"],
+        );
+    }
+}
