@@ -5,8 +5,9 @@ use super::coil::Coil;
 use super::station::Station;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::f64::consts::PI;
 
-/// Turns in a layer from which on it is one, whatever the nozzle did. Chosen: the last turn of a full layer has no room and
+/// Turns over a layer from which on they are layers, whatever the nozzle did. Chosen: the last turn of a full layer has no room and
 /// climbs, for up to one and a half turns until it has settled.
 const LAYER: f64 = 2.0;
 
@@ -95,8 +96,9 @@ impl Coil {
 
     /// Layers of the settled wire.
     ///
-    /// The nozzle makes a pass for each, so wire that climbs within its pass is none of its own; from two turns on it is. The last
-    /// swing of a nozzle that swings past its places is no pass.
+    /// The nozzle makes a pass for each, so wire that climbs within its pass is none of its own; from two turns on it is, also where
+    /// it heaps up turn on turn: less than two turns lie over the layers of a coil. The last swing of a nozzle that swings past its
+    /// places is no pass.
     pub fn layers(&self) -> u32 {
         let end = self.stations().last().map_or(0.0, |station| station.angle);
         let swing = self.last_swing(end);
@@ -106,12 +108,21 @@ impl Coil {
         };
         let by_pass = self.stations().map(|s| s.layer.min(passes(s))).max();
         let contour = self.contour();
-        let by_wire = contour.iter().filter(|layer| layer.turns >= LAYER);
-        by_wire
-            .map(|layer| layer.layer)
-            .chain(by_pass)
-            .max()
-            .unwrap_or(0)
+        let by_wire = contour
+            .iter()
+            .rev()
+            .scan(0.0, |turns, layer| {
+                *turns += layer.turns;
+                Some((layer.layer, *turns))
+            })
+            .find_map(|(layer, turns)| (turns >= LAYER).then_some(layer));
+        by_wire.max(by_pass).unwrap_or(0)
+    }
+
+    /// Turns of settled wire over this layer.
+    pub fn turns_over(&self, layer: u32) -> f64 {
+        let over = self.stations().filter(|station| station.layer > layer);
+        over.count() as f64 / STATIONS_PER_TURN as f64
     }
 
     /// Least distance of settled wire from a line over the core, m; negative beyond it. `None` without wire.
@@ -119,12 +130,27 @@ impl Coil {
     /// The line is `height` (m) over the core at y = 0 and rises towards +y by the angle `taper`, rad.
     pub fn clearance(&self, height: f64, taper: f64) -> Option<f64> {
         let radius = 0.5 * self.spec.diameter;
+        self.below(height, taper)
+            .map(|centre| centre - radius)
+            .reduce(f64::min)
+    }
+
+    /// Turns that settled wire would make of what lies beyond such a line, by the share of its section.
+    pub fn turns_beyond(&self, height: f64, taper: f64) -> f64 {
+        let radius = 0.5 * self.spec.diameter;
+        let beyond = self.below(height, taper).map(|centre| {
+            // share of a circle that a chord cuts off
+            let at = (centre / radius).clamp(-1.0, 1.0);
+            (libm::acos(at) - at * (1.0 - at * at).sqrt()) / PI
+        });
+        beyond.sum::<f64>() / STATIONS_PER_TURN as f64
+    }
+
+    /// How far the centreline of settled wire lies below a line over the core, station by station, m.
+    fn below(&self, height: f64, taper: f64) -> impl Iterator<Item = f64> {
+        let radius = 0.5 * self.spec.diameter;
         let (slope, across) = (libm::tan(taper), libm::cos(taper));
         self.stations()
-            .map(|s| {
-                let centre = s.height + radius;
-                (height + slope * s.position.y - centre) * across - radius
-            })
-            .reduce(f64::min)
+            .map(move |s| (height + slope * s.position.y - (s.height + radius)) * across)
     }
 }

@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 pub struct Product {
     /// turns at rest
     pub turns: f64,
-    /// layers that settled wire lies in; a last turn that climbs is none
+    /// layers that settled wire lies in; less than two turns that climb over them are none
     pub layers: u32,
     /// name of the material
     pub material: String,
@@ -40,7 +40,8 @@ pub struct Product {
     pub clearance_m: Option<f64>,
 }
 
-/// A rectangle over the core, and the share of it that wire takes up: turns at rest times the section of the wire.
+/// A rectangle over the core, and the share of it that wire takes up: turns at rest times the section of the wire. Wire that lies
+/// over it, beyond the limit line or over the last layer, does not count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fill {
     /// along the axis, m
@@ -70,7 +71,7 @@ impl Winding {
         let last = self.coil.stations().last();
         let length = last.map_or(0.0, |station| station.arc);
         let turns = self.run.outputs.turns_settled;
-        let fill = |width_m: f64, height_m: f64| {
+        let fill = |turns: f64, width_m: f64, height_m: f64| {
             let share = |d: f64| turns * 0.25 * PI * d * d / (width_m * height_m);
             Fill {
                 width_m,
@@ -83,6 +84,7 @@ impl Winding {
         let contour = self.coil.contour();
         let layers = self.coil.layers();
         let top = contour.iter().find(|layer| layer.layer == layers);
+        let in_layers = turns - self.coil.turns_over(layers);
         let limit = self.scene.window;
         Product {
             turns,
@@ -95,13 +97,16 @@ impl Winding {
             resistivity_ohm_m: self.scene.resistivity,
             resistance_ohm: self.resistance_of(length, self.coil.added_by_stretch(length)),
             fill: self.coil.fill_factor(),
-            window: limit
-                .and_then(|window| window.size())
-                .map(|[width, height]| Fill {
-                    faces_m: limit.and_then(|window| window.faces),
-                    ..fill(width, height)
-                }),
-            coil: top.map(|layer| fill(self.coil.coil_width(), layer.height_groove_m)),
+            window: limit.and_then(|window| Some((window, window.size()?))).map(
+                |(window, [width, height])| {
+                    let beyond = self.coil.turns_beyond(window.height, window.taper);
+                    Fill {
+                        faces_m: window.faces,
+                        ..fill(turns - beyond, width, height)
+                    }
+                },
+            ),
+            coil: top.map(|layer| fill(in_layers, self.coil.coil_width(), layer.height_groove_m)),
             contour,
             clearance_m: limit.and_then(|window| self.coil.clearance(window.height, window.taper)),
         }

@@ -115,6 +115,39 @@ fn a_last_turn_that_climbs_is_no_layer() {
     assert!(Coil::new(spec()).contour().is_empty());
 }
 
+/// Each turn of a heap beside a flange lies over the one before: no layer had two turns, and twenty turns seven layers high were
+/// told as one layer, which they filled to 108 %.
+#[test]
+fn turns_that_heap_up_are_layers() {
+    for (heaped, layers, climbing) in [(1.4, 1, 1.4), (2.8, 2, 1.8), (5.8, 5, 1.8)] {
+        let nodes = on_cylinder(TURNS + heaped, 1.0, |angle| {
+            let turn = (angle / TAU).floor();
+            (D * turn.min(TURNS - 1.0), D * (turn + 1.0 - TURNS).max(0.0))
+        });
+        let coil = wound(spec(), &nodes);
+        assert_eq!(coil.contour().len() as f64, 1.0 + f64::ceil(heaped));
+        assert_eq!(coil.layers(), layers, "{heaped}");
+        let over = coil.turns_over(layers);
+        // a layer changes once so many stations have said so
+        assert!((over - climbing).abs() < 0.15, "{over}");
+    }
+}
+
+/// Wire over the rim counted as wire in the window.
+#[test]
+fn wire_beyond_the_limit_line_is_told_by_its_share() {
+    let coil = ideal(2, -0.01, false);
+    let top = D + step();
+    let near = |got: f64, expected: f64| assert!((got - expected).abs() < 0.1, "{got} {expected}");
+    assert_eq!(coil.turns_beyond(top + 1e-9, 0.0), 0.0);
+    near(coil.turns_beyond(top - 0.5 * D, 0.0), 0.5 * TURNS);
+    near(coil.turns_beyond(0.5 * D, 0.0), 1.5 * TURNS);
+    near(coil.turns_beyond(-1e-9, 0.0), 2.0 * TURNS);
+    // a quarter of the diameter cuts off a segment of (2 pi / 3 - sin(2 pi / 3)) / 2 pi
+    let segment = 1.0 / 3.0 - 0.75_f64.sqrt() / TAU;
+    near(coil.turns_beyond(top - 0.25 * D, 0.0), segment * TURNS);
+}
+
 /// Of a nozzle that swings past each place the last swing, which nothing follows, was a pass, and a last turn that climbs was a layer.
 #[test]
 fn the_last_swing_of_the_nozzle_makes_no_layer() {
