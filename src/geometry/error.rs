@@ -115,6 +115,16 @@ pub enum MeshError {
         /// signed volume, m^3
         volume: f64,
     },
+    /// Normals of one of several bodies point inwards, and it is no cavity in the others.
+    #[error(
+        "the body with a corner at {at} is inside out: its signed volume is {volume:.3e} m^3, not positive, and it is no cavity in another body"
+    )]
+    BodyInsideOut {
+        /// one of its corners that lies in no other body
+        at: Place,
+        /// its signed volume, m^3
+        volume: f64,
+    },
     /// A dimension of a generated shape is out of range.
     #[error("{name} = {value} is out of range: {allowed}")]
     Dimension {

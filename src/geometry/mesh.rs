@@ -5,9 +5,10 @@
 //! triangles of an edge read the *same* edge record, so both decide alike whether a point lies
 //! beside the edge or past its end. That is what keeps a touch from being lost or counted twice.
 
+use super::bodies::{bounds, check_bodies, signed_volume};
 use super::elements::{Corner, Edge, Facet};
 use super::error::MeshError;
-use super::topology::{connected, corners, edges, rise};
+use super::topology::{corners, edges, pieces, rise};
 use crate::math::V3;
 
 /// Largest coordinate accepted, m. Chosen far above any machine, far below where squares of
@@ -51,6 +52,8 @@ impl TriMesh {
         let mut facets = facets(&vertices, &triangles)?;
         let extent = extent(&vertices, &triangles);
         let edges = edges(&vertices, &mut facets)?;
+        let (piece, count) = pieces(&facets);
+        check_bodies(&vertices, &triangles, &piece, count)?;
         let volume = signed_volume(&vertices, &triangles);
         if volume <= 1e-15 * extent * extent * extent {
             return Err(MeshError::InsideOut { volume });
@@ -59,7 +62,7 @@ impl TriMesh {
         let convex = edges
             .iter()
             .all(|edge| rise(edge, &vertices, &facets) <= FLAT * extent)
-            && connected(&facets);
+            && count == 1;
         Ok(Self {
             vertices,
             triangles,
@@ -191,31 +194,6 @@ fn facets(vertices: &[V3], triangles: &[[u32; 3]]) -> Result<Vec<Facet>, MeshErr
 fn extent(vertices: &[V3], triangles: &[[u32; 3]]) -> f64 {
     let (low, high) = bounds(vertices, triangles);
     (high - low).max()
-}
-
-/// Bounding box of all used vertices, m: lowest and highest corner.
-pub(crate) fn bounds(vertices: &[V3], triangles: &[[u32; 3]]) -> (V3, V3) {
-    let mut low = V3::repeat(f64::INFINITY);
-    let mut high = V3::repeat(f64::NEG_INFINITY);
-    for v in triangles.iter().flatten() {
-        low = low.inf(&vertices[*v as usize]);
-        high = high.sup(&vertices[*v as usize]);
-    }
-    (low, high)
-}
-
-/// Divergence theorem over tetrahedra from one vertex of the mesh (less cancellation than from
-/// the origin), m^3.
-fn signed_volume(vertices: &[V3], triangles: &[[u32; 3]]) -> f64 {
-    let Some(first) = triangles.first() else {
-        return 0.0;
-    };
-    let apex = vertices[first[0] as usize];
-    let tetrahedron = |corner: &[u32; 3]| {
-        let [a, b, c] = corner.map(|v| vertices[v as usize] - apex);
-        a.dot(&b.cross(&c)) / 6.0
-    };
-    triangles.iter().map(tetrahedron).sum()
 }
 
 #[cfg(test)]

@@ -17,6 +17,7 @@
 pub mod generate;
 pub mod stl;
 
+mod bodies;
 mod bvh;
 mod elements;
 mod error;

@@ -38,7 +38,7 @@ impl TriMesh {
     /// A flange is what a straight line along y meets in a face steeper than 45 degrees, from nearly everywhere round the core. So
     /// the ribs of a core with grooves are none as long as they are lower. Where `y` lies in a flange, the room is the nearest.
     pub fn room(&self, y: f64, least: f64) -> Option<Room> {
-        let (low, high) = super::mesh::bounds(&self.vertices, &self.triangles);
+        let (low, high) = super::bodies::bounds(&self.vertices, &self.triangles);
         let at = |k: usize| low.y + (high.y - low.y) * (k as f64 + 0.5) / SECTIONS as f64;
         let mut places: Vec<f64> = (0..SECTIONS).map(at).collect();
         places.sort_by(|a, b| (a - y).abs().total_cmp(&(b - y).abs()));
@@ -47,7 +47,7 @@ impl TriMesh {
     }
 
     /// The convex hull of the section at `y`; none where the axis does not go through it.
-    fn section(&self, y: f64) -> Option<Hull> {
+    pub(crate) fn section(&self, y: f64) -> Option<Hull> {
         Hull::of(self.section_points(y).iter().map(|p| [p.x, p.z]).collect())
     }
 

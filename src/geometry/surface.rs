@@ -1,9 +1,10 @@
 //! A mesh together with its search tree: the core as contact and measures see it.
 
+use super::bodies;
 use super::bvh::Bvh;
 use super::feature::Nearest;
 use super::level::LevelNearest;
-use super::mesh::{self, TriMesh};
+use super::mesh::TriMesh;
 use super::touch::Touch;
 use super::wall::WallFoot;
 use crate::math::V3;
@@ -24,7 +25,7 @@ impl Surface {
     /// Builds the search tree of a mesh.
     pub fn new(mesh: TriMesh) -> Self {
         let bvh = Bvh::new(&mesh);
-        let bounds = mesh::bounds(&mesh.vertices, &mesh.triangles);
+        let bounds = bodies::bounds(&mesh.vertices, &mesh.triangles);
         let radius_sq = |v: &u32| {
             let p = mesh.vertices[*v as usize];
             p.x * p.x + p.z * p.z

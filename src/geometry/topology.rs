@@ -165,19 +165,26 @@ pub(super) fn rise(edge: &Edge, vertices: &[V3], facets: &[Facet]) -> f64 {
     over(0, 1).min(over(1, 0))
 }
 
-/// Whether all triangles hang together.
-pub(super) fn connected(facets: &[Facet]) -> bool {
-    let mut seen = vec![false; facets.len()];
-    let mut todo = vec![0u32];
-    seen[0] = true;
-    let mut count = 1;
-    while let Some(triangle) = todo.pop() {
-        for next in facets[triangle as usize].across {
-            if !std::mem::replace(&mut seen[next as usize], true) {
-                count += 1;
-                todo.push(next);
+/// The number of the piece that each triangle belongs to, from 0, and how many pieces there are: what hangs together by edges.
+pub(super) fn pieces(facets: &[Facet]) -> (Vec<u32>, u32) {
+    let mut piece = vec![u32::MAX; facets.len()];
+    let mut count = 0;
+    let mut todo = Vec::new();
+    for first in 0..facets.len() as u32 {
+        if piece[first as usize] != u32::MAX {
+            continue;
+        }
+        piece[first as usize] = count;
+        todo.push(first);
+        while let Some(triangle) = todo.pop() {
+            for next in facets[triangle as usize].across {
+                if piece[next as usize] == u32::MAX {
+                    piece[next as usize] = count;
+                    todo.push(next);
+                }
             }
         }
+        count += 1;
     }
-    count == facets.len()
+    (piece, count)
 }

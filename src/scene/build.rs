@@ -9,8 +9,9 @@ use super::problems::Problems;
 use super::{
     Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver, Window,
 };
-use crate::geometry::Room;
 use crate::geometry::stl::{self, StlError};
+use crate::geometry::{Room, TriMesh};
+use crate::math::V3;
 use crate::rod::Twist;
 use crate::settings::{NozzleFollows, SceneSettings, SolverSettings, Spindle};
 use std::path::{Path, PathBuf};
@@ -348,6 +349,7 @@ impl SceneSettings {
             extent.y_min = extent.y_min.min(vertex.y);
             extent.y_max = extent.y_max.max(vertex.y);
         }
+        self.check_axis(&mesh, [extent.y_min, extent.y_max])?;
         // Wire that is no wider than they are high lies between flanges; what is lower are ribs.
         if self.core.flange.inner_distance == 0.0 {
             extent.window = mesh.room(self.start.clamp_y, self.wire.outer_diameter());
@@ -356,6 +358,34 @@ impl SceneSettings {
             .window
             .map_or(extent.turning_radius, |room| room.radius);
         Ok(extent)
+    }
+
+    /// Refuses a core with these ends (m) that does not surround its axis where the wire is clamped: nothing would draw the wire in.
+    fn check_axis(&self, mesh: &TriMesh, [low, high]: [f64; 2]) -> Result<(), SceneError> {
+        let (clamp, wire) = (self.start.clamp_y, self.wire.outer_diameter());
+        // (a clamp beside the core is told by itself)
+        let beside = !(low..=high).contains(&clamp);
+        // a step in the core has no section right at it
+        let sections = [0.0, -0.5, 0.5].map(|aside| clamp + aside * wire);
+        if beside || sections.iter().any(|&y| mesh.section(y).is_some()) {
+            return Ok(());
+        }
+        let points = mesh.section_points(clamp);
+        let range = |along: fn(&V3) -> f64| {
+            let values = || points.iter().map(along);
+            let (least, most) = (values().reduce(f64::min), values().reduce(f64::max));
+            Some(format!("{} to {} m", si(least?), si(most?)))
+        };
+        let place = match range(|p| p.x).zip(range(|p| p.z)) {
+            Some((x, z)) => format!("lies beside its axis, at x = {x}, z = {z},"),
+            None => "has a gap".to_owned(),
+        };
+        let reason = format!(
+            "the core {place} where start.clamp_y = {} m clamps the wire",
+            si(clamp)
+        );
+        let allowed = "a core that surrounds its axis there; move the mesh so that its axis is y";
+        Err(self.impossible("core.file", reason, allowed))
     }
 
     /// Solver settings with the spacing that suits the method where none is given.

@@ -94,6 +94,68 @@ fn a_mesh_that_makes_no_core_is_told_with_its_key_and_place() {
     }
 }
 
+/// Only the volume of all bodies of a file together was looked at: a flange could be inside out.
+#[test]
+fn one_body_of_several_that_is_inside_out_is_told_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let inside_out = |body: Vec<[[f32; 3]; 3]>| body.into_iter().map(|[a, b, c]| [a, c, b]);
+    let mut flanged = triangles();
+    flanged.extend(inside_out(of_a_box(9.0, [12.0, 14.0], 13.0)));
+    let said = said_of(folder.path(), "flanged.stl", &text(" part", &flanged));
+    assert_says(
+        &said.expect("must be refused"),
+        &[
+            "test.toml:3: core.file = ",
+            "x = 9.000, y = 1",
+            "inside out",
+            "allowed: ",
+        ],
+    );
+    // a cavity is one by right
+    let mut hollow = triangles();
+    hollow.extend(inside_out(of_a_box(3.0, [-12.0, 14.0], 7.0)));
+    let said = said_of(folder.path(), "hollow.stl", &text(" part", &hollow));
+    assert_eq!(said, None);
+}
+
+/// A core beside its axis was wound on: the wire turned round nothing, and the run asked for more turns.
+#[test]
+fn a_core_beside_its_axis_is_told_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let shifted = |body: Vec<[[f32; 3]; 3]>, by: [f32; 2]| {
+        let corner = move |[x, y, z]: [f32; 3]| [x + by[0], y, z + by[1]];
+        body.into_iter().map(move |t| t.map(corner))
+    };
+    let moved = |x_mm: f32| {
+        let moved: Vec<_> = shifted(triangles(), [x_mm, 0.0]).collect();
+        said_of(folder.path(), "moved.stl", &text(" part", &moved))
+    };
+    assert_says(
+        &moved(8.0).expect("must be refused"),
+        &[
+            "test.toml:3: core.file = ",
+            "x = 0.002 to 0.014 m, z = -0.01 to 0.01 m",
+            "start.clamp_y",
+            "move the mesh so that its axis is y",
+        ],
+    );
+    assert_eq!(moved(5.0), None);
+    // the axis goes through the hole of four walls round it
+    let mut walls = Vec::new();
+    for side in [-1.0, 1.0] {
+        walls.extend(shifted(
+            of_a_box(1.0, [-15.0, 15.0], 9.5),
+            [5.0 * side, 0.0],
+        ));
+        walls.extend(shifted(
+            of_a_box(5.0, [-14.0, 14.0], 1.0),
+            [0.0, 9.0 * side],
+        ));
+    }
+    let said = said_of(folder.path(), "walls.stl", &text(" part", &walls));
+    assert_eq!(said, None);
+}
+
 /// Wire of 0.5 mm on a box of 12 x 20 mm between flanges of the file's own, 3 mm high, with their faces at -4 and 5 mm.
 fn between_flanges(folder: &Path, wire_mm: f64, more: &str) -> Result<Scene, String> {
     let mut all = of_a_box(6.0, [-6.0, 7.0], 10.0);
