@@ -76,6 +76,7 @@ impl SceneSettings {
         let wire = wire.map(|wire| wire.section);
         let core = self.core(&mut problems);
         let core = problems.note(core);
+        self.check_counts(&mut problems);
         let mut way = Problems::default();
         let law = core.as_ref().and_then(|(_, extent)| {
             self.nozzle_law(wire.as_ref(), extent, (&mut problems, &mut way))

@@ -94,9 +94,11 @@ impl SceneSettings {
         let clear = extent.turning_radius + wire.diameter;
         if distance <= clear {
             let with_flanges = extent.turning_radius > extent.winding_radius;
-            let (who, or) = match with_flanges {
-                true => ("flanges need", ", or a lower core.flange.height"),
-                false => ("core needs", ""),
+            let of_the_scene = self.core.flange.inner_distance != 0.0;
+            let (who, or) = match (with_flanges, of_the_scene) {
+                (true, true) => ("flanges need", ", or a lower core.flange.height"),
+                (true, false) => ("flanges need", ", or a core.file with lower flanges"),
+                (false, _) => ("core needs", ""),
             };
             problems.add(self.impossible(
                 "nozzle.distance",

@@ -102,6 +102,27 @@ impl SceneSettings {
         matches!(self.traverse.mode.as_str(), "orthocyclic" | "helical")
     }
 
+    /// The counts of turns and layers that are no whole numbers, where layers are planned.
+    fn part_counts(&self) -> Vec<&'static str> {
+        let w = &self.winding;
+        let counts = [
+            ("winding.layers", w.layers),
+            ("winding.turns_per_layer", w.turns_per_layer),
+        ];
+        let parts = counts.iter().filter(|(_, count)| count.fract() != 0.0);
+        parts
+            .filter(|_| self.plans_layers())
+            .map(|(key, _)| *key)
+            .collect()
+    }
+
+    /// Turns and layers are counted in whole numbers, whatever core and wire are.
+    pub(super) fn check_counts(&self, problems: &mut Problems) {
+        for key in self.part_counts() {
+            problems.add(self.impossible(key, "not a whole number", "whole numbers"));
+        }
+    }
+
     /// The nozzle's way; of a nozzle that leads this `wire`, where there is one. Of what is wrong, the second `problems` are those
     /// of where it goes.
     pub(super) fn nozzle_law(
@@ -167,14 +188,9 @@ impl SceneSettings {
             Some(room) => (Some(distance(room.faces)), Some(distance(room.widest))),
             None => (None, None),
         };
-        for (key, count) in [
-            ("winding.layers", w.layers),
-            ("winding.turns_per_layer", w.turns_per_layer),
-        ] {
-            if count.fract() != 0.0 {
-                problems.add(self.impossible(key, "not a whole number", "whole numbers"));
-                return None;
-            }
+        if !self.part_counts().is_empty() {
+            // these are told already
+            return None;
         }
         if w.pitch != 0.0 && !(d * (1.0 - ROUNDING)..=2.0 * d).contains(&w.pitch) {
             let reason = match w.pitch < d {
@@ -309,8 +325,12 @@ impl SceneSettings {
         extent: &Extent,
     ) -> Result<NozzleLaw, SceneError> {
         let crossover = self.traverse.crossover;
-        let trail = self.trails(wire, extent, stacked.rise(wire.diameter))?;
-        self.check_swing(|crossover| stacked.reach(&trail, crossover), extent)?;
+        let trails = self.trails(wire, extent, stacked.rise(wire.diameter))?;
+        let reach = |distance: f64, crossover: f64| {
+            stacked.reach(|layer| trails(distance, layer), crossover)
+        };
+        self.check_swing(reach, extent)?;
+        let trail = |layer: usize| trails(self.nozzle.distance, layer);
         let [step, delay] = [crossover, self.traverse.crossover_delay].map(|angle| angle / TAU);
         let places = stacked.places(self.traverse.lead);
         let mut points = vec![[0.0, places[0].1]];

@@ -102,7 +102,7 @@ impl SceneSettings {
         self.traverse.mode == "orthocyclic" && self.traverse.trail == "led"
     }
 
-    /// The trail of this wire in each layer, from 0; layers rise by `rise`, m.
+    /// The trail of this wire behind a nozzle at a distance, m, in each layer, from 0; layers rise by `rise`, m.
     ///
     /// # Errors
     /// Refuses a core on which the free span changes within a turn.
@@ -111,7 +111,7 @@ impl SceneSettings {
         wire: &Section,
         extent: &Extent,
         rise: f64,
-    ) -> Result<impl Fn(usize) -> Trail + use<>, SceneError> {
+    ) -> Result<impl Fn(f64, usize) -> Trail + use<>, SceneError> {
         if self.core.shape != "cylinder" {
             return Err(self.impossible(
                 "traverse.trail",
@@ -124,26 +124,25 @@ impl SceneSettings {
         }
         let lowest = extent.winding_radius + 0.5 * wire.diameter;
         let stiff = (sideways(wire, lowest) / self.tensioner.tension.max(LEAST_PULL)).sqrt();
-        let distance = self.nozzle.distance;
-        Ok(move |layer| Trail::of(lowest + layer as f64 * rise, distance, stiff))
+        Ok(move |distance, layer| Trail::of(lowest + layer as f64 * rise, distance, stiff))
     }
 
     /// The nozzle swings past the places beside a flange, but not beyond the end of the core: `reach` says from where to where
-    /// it goes with a crossover of so many rad, m.
+    /// it goes at a distance, m, with a crossover of so many rad, m.
     pub(super) fn check_swing(
         &self,
-        reach: impl Fn(f64) -> [f64; 2],
+        reach: impl Fn(f64, f64) -> [f64; 2],
         extent: &Extent,
     ) -> Result<(), SceneError> {
-        let fits = |crossover: f64| {
-            let [low, high] = reach(crossover);
+        let fits = |distance: f64, crossover: f64| {
+            let [low, high] = reach(distance, crossover);
             low >= extent.y_min && high <= extent.y_max
         };
-        let crossover = self.traverse.crossover;
-        if fits(crossover) {
+        let (distance, crossover) = (self.nozzle.distance, self.traverse.crossover);
+        if fits(distance, crossover) {
             return Ok(());
         }
-        let [low, high] = reach(crossover);
+        let [low, high] = reach(distance, crossover);
         let end = match extent.window {
             Some(_) => "the outer face of a flange, over which it would draw the wire",
             None => "an end of the core",
@@ -153,28 +152,48 @@ impl SceneSettings {
             si(low),
             si(high)
         );
-        let (mut short, mut long) = (crossover, LONGEST);
-        if !fits(long) {
+        if fits(distance, LONGEST) {
+            let long = last_that_fits(LONGEST, crossover, |crossover| fits(distance, crossover));
             let allowed = format!(
-                "free; or a nozzle.distance below {} m, or a core that reaches from there to there",
-                si(self.nozzle.distance)
+                "{} to {} rad, or traverse.trail = free",
+                si(long),
+                si(LONGEST)
             );
-            return Err(self.impossible("traverse.trail", reason, allowed));
+            return Err(self.impossible("traverse.crossover", reason, allowed));
         }
-        while long - short > 1e-3 {
-            let middle = 0.5 * (short + long);
-            match fits(middle) {
-                true => long = middle,
-                false => short = middle,
-            }
-        }
-        let allowed = format!(
-            "{} to {} rad, or traverse.trail = free",
-            si(long),
-            si(LONGEST)
-        );
-        Err(self.impossible("traverse.crossover", reason, allowed))
+        // no nearer than the coil and the turning core leave it
+        let d = self.wire.outer_diameter();
+        let coil = extent.winding_radius + self.winding.layers * d;
+        let nearest = f64::max(coil, extent.turning_radius) + d;
+        let farthest = |crossover: f64| {
+            let near = nearest < distance && fits(nearest, crossover);
+            near.then(|| last_that_fits(nearest, distance, |distance| fits(distance, crossover)))
+        };
+        let nearer = match (farthest(crossover), farthest(LONGEST)) {
+            (Some(most), _) => format!("a nozzle.distance of at most {} m, or ", si(most)),
+            (None, Some(most)) => format!(
+                "a nozzle.distance of at most {} m with a traverse.crossover of {} rad, or ",
+                si(most),
+                si(LONGEST)
+            ),
+            (None, None) => String::new(),
+        };
+        let allowed = format!("free; or {nearer}a core that reaches from there to there");
+        Err(self.impossible("traverse.trail", reason, allowed))
     }
+}
+
+/// The last number from one that fits towards one that does not that fits as well, but for a ten-thousandth of their difference.
+fn last_that_fits(fit: f64, unfit: f64, fits: impl Fn(f64) -> bool) -> f64 {
+    let (mut last, mut beyond) = (fit, unfit);
+    while (beyond - last).abs() > 1e-4 * (unfit - fit).abs() {
+        let middle = 0.5 * (last + beyond);
+        match fits(middle) {
+            true => last = middle,
+            false => beyond = middle,
+        }
+    }
+    last
 }
 
 #[cfg(test)]

@@ -81,7 +81,7 @@ const KEYS_OF_CHOICES: [KeysOf; 11] = [
 
 impl SceneSettings {
     /// Whether it is known between which turns wire climbs to the next layer.
-    fn plans_layers(&self) -> bool {
+    pub(super) fn plans_layers(&self) -> bool {
         self.winds_layers() || self.traverse.mode == "table" && self.winding.turns_per_layer > 0.0
     }
 
@@ -110,15 +110,23 @@ impl SceneSettings {
         let key = match self.traverse.mode.as_str() {
             "table" => "traverse.file",
             _ if self.traverse.lead != 0.0 => "traverse.lead",
+            _ if self.leads_trail() => "traverse.crossover",
             "by-angle" if self.nozzle.y_start != farthest => PER_TURN,
             _ => "nozzle.y_start",
         };
+        // a nozzle that leads swings the farther the longer the free span is, and the faster the wire crosses
+        let remedy = match self.leads_trail() {
+            true => "it swings less with a longer traverse.crossover or nearer to the core, and not with traverse.trail = free".to_owned(),
+            false => format!(
+                "keep the nozzle between {} and {} m, or farther from the core",
+                si(room.faces[0]),
+                si(room.faces[1])
+            ),
+        };
         let message = format!(
-            "the nozzle goes to {} m, {} m past the inner face of a flange: wire beside that flange lies against its rim or is wound over it; keep the nozzle between {} and {} m, or farther from the core",
+            "the nozzle goes to {} m, {} m past the inner face of a flange: wire beside that flange lies against its rim or is wound over it; {remedy}",
             si(farthest),
-            si(past),
-            si(room.faces[0]),
-            si(room.faces[1])
+            si(past)
         );
         Some((key, message))
     }

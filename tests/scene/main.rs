@@ -6,5 +6,8 @@ mod common;
 mod meshes;
 mod reading;
 mod refusals;
+mod remedies;
 mod several;
+#[path = "../common/stl.rs"]
+mod stl;
 mod wire;

@@ -124,3 +124,16 @@ fn a_key_that_the_shape_does_not_use_is_warned_of() {
     assert_says(&warnings[0], &["core.radius", "set core.shape = cylinder"]);
     assert!(warned("[core]\nwidth_x_mm = 12").is_empty());
 }
+
+/// The nozzle's way is planned on a core, and what is wrong with its counts was told only where there was one.
+#[test]
+fn counts_are_told_without_a_core() {
+    let layers = "[winding]\nlayers = 2.5\n[traverse]\nmode = 'orthocyclic'\n";
+    let alone = refused(&format!("{layers}[core]\nflange.inner_distance_mm = 9\n"));
+    let both = refused(&format!("{layers}[core]\nshape = 'mesh'\n"));
+    assert_eq!(alone.lines().count(), 1, "{alone}");
+    assert_eq!(both.lines().count(), 2, "{both}");
+    for said in [alone, both] {
+        assert_says(&said, &["winding.layers = 2.5", "whole number"]);
+    }
+}

@@ -1,0 +1,89 @@
+//! What a message says would do, does.
+
+use crate::common::{assert_says, parse, refused};
+
+/// Three layers between flanges of 4 mm, led onto their places.
+const LED: &str = "[wire]\ndiameter_mm = 0.5\nenamelled_diameter_mm = 0.56\nmaterial = 'copper-soft'\n\
+                   [core]\nshape = 'cylinder'\nradius_mm = 7\n\
+                   [core.flange]\ninner_distance_mm = 8.1\nheight_mm = 4\nthickness_mm = 1.5\n\
+                   [nozzle]\ndistance_mm = 14\ny_start_mm = -3.77\n[start]\nclamp_y_mm = -3.77\n\
+                   [tensioner]\ntension = 8\n[winding]\nlayers = 3\n\
+                   [traverse]\nmode = 'orthocyclic'\ntrail = 'led'\ncrossover_deg = 120\n";
+
+fn led(distance: &str, crossover: &str) -> String {
+    LED.replace("distance_mm = 14\ny", &format!("distance{distance}\ny"))
+        .replace("crossover_deg = 120", &format!("crossover{crossover}"))
+}
+
+/// The number after some words of a message.
+fn number_after<'a>(said: &'a str, words: &str) -> &'a str {
+    let rest = said.split(words).nth(1).expect("the words");
+    rest.split(' ').next().expect("a number")
+}
+
+/// The way out was a distance below that which was given, whatever it was.
+#[test]
+fn a_distance_from_which_a_trail_can_be_led_is_one() {
+    for distance in ["_mm = 100", "_mm = 99", "_mm = 300"] {
+        let said = refused(&led(distance, "_deg = 120"));
+        assert_says(&said, &["traverse.trail = led", "allowed: free; or a "]);
+        let most = number_after(&said, "nozzle.distance of at most ");
+        assert!(most.starts_with("0.02"), "{said}");
+        let text = led(&format!(" = {most}"), "_deg = 120");
+        parse(&text).unwrap().build().expect("near enough");
+    }
+    // wire that crosses at once is led from nowhere
+    let said = refused(&led("_mm = 100", "_deg = 20"));
+    let words = "nozzle.distance of at most ";
+    let most = number_after(&said, words);
+    assert_says(&said, &["m with a traverse.crossover of 6 rad, or a core"]);
+    let text = led(&format!(" = {most}"), " = 6");
+    parse(&text).unwrap().build().expect("near enough");
+}
+
+/// A nozzle that leads swings the farther the farther it is from the core; to move it there was the advice.
+#[test]
+fn a_nozzle_that_leads_past_a_flange_is_told_to_swing_less() {
+    let warned = |text: &str| -> Vec<String> {
+        let (_, warnings) = parse(text).unwrap().build_with_warnings().unwrap();
+        let warnings = warnings.iter().map(ToString::to_string);
+        warnings.filter(|said| said.contains("rim")).collect()
+    };
+    let said = warned(LED);
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert_says(&said[0], &["traverse.crossover", "nearer to the core"]);
+    assert!(!said[0].contains("farther"), "{}", said[0]);
+    let goes_to = |said: &str| -> f64 { number_after(said, "goes to ").parse().expect("a place") };
+    let nearer = warned(&led("_mm = 12", "_deg = 120"));
+    assert!(goes_to(&nearer[0]) < goes_to(&said[0]), "{nearer:?}");
+    for better in [
+        led("_mm = 14", "_deg = 180"),
+        LED.replace("'led'", "'free'"),
+    ] {
+        assert!(warned(&better).is_empty(), "{better}");
+    }
+}
+
+/// Flanges of a file were to be lowered by a key of the flanges that the scene does not have.
+#[test]
+fn lower_flanges_are_those_of_the_scene_or_of_the_file() {
+    let inside = "the nozzle is inside the circle the turning flanges need";
+    let of_the_scene = refused(&led("_mm = 11.2", "_deg = 120"));
+    assert_says(&of_the_scene, &[inside, "or a lower core.flange.height"]);
+
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("bobbin.stl");
+    let outline = [
+        [-6.0, 11.0],
+        [-4.0, 11.0],
+        [-4.0, 7.0],
+        [4.0, 7.0],
+        [4.0, 11.0],
+        [6.0, 11.0],
+    ];
+    crate::stl::write_revolved(&file, &outline, 90);
+    let scene = format!("[core]\nshape = 'mesh'\nfile = {file:?}\n[nozzle]\ndistance_mm = 11.2\n");
+    let of_the_file = refused(&scene);
+    assert_says(&of_the_file, &[inside, "or a core.file with lower flanges"]);
+    assert!(!of_the_file.contains("core.flange"), "{of_the_file}");
+}
