@@ -34,19 +34,20 @@ impl SceneSettings {
     /// # Errors
     ///
     /// Everything that [`load`](Self::load), `set_text` and [`build`](Self::build) find. Leaves that were refused have their
-    /// defaults where a later check needs them.
+    /// defaults where a later check needs them; what is wrong with those only is not told.
     pub fn load_and_build(
         name_or_path: &str,
         set: &[(String, String)],
         follows: impl Fn(&Self) -> NozzleFollows,
     ) -> Result<(Self, Scene, Vec<Warning>), SceneError> {
         let mut problems = Problems::default();
-        let (mut settings, found) = Self::load_with(name_or_path)?;
-        found.into_iter().for_each(|error| problems.add(error));
+        let (mut settings, mut found) = Self::load_with(name_or_path)?;
         for (name, text) in set {
-            problems.note(settings.set_text(name, text));
+            found.extend(settings.set_text(name, text).err());
         }
-        let built = problems.note(settings.build_for(follows(&settings)));
+        let built = settings.build_without(&found, follows(&settings));
+        found.into_iter().for_each(|error| problems.add(error));
+        let built = problems.note(built);
         let (scene, warnings) = problems.finish_with(built)?;
         Ok((settings, scene, warnings))
     }

@@ -14,6 +14,7 @@ mod error;
 mod extent;
 mod features;
 mod file;
+mod follow_on;
 mod impossible;
 mod key;
 mod material;

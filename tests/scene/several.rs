@@ -137,3 +137,49 @@ fn counts_are_told_without_a_core() {
         assert_says(&said, &["winding.layers = 2.5", "whole number"]);
     }
 }
+
+/// A refused leaf has its default for the checks after it: these told ranges of a wire, and places beside a core, that nobody had
+/// asked for.
+#[test]
+fn what_only_a_default_makes_wrong_is_not_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let told = |text: &str| -> String {
+        let scene = folder.path().join("scene.toml");
+        std::fs::write(&scene, text).unwrap();
+        let scene = scene.to_str().unwrap();
+        SceneSettings::load_and_build(scene, &[], |_| NozzleFollows::Law)
+            .expect_err("refused")
+            .to_string()
+    };
+    for (text, key) in [
+        (
+            "[wire]\ndiameter_mm = '0.3x'\nenamelled_diameter_mm = 0.35\n",
+            "wire.diameter_mm",
+        ),
+        (
+            "[wire]\ndiametr_mm = 0.3\nenamelled_diameter_mm = 0.35\n",
+            "wire.diametr_mm",
+        ),
+        (
+            "[core]\nshape = 'cylindr'\nradius_mm = 5\n[nozzle]\ndistance_mm = 9\n",
+            "core.shape",
+        ),
+    ] {
+        let said = told(text);
+        assert_eq!(said.lines().count(), 1, "{said}");
+        assert_says(&said, &[key]);
+    }
+    // what is wrong with any wire is told, and for which its numbers are
+    let said = told(
+        "[wire]\ndiameter_mm = -1\n[spindle]\nspeed = 'x'\n[core]\nlength_y_mm = 0\n[start]\nclamp_y_mm = 90\n\
+         [friction]\nstatic = 0.1\nkinetic = 0.3\n",
+    );
+    assert_eq!(said.lines().count(), 5, "{said}");
+    assert_says(
+        &said,
+        &[
+            "0.01465 m (with wire.diameter = 0.0007 m, core.length_y = 0.03 m)",
+            "at most friction.static, 0.1\n",
+        ],
+    );
+}
