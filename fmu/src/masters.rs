@@ -489,15 +489,12 @@ fn the_nozzle_follows_a_law_where_the_importer_asks_for_one() {
 fn a_nozzle_that_follows_its_input_starts_anywhere() {
     let (_, messages) = started(0.0, |i| {
         set_text(i, "scene.file", "tooth");
-        for name in ["nozzle.y_start", "start.clamp_y"] {
-            set(i, name, 2e-3);
-        }
+        set(i, "nozzle.y_start", 2e-3);
+        set(i, "start.clamp_y", 2e-3);
     });
     let told = warnings(&messages);
-    assert!(
-        told.iter().all(|text| text.contains("was set and holds")),
-        "{told:?}"
-    );
+    let holds = told.iter().all(|text| text.contains("was set and holds"));
+    assert!(holds, "{told:?}");
 }
 
 /// Importers that set no texts choose by number; a number wins over the text, and 0 leaves it.

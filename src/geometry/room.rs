@@ -16,6 +16,9 @@ const SECTIONS: usize = 64;
 /// Halvings of the height of a flange.
 const HALVINGS: u32 = 12;
 
+/// Heights up to the middle of a wire at which it is looked for what it meets.
+const ROUND: u32 = 8;
+
 /// Chords to a right angle of the way round a corner.
 const CHORDS: usize = 8;
 
@@ -35,6 +38,8 @@ pub struct Room {
 impl TriMesh {
     /// The room round the place `y` between two flanges that are at least `least` high, m.
     ///
+    /// Its faces are where wire as thick as that, laid on the core, ends that touches them.
+    ///
     /// A flange is what a straight line along y meets in a face steeper than 45 degrees, from nearly everywhere round the core. So
     /// the ribs of a core with grooves are none as long as they are lower. Where `y` lies in a flange, the room is the nearest.
     pub fn room(&self, y: f64, least: f64) -> Option<Room> {
@@ -43,7 +48,10 @@ impl TriMesh {
         let mut places: Vec<f64> = (0..SECTIONS).map(at).collect();
         places.sort_by(|a, b| (a - y).abs().total_cmp(&(b - y).abs()));
         places.insert(0, y);
-        places.into_iter().find_map(|y| self.room_round(y, least))
+        let found = places.into_iter().find_map(|y| self.room_round(y, least))?;
+        // the core may be wider at `y`, in a fillet or towards a slanted flange, than it is between them
+        let middle = 0.5 * (found.faces[0] + found.faces[1]);
+        self.room_round(middle, least).or(Some(found))
     }
 
     /// The convex hull of the section at `y`; none where the axis does not go through it.
@@ -54,20 +62,40 @@ impl TriMesh {
     fn room_round(&self, y: f64, least: f64) -> Option<Room> {
         let section = self.section(y)?;
         let sides = [self.flange_faces(y, -1.0), self.flange_faces(y, 1.0)];
-        let met = |out: f64| -> Option<[[f64; 2]; 2]> {
+        let met = |out: f64| -> Option<[Vec<Option<f64>>; 2]> {
             let ring = evenly(&section.outline(out, CHORDS));
-            let [down, up] = sides.each_ref().map(|faces| {
-                let far: Vec<f64> = ring.iter().filter_map(|&p| first(faces, p)).collect();
-                let open = ring.len() - far.len();
-                (open as f64 <= OPEN * ring.len() as f64).then(|| {
-                    far.iter().fold([f64::INFINITY, 0.0], |[near, most], &f| {
-                        [near.min(f), f64::max(most, f)]
-                    })
-                })
+            let [down, up] = sides.each_ref().map(|faces| -> Option<Vec<_>> {
+                let far: Vec<_> = ring.iter().map(|&p| first(faces, p)).collect();
+                let open = far.iter().filter(|far| far.is_none()).count();
+                (open as f64 <= OPEN * ring.len() as f64).then_some(far)
             });
             Some([down?, up?])
         };
-        let [down, up] = met(least)?;
+        let mut reach = met(least)?;
+        // a round wire of that diameter on the core meets a slanted face at the side, and one in a fillet under its middle
+        let radius = 0.5 * least;
+        for k in 1..=ROUND {
+            let over = (f64::from(k) / f64::from(ROUND) - 1.0) * radius;
+            let short = radius - (radius * radius - over * over).sqrt();
+            for (reach, met) in reach
+                .iter_mut()
+                .zip(met(radius + over).into_iter().flatten())
+            {
+                for (reach, met) in reach.iter_mut().zip(met) {
+                    *reach = match (*reach, met) {
+                        (Some(reach), Some(met)) => Some(reach.min(met + short)),
+                        (reach, _) => reach,
+                    };
+                }
+            }
+        }
+        let [down, up] = reach.map(|reach| {
+            let ends = [f64::INFINITY, 0.0];
+            let far = reach.into_iter().flatten();
+            far.fold(ends, |[near, most], far| {
+                [near.min(far), f64::max(most, far)]
+            })
+        });
         let (mut height, mut too_high) = (least, self.radius_about_y());
         for _ in 0..HALVINGS {
             let middle = 0.5 * (height + too_high);
@@ -167,6 +195,76 @@ mod tests {
             ([-9.0, 9.0], [-5.0, -4.0], [-13.0, 13.0]),
             ([-9.0, 9.0], [5.0, 6.0], [-13.0, 13.0]),
         ])
+    }
+
+    /// A round core of 8 mm radius, 6 mm between flanges that rise by this angle from it, 12 mm high; faceted.
+    fn slanted(angle: f64) -> TriMesh {
+        let rise = 4e-3 / libm::tan(angle);
+        let profile = [
+            [-9e-3, 12e-3],
+            [-3e-3 - rise, 12e-3],
+            [-3e-3, 8e-3],
+            [3e-3, 8e-3],
+            [3e-3 + rise, 12e-3],
+            [9e-3, 12e-3],
+        ];
+        revolved(&profile, 360)
+    }
+
+    /// What a profile of y and radius, m, makes when it is turned about y, with lids.
+    fn revolved(profile: &[[f64; 2]], sides: u32) -> TriMesh {
+        let mut vertices = Vec::new();
+        for [y, radius] in profile {
+            for k in 0..sides {
+                let angle = std::f64::consts::TAU * f64::from(k) / f64::from(sides);
+                vertices.push(V3::new(
+                    radius * libm::cos(angle),
+                    *y,
+                    -radius * libm::sin(angle),
+                ));
+            }
+        }
+        let rings = profile.len() as u32;
+        let ends = [0, rings - 1].map(|ring| {
+            vertices.push(V3::new(0.0, profile[ring as usize][0], 0.0));
+            vertices.len() as u32 - 1
+        });
+        let mut triangles = Vec::new();
+        for k in 0..sides {
+            let next = (k + 1) % sides;
+            for ring in 0..rings - 1 {
+                let [a, b] = [ring * sides + k, ring * sides + next];
+                triangles.push([a, b, b + sides]);
+                triangles.push([a, b + sides, a + sides]);
+            }
+            let last = (rings - 1) * sides;
+            triangles.push([ends[0], next, k]);
+            triangles.push([ends[1], last + k, last + next]);
+        }
+        TriMesh::new(vertices, triangles).expect("closed")
+    }
+
+    /// Between slanted flanges turns were planned that had no place, and another window was found for each place of the clamp.
+    #[test]
+    fn between_slanted_flanges_the_room_is_that_of_the_wire() {
+        let diameter = 0.7e-3;
+        for degrees in [50.0_f64, 60.0, 80.0] {
+            let angle = degrees.to_radians();
+            let mesh = slanted(angle);
+            let wide = 6e-3 + diameter * (1.0 - libm::tan(0.5 * angle));
+            for y in [-3.2e-3, -2.9e-3, 0.0, 1.0e-3, 3.1e-3] {
+                let room = mesh.room(y, diameter).expect("flanges");
+                for faces in [room.faces, room.widest] {
+                    let found = faces[1] - faces[0];
+                    // (heights are looked at one by one, and the ring has sides)
+                    assert!(
+                        (found - wide).abs() < 0.02 * diameter,
+                        "{degrees} {y}: {found} {wide}"
+                    );
+                }
+                assert!((room.height - 4e-3).abs() < 0.02e-3, "{room:?}");
+            }
+        }
     }
 
     /// Boxes, mm, that overlap.

@@ -263,6 +263,16 @@ impl SceneSettings {
             );
             warn("tensioner.tension", message);
         }
+        // what straightens gives its bend back, and the tension has to take as much to keep it on the core
+        let bend = extent.winding_radius + wire.radius();
+        let holds = 0.5 * wire.ei / (bend * bend);
+        if !wire.m_y.is_finite() && tension < holds {
+            let message = format!(
+                "wire that does not yield springs off this core, and may jump over its end: no less than {} N hold it",
+                si(holds)
+            );
+            warn("tensioner.tension", message);
+        }
         if solver.twist == Twist::Off
             && solver.integrator == Integrator::Implicit
             && wire.m_y.is_finite()

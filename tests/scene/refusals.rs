@@ -320,6 +320,11 @@ fn odd_scenes_build_with_a_warning() {
             "coarser than the tightest bend",
         ),
         ("[contact]\nstiffness = 1e8", "1 % of its diameter"),
+        // it sprang off, and was called slack
+        (
+            "[wire]\nelastic = true\n[core]\nshape = 'cylinder'\nradius_mm = 6\n[tensioner]\ntension = 5",
+            "springs off this core",
+        ),
         // nothing was said of a coil that reaches into the neighbouring one
         (
             "[core]\nwindow_height_mm = 1\n[traverse]\nmode = 'helical'\n\
