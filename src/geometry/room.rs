@@ -19,6 +19,9 @@ const HALVINGS: u32 = 12;
 /// Heights up to the middle of a wire at which it is looked for what it meets.
 const ROUND: u32 = 8;
 
+/// What facets and chords may add to how much nearer such a face is, as a share.
+const SAME_FACE: f64 = 0.05;
+
 /// Chords to a right angle of the way round a corner.
 const CHORDS: usize = 8;
 
@@ -71,21 +74,25 @@ impl TriMesh {
             });
             Some([down?, up?])
         };
-        let mut reach = met(least)?;
+        let flanges = met(least)?;
         // a round wire of that diameter on the core meets a slanted face at the side, and one in a fillet under its middle
-        let radius = 0.5 * least;
+        let (mut reach, radius) = (flanges.clone(), 0.5 * least);
         for k in 1..=ROUND {
             let over = (f64::from(k) / f64::from(ROUND) - 1.0) * radius;
             let short = radius - (radius * radius - over * over).sqrt();
-            for (reach, met) in reach
-                .iter_mut()
-                .zip(met(radius + over).into_iter().flatten())
-            {
-                for (reach, met) in reach.iter_mut().zip(met) {
-                    *reach = match (*reach, met) {
-                        (Some(reach), Some(met)) => Some(reach.min(met + short)),
-                        (reach, _) => reach,
-                    };
+            // a face of 45 degrees is so much nearer there; what is nearer still is a rib before it
+            let nearer = (1.0 + SAME_FACE) * (radius - over);
+            let Some(met) = met(radius + over) else {
+                continue;
+            };
+            for (side, met) in met.iter().enumerate() {
+                for (place, met) in met.iter().enumerate() {
+                    if let (Some(met), Some(flange)) = (met, flanges[side][place])
+                        && met + nearer >= flange
+                        && let Some(reach) = &mut reach[side][place]
+                    {
+                        *reach = reach.min(met + short);
+                    }
                 }
             }
         }

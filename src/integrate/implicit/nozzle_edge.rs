@@ -557,14 +557,8 @@ mod tests {
             }
             let (rest, line) = (edge.rest(length), edge.line(length));
             seen[edge.balanced(length, edge.way(length)).1] += 1;
-            let next = advance(
-                &spec,
-                &feed,
-                &past,
-                &step,
-                (rest - 3e-3, line, 15.0),
-                &yields,
-            );
+            let passed = (rest - 3e-3, line, 15.0);
+            let next = advance(&spec, &feed, &past, &step, passed, &yields);
             let end = next.fed - next.longer;
             let began = step.blend(feed.fed - feed.longer, past.fed[0] - past.longer);
             let rate = (end - began) / step.gamma;
