@@ -27,7 +27,10 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         answers.push(("fixed_free_f2_Hz", Answer::Number(one[1])));
         answers.push(("fixed_fixed_f1_Hz", Answer::Number(both[0])));
     }
-    // a straight wire is meant: free to turn, its end would leave the axis under a torque that keeps its direction
+    // a straight wire is meant, which much torque would make a helix: its end stays on the axis, and it is drawn by twice what keeps a
+    // long wire straight
+    let pull = 2.0 * torque * torque / (4.0 * sys.model.section.ei);
+    sys.model.loads.nodal = vec![(n, V3::x() * pull)];
     sys.state.support[1] = Support {
         hold: [false, true, true],
         ..Support::pinned(V3::x() * length)
