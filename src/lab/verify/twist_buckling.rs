@@ -30,6 +30,8 @@ const PER_RADIAN: f64 = 2.5;
 const BESIDE: f64 = 0.005;
 /// Lowest frequency of a clamped wire in `sqrt(EI/m)/L^2`.
 const CLAMPED: f64 = 22.4;
+/// Drag over the rate of growth without it that taut wire has beside the critical rotation.
+const DAMPED: f64 = 2.0;
 /// Bow that is set off, in wire diameters, longest step, time until it has its shape and longest watch, all over the
 /// inverse of that frequency.
 const BOW: f64 = 0.1;
@@ -147,8 +149,12 @@ impl Straight {
     /// Rate at which a small `bow` grows under drag as the wind's own steps have it, 1/s; negative if it goes back.
     fn growth(mut self, ctx: &Context, bow: &DVector<f64>) -> Result<f64, VerifyError> {
         let section = &self.sys.model.section;
-        let unit =
-            self.length * self.length * (section.mass_per_length() / section.ei).sqrt() / CLAMPED;
+        let pull = self.sys.model.loads.nodal[0].1.z.max(0.0);
+        let (ei, mass) = (section.ei, section.mass_per_length());
+        let clamped = CLAMPED / (self.length * self.length) * (ei / mass).sqrt();
+        // a taut wire leaves its axis in waves of sqrt(EI/T), at a rate that does not fall with its length
+        let taut = DAMPED * (2.0 * BESIDE).sqrt() * pull / (ei * mass).sqrt();
+        let unit = 1.0 / (clamped + taut);
         let speed = BOW * section.diameter / unit;
         self.sys.model.twist = Twist::QuasiStatic;
         self.sys.model.loads.drag = 1.0 / unit;
