@@ -44,7 +44,7 @@ const SPEED: f64 = 1e-2;
 const RUN_IN: f64 = 0.08;
 /// Edge lengths over which the mean is taken; touches come and go once per edge.
 const MEAN_EDGES: f64 = 3.0;
-/// Difference of two means one after the other below which the slip is steady, and means until then at most.
+/// Difference of means one after the other below which the slip is steady, and means until then at most.
 const STEADY: f64 = 0.01;
 const READINGS: u32 = 6;
 
@@ -70,17 +70,17 @@ pub(super) fn ratio_on(
     let drum = drum(radius, section.radius())?;
     let mut capstan = Capstan::new(ctx, &section, mu, wrap, radius, hold, drum)?;
     capstan.settle()?;
-    let [first, second] = capstan.draw()?;
-    let drift = (first / second - 1.0).abs();
-    if drift.is_nan() || drift >= STEADY {
-        return Err(VerifyError::NoAnswer(format!(
-            "no steady slip: force ratios {first:.4} and {second:.4} one after the other"
-        )));
+    let ratio = capstan.draw()?;
+    Ok(vec![("stiff_ratio", Answer::Number(ratio))])
+}
+
+/// How much more the largest is than the least, as a share; without end where one is no number.
+fn spread(values: &[f64]) -> f64 {
+    if !values.iter().all(|x| x.is_finite()) {
+        return f64::INFINITY;
     }
-    Ok(vec![(
-        "stiff_ratio",
-        Answer::Number(0.5 * (first + second)),
-    )])
+    let of = |pick: fn(f64, f64) -> f64, start: f64| values.iter().copied().fold(start, pick);
+    of(f64::max, f64::NEG_INFINITY) / of(f64::min, f64::INFINITY) - 1.0
 }
 
 struct Capstan {
@@ -190,8 +190,8 @@ impl Capstan {
         self.step.through(&mut self.sys, 4.0 * transit, self.dt)
     }
 
-    /// Draws the wire at constant speed; mean force ratios over two stretches one after the other, the first that are alike.
-    fn draw(&mut self) -> Result<[f64; 2], VerifyError> {
+    /// Draws the wire at constant speed until the force ratio is steady; its mean.
+    fn draw(&mut self) -> Result<f64, VerifyError> {
         let speed = SPEED * self.wave;
         let last = self.sys.state.rod.nodes() - 1;
         let run_in = RUN_IN * self.bend / speed;
@@ -204,7 +204,7 @@ impl Capstan {
             self.step.through(&mut self.sys, dt, dt)?;
         }
         self.sys.model.loads.drag = 0.0;
-        let mut means = [f64::NAN; 2];
+        let mut means: Vec<f64> = Vec::new();
         for reading in 0..READINGS {
             // twice as long each time: in a longer one touches that come and go count for less
             let edges = MEAN_EDGES * (1 << (reading / 2)) as f64;
@@ -214,12 +214,21 @@ impl Capstan {
                 self.step.through(&mut self.sys, dt, dt)?;
                 mean.add(-self.sys.state.load.force[last].x / self.hold);
             }
-            means = [means[1], mean.value()];
-            if (means[0] / means[1] - 1.0).abs() < STEADY {
-                break;
+            means.push(mean.value());
+            // (two alike at once are steady; two among others may be alike by chance, or creep)
+            let last = match means.len() {
+                0..=2 => &means[..],
+                count => &means[count - 3..],
+            };
+            if last.len() > 1 && spread(last) < STEADY {
+                return Ok(last.iter().sum::<f64>() / last.len() as f64);
             }
         }
-        Ok(means)
+        let told: Vec<String> = means.iter().map(|mean| format!("{mean:.4}")).collect();
+        Err(VerifyError::NoAnswer(format!(
+            "no steady slip: force ratios {} one after the other",
+            told.join(", ")
+        )))
     }
 
     /// Parts of a time after which loads change and readings are taken: explicit steps, or enough for
