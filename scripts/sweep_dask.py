@@ -30,6 +30,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -308,6 +309,10 @@ def wind_all(client, fmu, tasks, keep, wait=60.0):
                 print(f"waiting up to {wait:g} s for a worker; start some with: dask worker {address}", file=sys.stderr, flush=True)
             continue
         seen = time.monotonic()
+        if future.status in ("lost", "pending"):
+            # its worker died with the result before that was fetched; the scheduler has the run wound again
+            threading.Timer(LOOK, ended.put, [future]).start()
+            continue
         task = futures.pop(future)
         if future.status not in ("finished", "error"):
             raise lost

@@ -325,3 +325,39 @@ def test_a_worker_in_place_of_a_dead_one_is_no_other(sweep_dask):
     ]]
     assert sweep_dask.most_at_once(reports) == 2
     assert sweep_dask.most_at_once([]) == 0
+
+
+def test_a_result_that_died_with_its_worker_is_waited_for(sweep_dask, monkeypatch):
+    """It was told as a lost scheduler."""
+    monkeypatch.setattr(sweep_dask, "LOOK", 0.01)
+
+    class Future:
+        states = ["lost", "pending", "finished"]
+
+        @property
+        def status(self):
+            return self.states.pop(0) if len(self.states) > 1 else self.states[0]
+
+        def add_done_callback(self, tell):
+            tell(self)
+
+        def result(self):
+            return "a report"
+
+    class Client:
+        class scheduler:
+            address = "tcp://nowhere"
+            identity = None
+
+        def register_plugin(self, plugin):
+            pass
+
+        def submit(self, *task, **options):
+            return Future()
+
+        def sync(self, *call, **options):
+            return {"workers": ["one"]}
+
+    kept = []
+    sweep_dask.wind_all(Client(), b"", [{"run": 0}], lambda task, report: kept.append((task, report)))
+    assert kept == [({"run": 0}, "a report")]
