@@ -152,8 +152,10 @@ impl Feed {
     /// Advances by `dt` with the last edge of unstretched length `rest` now `length` long; returns the unstretched
     /// length added to it, m.
     ///
-    /// `plastic` is the plastic stretch of the edge and of wire that comes out, `deflection` the angle
-    /// at the exit, rad, `set` the tensioner's pull, N; `yields` is how the line's wire yields.
+    /// - `set`: the tensioner's pull, N
+    /// - `plastic`: plastic stretch of the edge and of wire that comes out
+    /// - `deflection`: angle at the exit, rad
+    /// - `yields`: how the line's wire yields
     pub fn step(
         &mut self,
         spec: &FeedSpec,

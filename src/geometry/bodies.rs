@@ -80,8 +80,8 @@ pub(super) fn signed_volume(vertices: &[V3], triangles: &[[u32; 3]]) -> f64 {
 
 /// The corners of a body that lie farthest out along each axis, both ways.
 ///
-/// A body that reaches out of others does so with one of them, unless they are hollow there: what is left out then is no more than
-/// an odd cavity, and asking every corner would take the square of the mesh.
+/// A body that reaches out of others does so with one of them, unless the others are hollow there. What is missed then is an odd
+/// cavity. To ask every corner would take the square of the mesh.
 fn outermost(vertices: &[V3], body: &[[u32; 3]]) -> Vec<V3> {
     let corners = || body.iter().flatten().map(|&v| vertices[v as usize]);
     let along = (0..3).flat_map(|axis| [1.0, -1.0].map(|side| (axis, side)));

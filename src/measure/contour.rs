@@ -96,8 +96,8 @@ impl Coil {
 
     /// Layers of the settled wire.
     ///
-    /// The nozzle makes a pass for each, so wire that climbs within its pass is none of its own; from two turns on it is, also where
-    /// it heaps up turn on turn: less than two turns lie over the layers of a coil. The last swing of a nozzle that swings past its
+    /// The nozzle makes a pass for each. Wire that climbs within its pass is a layer of its own from two turns on, also where it heaps
+    /// up turn on turn. So less than two turns lie over the layers of a coil. The last swing of a nozzle that swings past its
     /// places is no pass.
     pub fn layers(&self) -> u32 {
         let end = self.stations().last().map_or(0.0, |station| station.angle);

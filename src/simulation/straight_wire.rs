@@ -65,8 +65,8 @@ fn last_clear(mut clear: f64, mut blocked: f64, passes: impl Fn(f64) -> bool) ->
     clear
 }
 
-/// Checks that no part of the core, a flange say, holds the axis of straight wire from the `clamp` (core frame, m) to the `nozzle`
-/// (m), with the core turned to `angle`, rad.
+/// Checks that straight wire leads from the `clamp` (core frame, m) to the `nozzle` (m) with the core turned to `angle`, rad: that
+/// its axis goes through no part of the core, such as a flange.
 ///
 /// # Errors
 ///

@@ -57,9 +57,12 @@ enum Way {
 }
 
 impl NozzleEdge {
-    /// `rest` is the edge's unstretched length now, and `pull` the tensioner's force. `grip` is the ratio of tension after to
-    /// before the exit where wire comes out. `ea` is the wire's modulus, and `plastic` the plastic stretch of the edge and of
-    /// wire that comes out. `yields` is how the line's wire yields.
+    /// The edge at the start of a step:
+    ///
+    /// - `rest`: its unstretched length, m; `pull`: the tensioner's force, N
+    /// - `grip`: tension after over tension before the exit where wire comes out
+    /// - `ea`: modulus of the wire, N; `plastic`: plastic stretch of the edge and of wire that comes out
+    /// - `yields`: how the line's wire yields
     pub(super) fn new(
         spec: &FeedSpec,
         feed: &Feed,
