@@ -253,7 +253,7 @@ class Run:
             return f"failed, see {self.directory / 'log.txt'}"
         wall, factor = run.summary.get("wall_s", 0.0), run.summary.get("real_time_factor", 0.0)
         verdict = run.turn(2).get("verdict", "turn 2 not at rest")
-        return f"{run.ending}, {verdict}; computed for {clock(wall)}, real-time factor {factor:.5f}"
+        return f"{run.ending}, {verdict}; computed for {wall:.1f} s, real-time factor {factor:.2f}"
 
     def reason(self):
         lines = (self.directory / "log.txt").read_text(encoding="utf-8").splitlines()

@@ -203,7 +203,8 @@ class Coil:
         low, high = (values.min(), values.max()) if counted else np.percentile(values, [1, 99])
         high = max(high, low + (1.0 if counted else 1e-9))
         bar = {
-            "title": title, "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.2, "width": 0.06, "height": 0.6,
+            # An empty line keeps the title clear of the number at the top of the bar.
+            "title": f"{title}\n", "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.2, "width": 0.06, "height": 0.6,
             "title_font_size": 20, "label_font_size": 18, "fmt": "%.0f" if counted else "%.3g",
             "n_labels": int(min(high - low + 1, 6)) if counted else 5,
         }

@@ -28,8 +28,12 @@ PAGE = """<!DOCTYPE html>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 <style>
-  :root {{ --ink: #22262c; --soft: #666d78; --line: #e2e5e9; --copper: #b5562b; }}
-  body {{ margin: 0; background: #f5f6f7; color: var(--ink);
+  :root {{ --ink: #22262c; --soft: #666d78; --line: #e2e5e9; --copper: #b5562b; --ground: #f5f6f7; --card: #fff;
+          color-scheme: light dark; }}
+  @media (prefers-color-scheme: dark) {{
+    :root {{ --ink: #e5e7ea; --soft: #9aa2ad; --line: #31353b; --copper: #d8794c; --ground: #15171a; --card: #1d2024; }}
+  }}
+  body {{ margin: 0; background: var(--ground); color: var(--ink);
          font: 15px/1.55 system-ui, "Segoe UI", Helvetica, Arial, sans-serif; }}
   main {{ max-width: 1180px; margin: 0 auto; padding: 40px 24px 64px; }}
   h1 {{ font-size: 27px; font-weight: 650; margin: 0 0 4px; letter-spacing: -.01em; }}
@@ -39,7 +43,8 @@ PAGE = """<!DOCTYPE html>
   p {{ max-width: 46em; }}
   .lead, .note, figcaption {{ color: var(--soft); }}
   .note, figcaption {{ font-size: 13px; max-width: 70em; }}
-  .card {{ background: #fff; border: 1px solid var(--line); border-radius: 10px; overflow-x: auto; }}
+  a {{ color: var(--copper); }}
+  .card {{ background: var(--card); border: 1px solid var(--line); border-radius: 10px; overflow-x: auto; }}
   table {{ border-collapse: collapse; width: 100%; font-size: 14px; font-variant-numeric: tabular-nums; }}
   th, td {{ padding: 9px 8px; text-align: right; border-bottom: 1px solid var(--line);
            white-space: nowrap; }}

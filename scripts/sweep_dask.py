@@ -426,7 +426,7 @@ def run(args):
     workers = most_at_once(reports)
     print(
         f"{len(tasks)} runs, {len(fresh)} of them new; {defects} with a defect, {len(tasks) - done} that failed; "
-        f"{took:.1f} s on {workers} workers"
+        f"{took:.1f} s on {workers} worker{'' if workers == 1 else 's'}"
     )
     if reports:
         wound = sum(report["ended"] - report["began"] for report in reports)

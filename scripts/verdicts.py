@@ -95,8 +95,8 @@ def columns(diameter):
                lambda r: r.of_summary("penetration", "largest_over_d"), 100, 1, " %"),
         Column("residual_over_dissipated", "energy",
                lambda r: r.of_summary("energy", "residual_over_dissipated"), 100, 2, " %"),
-        Column("wall_s", "wall s", lambda r: r.of_summary("wall_s"), 1, 0),
-        Column("real_time_factor", "RTF", lambda r: r.of_summary("real_time_factor"), 1, 5),
+        Column("wall_s", "wall s", lambda r: r.of_summary("wall_s"), 1, 2),
+        Column("real_time_factor", "RTF", lambda r: r.of_summary("real_time_factor"), 1, 2),
     ]
 
 

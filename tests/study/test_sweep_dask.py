@@ -75,7 +75,7 @@ def test_the_script_leaves_the_table_of_a_plain_loop(alone, scene, fmu, command,
     assert code == 0, said
     assert (tmp_path / "sweep.csv").read_bytes() == alone
     assert alone.count(b"\n") == RUNS + 1
-    assert f"{RUNS} of {RUNS} runs" in said and "ms more between runs" in said and "on 1 workers" in said
+    assert f"{RUNS} of {RUNS} runs" in said and "ms more between runs" in said and "on 1 worker\n" in said
     rows = list(csv.DictReader((tmp_path / "times.csv").open(encoding="utf-8")))
     assert [int(row["run"]) for row in rows] == list(range(RUNS))
 
