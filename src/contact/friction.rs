@@ -115,16 +115,28 @@ pub(super) struct Touching<'a> {
     pub(super) limit_from: LimitFrom,
     /// direction in which the linear system has the bristle slide; 0: it holds
     pub(super) slide: V3,
+    /// friction limit up to which a prediction lets the slide turn at once, N
+    pub(super) negligible: f64,
+}
+
+/// What a response makes of a bristle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Grip {
+    /// friction limits after it
+    pub(super) limit: FrictionLimit,
+    /// direction of the slide; 0: it holds
+    pub(super) slide: V3,
+    /// friction limit of a bristle that a prediction holds although it is stretched beyond that, N; infinite: of none
+    pub(super) held: f64,
 }
 
 impl ContactResponse {
-    /// Adds the response of one touch; returns its friction limits after it and the direction of its slide (0: the
-    /// bristle holds).
+    /// Adds the response of one touch.
     ///
     /// A prediction that leaves the sliding branch for a slide the other way is evaluated on the sticking branch
     /// once; otherwise the update alternates between both slides.
     #[inline(always)]
-    pub(super) fn add_touch(&mut self, t: &Touching) -> (FrictionLimit, V3) {
+    pub(super) fn add_touch(&mut self, t: &Touching) -> Grip {
         let n = t.normal;
         let force = t.stiffness * t.pressed.force;
         let pressed = t.stiffness * t.pressed.energy;
@@ -132,7 +144,7 @@ impl ContactResponse {
         self.energy_lagged += pressed;
         self.gradient -= n * force;
         let mut along = t.stiffness * t.pressed.stiffness;
-        let (mut limit, mut slide) = (0.0, V3::zeros());
+        let (mut limit, mut slide, mut held) = (0.0, V3::zeros(), f64::INFINITY);
         let (mut coefficient, mut follows) = (t.limit.coefficient, false);
         if t.law.mu_static > 0.0 {
             if t.limit_from == LimitFrom::Slide || coefficient == 0.0 {
@@ -150,8 +162,14 @@ impl ContactResponse {
             self.energy_lagged += bristle_energy(k_t, t.limit.lagged, size);
             self.energy += bristle_energy(k_t, limit, size);
             let unit = b / size;
-            let turns = t.limit_from == LimitFrom::Current && unit.dot(&t.slide) < 0.0;
-            if k_t * size <= limit || turns {
+            let slides = k_t * size > limit;
+            let turns = t.limit_from == LimitFrom::Current
+                && limit > t.negligible
+                && unit.dot(&t.slide) < 0.0;
+            if !slides || turns {
+                if slides {
+                    held = limit;
+                }
                 self.gradient += b * k_t;
                 add_identity(&mut self.hessian, k_t);
                 along -= k_t;
@@ -185,7 +203,7 @@ impl ContactResponse {
             follows,
             ..t.limit
         };
-        (limit, slide)
+        Grip { limit, slide, held }
     }
 }
 

@@ -9,6 +9,13 @@ const PREDICTION_TOLERANCE: f64 = 1e-7;
 /// Bending radius of the centreline to which that belongs, m.
 const BEND: f64 = 2e-3 + 0.35e-3;
 
+/// Friction limit below which a prediction lets a slide turn at once, as a share of the contact force that it may be off by.
+///
+/// Wire beside a flange is a picometre deep in it. Its bristles hold nothing, and for each of them to hold once before
+/// it slides the other way takes an update for every two or three points. Chosen: a thousandth or a thousand times as much takes as
+/// many solves (`tooth`).
+pub(super) const NEGLIGIBLE: f64 = 1e-8;
+
 /// Error of a contact force that an update may promise, as a depth, m, for wire of this `radius`, m.
 ///
 /// The force that presses wire on its core goes with its cross-section over the radius that it is bent to, so the

@@ -36,7 +36,7 @@ pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};
 pub use turn::{TurnMeasures, Verdict};
-pub use words::{UNJUDGED, reasons, reasons_doubted, reasons_unjudged};
+pub use words::{UNJUDGED, left_out, reasons, reasons_doubted, reasons_unjudged};
 
 /// Polar stations per turn, one per degree.
 ///

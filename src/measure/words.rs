@@ -64,6 +64,16 @@ pub fn reasons(
     reasons
 }
 
+/// How much of the wire the verdict leaves out, since it had been laid and was not at rest when the run ended; `None` for less
+/// than a degree. Counted in turns.
+pub fn left_out(wound: f64, settled: f64) -> Option<String> {
+    let rest = wound - settled;
+    // Where nothing has come to rest the verdict says so itself.
+    (settled > 0.0 && rest > 1.0 / 360.0).then(|| {
+        format!("The last {rest:.2} turns had not come to rest when the run ended, and are not judged")
+    })
+}
+
 /// What a reader has to know of the limit by which bulges are judged, if anything.
 fn about_bulges(judged: BulgeLimit, diameter: f64) -> Option<String> {
     match judged {
@@ -198,6 +208,17 @@ mod tests {
             said[0].starts_with("Gap of 0.140 mm (0.20 d) in turn 2"),
             "{said:?}"
         );
+    }
+
+    /// Up to 1.4 turns that had been laid were not judged without a word.
+    #[test]
+    fn turns_laid_and_not_judged_are_told() {
+        assert_eq!(
+            left_out(31.71, 31.38).unwrap(),
+            "The last 0.33 turns had not come to rest when the run ended, and are not judged"
+        );
+        assert_eq!(left_out(2.0, 2.0), None);
+        assert_eq!(left_out(0.8, 0.0), None, "the verdict says it");
     }
 
     #[test]

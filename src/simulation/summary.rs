@@ -2,7 +2,7 @@
 
 use super::Winding;
 use super::product::Product;
-use crate::measure::{BulgeLimit, Defect, TurnMeasures, reasons};
+use crate::measure::{BulgeLimit, Defect, TurnMeasures, left_out, reasons};
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
 
@@ -143,6 +143,8 @@ impl Winding {
             self.bulge_limit(),
             diameter,
         );
+        let outputs = &self.run.outputs;
+        reasons.extend(left_out(outputs.turns_wound, outputs.turns_settled));
         let limit = self.scene.window;
         let clearance = limit.and_then(|w| self.coil.clearance(w.height, w.taper));
         if let Some(beyond) = clearance.map(|clear| -clear).filter(|&beyond| beyond > 0.0) {

@@ -17,6 +17,8 @@ pub(super) struct NearPoint {
     pub(super) room: f64,
     /// way that the last prediction looked along, m; none: the model is that of the iterate
     pub(super) looked_along: Option<V3>,
+    /// least friction limit of its bristles that the model holds beyond that, N; infinite: there is none
+    pub(super) held: f64,
 }
 
 /// Gradient and Hessian of a contact point.

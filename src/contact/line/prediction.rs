@@ -4,6 +4,7 @@ use super::line_contact::LineContact;
 use super::near::Tangent;
 use crate::contact::slip_coupling::SlipCoupling;
 use crate::contact::stencil::ContactPoint;
+use crate::contact::tolerance::NEGLIGIBLE;
 use crate::math::{Block, V3, block_difference, block_times};
 
 /// Change of an update that calls for no new look, as a share of the prediction tolerance. Chosen.
@@ -12,7 +13,8 @@ const SAME_UPDATE: f64 = 0.2;
 impl LineContact<'_> {
     /// Evaluates the response where the update `move_of(point)` (m) leads every point, and replaces the models that promise
     /// something else by the tangents there; returns whether there were any. No node goes farther than `farthest`, m. A promise may
-    /// be off by `share` of what the model allows.
+    /// be off by `share` of what the model allows, and that of a bristle held beyond its friction limit by no more than the limit: a row of
+    /// them that each held a little more would hold the wire.
     ///
     /// `correct(point, change of the Hessian, change of the gradient at the iterate)` hands the replacement over, N/m and N.
     /// Without it a point on its way through a surface that the Hessian does not hold yet would be thrown back
@@ -47,10 +49,13 @@ impl LineContact<'_> {
                 continue;
             }
             n.looked_along = Some(way);
-            let there = self.respond_ahead(n.point as usize, n.place + way, n.length, step);
+            let most = tolerance * self.model.law.stiffness * n.length;
+            let place = n.place + way;
+            let (there, held) =
+                self.respond_ahead(n.point as usize, place, n.length, step, NEGLIGIBLE * most);
             let known = n.tangent.unwrap_or_default();
             let off = there.gradient - known.gradient - block_times(&known.hessian, &way);
-            if off.amax() <= tolerance * self.model.law.stiffness * n.length {
+            if off.amax() <= most.min(n.held) {
                 continue;
             }
             any = true;
@@ -64,7 +69,7 @@ impl LineContact<'_> {
                 &block_difference(&tangent.hessian, &known.hessian),
                 &(tangent.gradient - known.gradient),
             );
-            (n.tangent, n.room) = (Some(tangent), 0.0);
+            (n.tangent, n.room, n.held) = (Some(tangent), 0.0, held);
             for touch in &mut self.state.points[n.point as usize].touch {
                 touch.limit.follows = false;
             }

@@ -60,6 +60,7 @@ impl LineContact<'_> {
                     tangent: None,
                     room: point.clear_within - way,
                     looked_along: None,
+                    held: f64::INFINITY,
                 });
                 return None;
             }
@@ -84,6 +85,7 @@ impl LineContact<'_> {
             step,
             last: point.last,
             limit_from: state.limit_from,
+            negligible: 0.0,
         };
         let mut sum = ContactResponse::default();
         let mut any = false;
@@ -106,7 +108,8 @@ impl LineContact<'_> {
                 continue;
             }
             any = true;
-            (touch.limit, touch.slide) = touch.respond(p, &around, &mut sum);
+            let grip = touch.respond(p, &around, &mut sum);
+            (touch.limit, touch.slide) = (grip.limit, grip.slide);
         }
         (point.clear_at, point.clear_within) = (p, if any { 0.0 } else { gap });
         scratch.near.push(NearPoint {
@@ -120,19 +123,22 @@ impl LineContact<'_> {
             }),
             room: point.clear_within,
             looked_along: None,
+            held: f64::INFINITY,
         });
         any.then_some(sum)
     }
 
-    /// Response of point `k` at a place `p` to which an update leads, as far as its surroundings are known. The
-    /// friction limits stay those of the iterate.
+    /// Response of point `k` at a place `p` to which an update leads, as far as its surroundings are known, and the least friction
+    /// limit of a bristle that it holds beyond that, N. The friction limits stay those of the iterate; one up to `negligible`, N, lets its
+    /// slide turn at once.
     pub(super) fn respond_ahead(
         &mut self,
         k: usize,
         p: V3,
         length: f64,
         step: f64,
-    ) -> ContactResponse {
+        negligible: f64,
+    ) -> (ContactResponse, f64) {
         let point = &mut self.state.points[k];
         let around = Conditions {
             law: &self.model.law,
@@ -141,8 +147,9 @@ impl LineContact<'_> {
             step,
             last: point.last,
             limit_from: LimitFrom::Current,
+            negligible,
         };
-        let mut sum = ContactResponse::default();
+        let (mut sum, mut held) = (ContactResponse::default(), f64::INFINITY);
         for slot in point.slots() {
             let touch = point.touch[slot];
             if point.has_before(slot, touch.start) {
@@ -155,9 +162,11 @@ impl LineContact<'_> {
                     normal,
                     ..touch
                 };
-                point.touch[slot].slide = there.respond(p, &around, &mut sum).1;
+                let grip = there.respond(p, &around, &mut sum);
+                point.touch[slot].slide = grip.slide;
+                held = held.min(grip.held);
             }
         }
-        sum
+        (sum, held)
     }
 }

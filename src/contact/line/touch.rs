@@ -1,6 +1,8 @@
 //! State of one touch of a contact point with the core or a passage of frozen wire.
 
-use crate::contact::friction::{ContactResponse, FrictionLimit, LimitFrom, Touching, across};
+use crate::contact::friction::{
+    ContactResponse, FrictionLimit, Grip, LimitFrom, Touching, across,
+};
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE};
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
@@ -52,15 +54,14 @@ impl TouchState {
         self.start == Self::UNUSED.start && !self.anchored && all.all(|x| x.to_bits() == 0)
     }
 
-    /// Adds the response of this touch, with its depth and normal, to that of its point at `p`; returns its
-    /// friction limits after it and the direction of its slide.
+    /// Adds the response of this touch, with its depth and normal, to that of its point at `p`.
     #[inline(always)]
     pub(super) fn respond(
         &self,
         p: V3,
         around: &Conditions,
         sum: &mut ContactResponse,
-    ) -> (FrictionLimit, V3) {
+    ) -> Grip {
         let pressed = NormalLaw::at(self.depth, around.onset);
         sum.add_touch(&Touching {
             law: around.law,
@@ -74,6 +75,7 @@ impl TouchState {
             limit: self.limit,
             limit_from: around.limit_from,
             slide: self.slide,
+            negligible: around.negligible,
         })
     }
 
@@ -98,4 +100,6 @@ pub(super) struct Conditions<'a> {
     /// place of the point at the last accepted instant, m
     pub(super) last: V3,
     pub(super) limit_from: LimitFrom,
+    /// friction limit up to which a prediction lets a slide turn at once, N
+    pub(super) negligible: f64,
 }

@@ -3,9 +3,10 @@
 use super::coupling::Coupling;
 use super::pairs::{Pair, SelfContact};
 use super::scratch::{NearPair, PairScratch};
-use crate::contact::friction::{ContactResponse, FrictionLimit, LimitFrom, Touching, across};
+use crate::contact::friction::{ContactResponse, Grip, LimitFrom, Touching, across};
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE};
 use crate::contact::stencil::{ContactPoint, NodeWeights};
+use crate::contact::tolerance::NEGLIGIBLE;
 use crate::math::{Block, V3, block_difference, block_times};
 
 /// What the response of the pairs depends on besides the wire.
@@ -26,8 +27,8 @@ pub struct PairConditions<'a> {
 }
 
 impl Pair {
-    /// Response of a touching pair that slid by `way` (m) since the last accepted instant, by the distance vector; its
-    /// friction limits after it and the direction of its slide. `slide` is the one in the linear system.
+    /// Response of a touching pair that slid by `way` (m) since the last accepted instant, by the distance vector, and what it makes of
+    /// the bristle. `slide` is the one in the linear system.
     #[inline]
     fn respond(
         &self,
@@ -36,9 +37,9 @@ impl Pair {
         stiffness: f64,
         way: V3,
         slide: V3,
-    ) -> (ContactResponse, FrictionLimit, V3) {
+    ) -> (ContactResponse, Grip) {
         let mut sum = ContactResponse::default();
-        let (limit, slide) = sum.add_touch(&Touching {
+        let grip = sum.add_touch(&Touching {
             law: around.law,
             stiffness,
             normal: self.normal,
@@ -50,8 +51,9 @@ impl Pair {
             limit: self.limit,
             limit_from,
             slide,
+            negligible: NEGLIGIBLE * around.prediction * stiffness,
         });
-        (sum, limit, slide)
+        (sum, grip)
     }
 }
 
@@ -102,6 +104,7 @@ impl SelfContact {
                 room: (-pair.depth).max(0.0),
                 predicted: false,
                 slide: V3::zeros(),
+                held: f64::INFINITY,
                 coupling: None,
             };
             if pair.depth <= 0.0 {
@@ -110,13 +113,13 @@ impl SelfContact {
                 continue;
             }
             let way = (p - young.sum(last)) - (foot.point - old.sum(last));
-            let (response, limit, slide) =
+            let (response, grip) =
                 pair.respond(around, around.limit_from, stiffness, way, V3::zeros());
-            pair.limit = limit;
+            pair.limit = grip.limit;
             near.coupling = Some(couplings.len() as u32);
             (near.gradient, near.hessian) = (response.gradient, response.hessian);
             near.slip_coupling = response.slip_coupling;
-            near.slide = slide;
+            near.slide = grip.slide;
             all_near.push(near);
             let coupling = Coupling {
                 young,
@@ -162,16 +165,17 @@ impl SelfContact {
                 normal: foot.normal,
                 ..now
             };
-            let (mut gradient, mut hessian) = (V3::zeros(), Block::default());
+            let (mut gradient, mut hessian, mut held) =
+                (V3::zeros(), Block::default(), f64::INFINITY);
             if pair.depth > 0.0 {
                 let slid = relative(there) - relative(last);
-                let response;
-                (response, _, near.slide) =
+                let (response, grip) =
                     pair.respond(around, LimitFrom::Current, near.stiffness, slid, near.slide);
                 (gradient, hessian) = (response.gradient, response.hessian);
+                (near.slide, held) = (grip.slide, grip.held);
             }
             let off = gradient - near.gradient - block_times(&near.hessian, &way);
-            if off.amax() <= tolerance * near.stiffness {
+            if off.amax() <= (tolerance * near.stiffness).min(near.held) {
                 continue;
             }
             any = true;
@@ -190,7 +194,7 @@ impl SelfContact {
             (near.gradient, near.hessian, near.room) = (gradient, hessian, 0.0);
             near.slip_coupling = Block::default();
             self.pairs[near.pair as usize].limit.follows = false;
-            near.predicted = true;
+            (near.predicted, near.held) = (true, held);
         }
         any
     }

@@ -31,6 +31,8 @@ pub(super) struct NearPair {
     pub(super) predicted: bool,
     /// direction of the slide in the model; 0: the bristle holds
     pub(super) slide: V3,
+    /// friction limit of the bristle if the model holds it beyond that, N; infinite: it does not
+    pub(super) held: f64,
     /// index of its coupling, if it has one
     pub(super) coupling: Option<u32>,
 }
