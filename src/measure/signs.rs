@@ -114,18 +114,22 @@ impl Coil {
         if !self.is_free_of_clamp(self.records[first].station.angle) {
             return None;
         }
-        let turn = STATIONS_PER_TURN as f64;
-        let untouched = f64::from(now.untouched - start.untouched) / turn;
-        let tension = (now.tension_sum - start.tension_sum) / turn;
+        let tension = (now.tension_sum - start.tension_sum) / STATIONS_PER_TURN as f64;
         let least = limits.loose_tension * self.spec.tension;
-        let by_place = match limits.loose_fraction {
-            0.0 => f64::from(u8::from(untouched > 0.0)) * 2.0,
-            most => untouched / most,
-        };
+        let by_place = self.looseness_by_place(start, now);
         let by_tension = match least {
             0.0 => 0.0,
             least => least / tension.max(1e-3 * least),
         };
         Some(by_place.max(by_tension))
+    }
+
+    /// Share of the turn between two stations that touches nothing, over what may.
+    pub(super) fn looseness_by_place(&self, start: &Signs, now: &Signs) -> f64 {
+        let untouched = f64::from(now.untouched - start.untouched) / STATIONS_PER_TURN as f64;
+        match self.spec.limits.loose_fraction {
+            0.0 => f64::from(u8::from(untouched > 0.0)) * 2.0,
+            most => untouched / most,
+        }
     }
 }

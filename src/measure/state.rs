@@ -155,9 +155,13 @@ impl Coil {
             DefectKind::SkippedGroove => signs.empty_groove,
             DefectKind::EarlyJump => signs.early.map(|turns| turns * self.spec.diameter),
             DefectKind::LateJump => signs.late.map(|turns| turns * self.spec.diameter),
-            DefectKind::LooseTurn => turn()
-                .map(|k| self.records[k].station.bulge)
-                .reduce(f64::max),
+            // for its tension alone a turn has no size
+            DefectKind::LooseTurn => {
+                let start = &self.records[*turn().start()].signs;
+                let bulges = turn().map(|k| self.records[k].station.bulge);
+                let by_place = self.looseness_by_place(start, signs) >= 1.0;
+                bulges.reduce(f64::max).filter(|_| by_place)
+            }
             DefectKind::Overstretch => {
                 let arc = station.arc - self.records[*turn().start()].station.arc;
                 Some(signs.strain * arc)

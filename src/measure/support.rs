@@ -18,6 +18,10 @@ const CLIMBED: f64 = 0.5;
 /// groove of touching wires it is 0.866.
 const NEXT_LAYER: f64 = 0.5;
 
+/// Room between a turn and a flange from which on another turn has its place there, diameters. Chosen: halfway between the whole place
+/// of a last turn that has to squeeze in and the half place that every second layer in grooves leaves.
+const PLACE: f64 = 0.75;
+
 /// What lies below a wire at one polar angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Support {
@@ -31,7 +35,7 @@ pub(crate) struct Support {
     pub(crate) row: Option<u32>,
     /// rise over wire of its own row that it has climbed on, m
     pub(crate) own_row: Option<f64>,
-    /// the same as `level` where wire of its own row carries it too, m
+    /// the same as `level` where wire of its own row carries it too, from below or wedged beside a flange, m
     pub(crate) highest: f64,
 }
 
@@ -49,12 +53,24 @@ impl Coil {
         let climbs_at_flange = !row.is_over_in(pass)
             && row.sense == pass.sense
             && at.has_no_room_in(row, self.spec.diameter)
+            && !self.has_place_beside_turn_before(row)
             && self.support(row.number + 1, at).layer > self.layer_of(row);
         let row = match climbs_at_flange {
             true => row.beside_flange(pass, angle, y),
             false => row.next(pass, angle, y, climbed, self.spec.diameter),
         };
         (row, self.support(row.number, at))
+    }
+
+    /// Whether the turn before, of this row, has left a place beside a flange: wire that stands high there is the last turn of the row, which is
+    /// pressed up between that turn and the flange.
+    fn has_place_beside_turn_before(&self, row: Row) -> bool {
+        let before = self.records.len().checked_sub(STATIONS_PER_TURN);
+        before
+            .map(|index| &self.records[index])
+            .filter(|before| before.row.number == row.number)
+            .and_then(|before| before.station.flange_gap)
+            .is_some_and(|gap| gap >= PLACE * self.spec.diameter)
     }
 
     /// Whether wire climbs on its own row where a layer is a turn long by plan: there each turn lies on the one before.
@@ -123,10 +139,6 @@ impl Coil {
                 if !earlier && aside <= BELOW && rise > 0.0 {
                     support.own_row = Some(support.own_row.unwrap_or(0.0).max(rise));
                 }
-                let level = lower.height + d * (1.0 - aside * aside).max(0.0).sqrt();
-                if aside <= BELOW && rise > 0.0 {
-                    support.highest = support.highest.max(level);
-                }
                 let below = aside <= if earlier { BELOW } else { CLIMBED };
                 if below && rise >= NEXT_LAYER * d {
                     support.layer = support.layer.max(lower.layer + 1);
@@ -135,9 +147,12 @@ impl Coil {
                     *side = lower.layer.max(*side);
                 }
                 let level = match aside <= BELOW {
-                    true => Some(level),
+                    true => Some(lower.height + d * (1.0 - aside * aside).sqrt()),
                     false => wedged(lower),
                 };
+                if let Some(level) = level.filter(|_| rise > 0.0) {
+                    support.highest = support.highest.max(level);
+                }
                 if let Some(level) = level.filter(|_| carries)
                     && level > support.level
                 {

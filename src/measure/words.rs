@@ -26,9 +26,12 @@ impl Defect {
             }
             (DefectKind::LooseTurn, Some(m), _) => {
                 format!(
-                    "loose turn: it stands up to {:.3} mm off what it was laid over, or has hardly any tension, {place}",
+                    "loose turn: it stands up to {:.3} mm off what it was laid over, {place}",
                     1e3 * m
                 )
+            }
+            (DefectKind::LooseTurn, None, _) => {
+                format!("loose turn: it has hardly any tension, {place}")
             }
             (DefectKind::Overstretch, Some(m), _) => {
                 format!("overstretch, {:.3} mm a turn, {place}", 1e3 * m)
@@ -70,7 +73,9 @@ pub fn left_out(wound: f64, settled: f64) -> Option<String> {
     let rest = wound - settled;
     // Where nothing has come to rest the verdict says so itself.
     (settled > 0.0 && rest > 1.0 / 360.0).then(|| {
-        format!("The last {rest:.2} turns had not come to rest when the run ended, and are not judged")
+        format!(
+            "The last {rest:.2} turns had not come to rest when the run ended, and are not judged"
+        )
     })
 }
 

@@ -59,9 +59,21 @@ impl Winding {
         Ok(())
     }
 
+    /// Whether nothing moves, and nothing will along `course`.
+    ///
+    /// What has passed since the winding's time is gone through along the course before, and may bring it to rest under the tension of
+    /// that one.
+    pub(super) fn rests_along(&self, course: &Course) -> bool {
+        self.is_quiescent() && self.is_left_alone_by(course)
+    }
+
+    fn is_left_alone_by(&self, course: &Course) -> bool {
+        course.is_still() && course.at(self.run.time).tension_setpoint == self.sys.state.set_tension
+    }
+
     fn take_course(&mut self, course: &Course, first: bool) {
         let drive = course.drive(self.run.time, self.stepper.next());
-        if !course.is_still() || drive.tension != self.sys.state.set_tension {
+        if !self.is_left_alone_by(course) {
             self.run.quiet = 0.0;
         }
         self.run.acceleration = drive.acceleration;

@@ -312,7 +312,7 @@ impl Simulation {
                 return Ok(());
             };
             let room = point - self.now.run.time;
-            if room <= near || (self.now.is_quiescent() && course.is_still()) {
+            if room <= near || self.now.rests_along(&course) {
                 break;
             }
             if self.now.run.over {

@@ -8,3 +8,4 @@ mod layers;
 mod pitch;
 mod product;
 mod shop_floor;
+mod squeezed;

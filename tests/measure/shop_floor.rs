@@ -257,6 +257,7 @@ fn a_turn_with_less_than_half_its_tension_is_loose() {
     };
     let turn = only(DefectKind::LooseTurn, &slack(0.3));
     assert!((3..=4).contains(&turn.turn), "{turn:?}");
+    assert_eq!(turn.size_m, None, "it lies where it should");
     assert_eq!(slack(0.6).flags(), DefectFlags::default());
 }
 

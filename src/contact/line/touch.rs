@@ -1,8 +1,6 @@
 //! State of one touch of a contact point with the core or a passage of frozen wire.
 
-use crate::contact::friction::{
-    ContactResponse, FrictionLimit, Grip, LimitFrom, Touching, across,
-};
+use crate::contact::friction::{ContactResponse, FrictionLimit, Grip, LimitFrom, Touching, across};
 use crate::contact::law::{ContactLaw, NormalLaw, TANGENTIAL_SHARE};
 use crate::math::V3;
 use serde::{Deserialize, Serialize};
@@ -56,12 +54,7 @@ impl TouchState {
 
     /// Adds the response of this touch, with its depth and normal, to that of its point at `p`.
     #[inline(always)]
-    pub(super) fn respond(
-        &self,
-        p: V3,
-        around: &Conditions,
-        sum: &mut ContactResponse,
-    ) -> Grip {
+    pub(super) fn respond(&self, p: V3, around: &Conditions, sum: &mut ContactResponse) -> Grip {
         let pressed = NormalLaw::at(self.depth, around.onset);
         sum.add_touch(&Touching {
             law: around.law,

@@ -1,0 +1,77 @@
+//! The last turn of a layer in a window that fits exactly, pressed up between the turn before and a flange.
+
+use crate::coils::{D, on_cylinder, spec, wound};
+use coilwind::measure::{Coil, DefectFlags};
+use std::f64::consts::TAU;
+
+/// Turns of a layer.
+const TURNS: f64 = 5.0;
+
+/// Two layers between flanges with room for exactly [`TURNS`]. From the fourth turn on wire leans over by `lean`, diameters,
+/// within a part of each turn (shares of a turn), so that the fifth has less than its place there.
+fn squeezed(lean: f64, part: [f64; 2]) -> Coil {
+    let place = |angle: f64| {
+        let turn = (angle / TAU).floor();
+        let within = angle / TAU - turn;
+        let leans = if (part[0]..part[1]).contains(&within) {
+            lean
+        } else {
+            0.0
+        };
+        // the step to the next place, in the last tenth
+        let aside = ((within - 0.9) / 0.1).max(0.0);
+        let last = TURNS - 1.0;
+        let wedge = (1.0 - (1.0 - leans).powi(2)).sqrt();
+        let at = |turn: f64| match turn {
+            turn if turn < last - 1.0 => (turn, 0.0),
+            turn if turn < last => (turn + leans, 0.0),
+            turn if turn < TURNS => (last, wedge),
+            turn => {
+                // in the groove of the two turns below
+                let right = 2.0 * TURNS - 1.0 - turn;
+                let leant = |t: f64| t + if t == last - 1.0 { leans } else { 0.0 };
+                let (left, right, high) = match right == last {
+                    true => (leant(right - 1.0), last, wedge),
+                    false => (leant(right - 1.0), leant(right), 0.0),
+                };
+                let apart = (right - left).hypot(high);
+                let over = (1.0 - 0.25 * apart * apart).sqrt() / apart;
+                (
+                    0.5 * (left + right) - over * high,
+                    0.5 * high + over * (right - left),
+                )
+            }
+        };
+        let ((y, height), (next_y, next)) = (at(turn), at(turn + 1.0));
+        let between = |from: f64, to: f64| D * (from + aside * (to - from));
+        (between(y, next_y), between(height, next))
+    };
+    let mut nodes = on_cylinder(2.0 * TURNS - 2.2, 1.0, place);
+    for node in &mut nodes {
+        let ways = [-0.5 * D, (TURNS - 0.5) * D].map(|face| face - node.position.y);
+        node.flange = Some(if ways[1] < -ways[0] { ways[1] } else { ways[0] });
+    }
+    let mut coil = wound(spec(), &nodes);
+    coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    coil
+}
+
+/// Where it stood half a diameter high it began the next row, and the turn in the groove over it was a double turn.
+#[test]
+fn a_last_turn_pressed_up_for_a_while_begins_no_row() {
+    let coil = squeezed(0.15, [0.3, 0.36]);
+    assert_eq!(coil.flags(), DefectFlags::default(), "{:?}", coil.defects());
+    let layers: Vec<u32> = coil.turns().iter().map(|turn| turn.layer).collect();
+    assert_eq!(layers, [1, 1, 1, 1, 1, 2, 2, 2]);
+    let fifth = |s: &&coilwind::measure::Station| (4.0 * TAU..4.9 * TAU).contains(&s.angle);
+    assert!(coil.stations().filter(fifth).all(|s| s.layer == 1));
+}
+
+/// It touches the turn before and the flange, and counted as wire that touches nothing.
+#[test]
+fn a_last_turn_wedged_beside_the_flange_is_not_loose() {
+    for lean in [0.05, 0.12] {
+        let coil = squeezed(lean, [0.2, 0.85]);
+        assert!(!coil.flags().loose_turn, "{:?}", coil.defects());
+    }
+}
