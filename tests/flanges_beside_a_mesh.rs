@@ -95,3 +95,32 @@ fn a_mesh_that_ends_before_the_flanges_is_refused() {
         assert!(refused.contains(word), "{refused}");
     }
 }
+
+/// The room to a flange was that to the outer end of a mesh whose flanges are its own.
+#[test]
+fn the_room_to_a_flange_of_a_mesh_is_that_to_its_inner_face() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let outline = [
+        [-3.0, 9.0],
+        [-2.0, 9.0],
+        [-2.0, 6.0],
+        [2.0, 6.0],
+        [2.0, 9.0],
+        [3.0, 9.0],
+    ];
+    write_revolved(&folder.path().join("own.stl"), &outline, SIDES);
+    let text = "wire.diameter_mm = 0.4\ntensioner.tension = 6\ncore.shape = 'mesh'\ncore.file = 'own.stl'\n\
+        nozzle.distance_mm = 20\nnozzle.y_start_mm = -1.8\nstart.clamp_y_mm = -1.8\nspindle.speed = 60\n\
+        traverse.mode = 'orthocyclic'\nwinding.layers = 1\nsolver.tolerance = 8e-6\n";
+    let settings = SceneSettings::from_toml_str(text, "own.toml", folder.path()).expect("reads");
+    let mut sim = Simulation::new(&settings.build().expect("a scene")).expect("starts");
+    let half_turn = sim.motion_profile().time_at(0.6 * TAU);
+    sim.advance_profile(half_turn).expect("the run goes on");
+    let o = sim.outputs();
+    let room = (o.layon_position + 2e-3).min(2e-3 - o.layon_position) - 0.2e-3;
+    assert!(
+        (o.flange_clearance - room).abs() < 5e-6 && room < 0.3e-3,
+        "{} {room}",
+        o.flange_clearance
+    );
+}

@@ -361,9 +361,9 @@ impl Coil {
         node.map_or(0.0, |node| node.added_by_stretch_to(arc))
     }
 
-    /// Winding angle at which the pass of the wire at this winding angle begins, rad.
+    /// Winding angle at which the pass of the wire at this winding angle begins, rad. A swing of the nozzle past its place is no pass.
     pub fn pass_begins(&self, angle: f64) -> f64 {
-        self.passes.at(angle).1.from.max(0.0)
+        self.passes.begins(angle).max(0.0)
     }
 
     /// See [`Passes::planned`].

@@ -101,6 +101,15 @@ impl Passes {
         (number.max(1), found)
     }
 
+    /// Winding angle at which the pass of the wire at this winding angle begins, rad; of wire in the last swing, see
+    /// [`Self::last_swing`], that of the pass before.
+    pub(crate) fn begins(&self, angle: f64) -> f64 {
+        let swing = self.last_swing(angle);
+        let begun = self.judged().take_while(|pass| pass.from <= angle);
+        let passes = begun.zip(1..).filter(|(_, number)| swing != Some(*number));
+        passes.last().map_or(0.0, |(pass, _)| pass.from)
+    }
+
     /// How many layers begin after one winding angle and up to another, rad: passes that follow one which filled a layer.
     pub(crate) fn layers_begun(&self, after: f64, until: f64) -> u32 {
         let (mut before, mut count) = (0.0, 0);
@@ -214,5 +223,31 @@ impl Passes {
         let order = passes.windows(2).all(|pair| pair[0].from <= pair[1].from);
         let senses = passes.iter().all(|pass| pass.sense.abs() == 1.0);
         !passes.is_empty() && order && senses
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// `turn_in_layer` fell to nothing in each swing of a led nozzle, for a sixth of a turn.
+    #[test]
+    fn a_swing_begins_no_pass() {
+        let mut passes = Passes::new(1.0, 1e-4);
+        let mut begun = Vec::new();
+        for turn in 1..8 {
+            let from = f64::from(turn) * TAU;
+            // the nozzle goes back a little, and on again from where it had turned
+            passes.push(from, -1.0, Some(1e-3 * f64::from(turn)));
+            begun.push(passes.begins(from + 0.3));
+            passes.push(from + 1.0, 1.0, Some(1e-3 * f64::from(turn) - 2e-4));
+            begun.push(passes.begins(from + 1.3));
+        }
+        // what the first turns for is not known until it goes on
+        assert_eq!(begun[0], TAU);
+        assert!(
+            begun[1..].iter().all(|from| *from == f64::NEG_INFINITY),
+            "{begun:?}"
+        );
     }
 }

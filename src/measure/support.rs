@@ -47,13 +47,16 @@ impl Coil {
         let row = last.map_or_else(|| Row::first(pass, y), |last| last.row);
         // Once the nozzle has turned, wire of the row itself may be what the next one lies on.
         let least = row.number + u32::from(row.is_over_in(pass));
+        let squeezed =
+            at.has_no_room_in(row, self.spec.diameter) && self.has_place_beside_turn_before(row);
         let climbed = row.is_over_in(pass)
+            && !squeezed
             && (self.support(least, at).layer > last.map_or(1, |last| last.station.layer)
                 || self.climbs_by_plan(row, at));
         let climbs_at_flange = !row.is_over_in(pass)
             && row.sense == pass.sense
             && at.has_no_room_in(row, self.spec.diameter)
-            && !self.has_place_beside_turn_before(row)
+            && !squeezed
             && self.support(row.number + 1, at).layer > self.layer_of(row);
         let row = match climbs_at_flange {
             true => row.beside_flange(pass, angle, y),
@@ -146,19 +149,24 @@ impl Coil {
                     let side = &mut groove[usize::from(lower.position.y > y)];
                     *side = lower.layer.max(*side);
                 }
-                let level = match aside <= BELOW {
-                    true => Some(lower.height + d * (1.0 - aside * aside).sqrt()),
-                    false => wedged(lower),
+                // what a flange and another wire hold between them cannot drop, whichever row that is of
+                let (level, carries) = match aside <= BELOW {
+                    true => (
+                        Some(lower.height + d * (1.0 - aside * aside).sqrt()),
+                        carries,
+                    ),
+                    false => (wedged(lower), true),
                 };
-                if let Some(level) = level.filter(|_| rise > 0.0) {
+                let Some(level) = level else {
+                    continue;
+                };
+                if rise > 0.0 {
                     support.highest = support.highest.max(level);
                 }
-                if let Some(level) = level.filter(|_| carries)
-                    && level > support.level
-                {
+                if carries && level > support.level {
                     support.level = level;
                     support.is_wire = true;
-                    support.row = Some(of.number);
+                    support.row = (of.number < row || climbing).then_some(of.number);
                 }
             }
         }

@@ -43,6 +43,7 @@ impl Winding {
         let o = &mut self.run.outputs;
         o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
         (o.wire_tension, o.spindle_torque, o.feed_speed) = (0.0, 0.0, 0.0);
+        o.meet_tension(0.0);
         o.tensioner_speed = 0.0;
         o.nozzle_y = self.sys.state.support[1].point.y;
         o.spindle_torque_total = torque;

@@ -402,9 +402,7 @@ impl Winding {
         self.sys.state.support[1].point.y = point.inputs.nozzle_position;
         self.finish();
         let mut told = *point;
-        if !self.run.over {
-            told.outputs.meet_tension(self.run.outputs.wire_tension);
-        }
+        told.outputs.meet_tension(self.run.outputs.wire_tension);
         keep_told(&mut self.run.outputs, &told.outputs);
         self.run.rates = point.rates;
     }

@@ -113,11 +113,14 @@ impl Winding {
     }
 
     /// Puts the defect that was found last into the outputs. It stays there when its wire comes loose, and one found before is the
-    /// last in the settled wire.
+    /// last in the settled wire. Of two of one instant, the one that is left is no new one.
     pub(super) fn keep_last_defect(&mut self) {
         let found = self.last_defect();
+        let more = self.defects_found() > self.run.outputs.defect_count;
         let o = &mut self.run.outputs;
-        if let Some(last) = found.filter(|last| last.time >= o.defect_time) {
+        let is_new =
+            |last: &DefectPlace| last.time > o.defect_time || (more && last.time == o.defect_time);
+        if let Some(last) = found.filter(is_new) {
             o.defect_kind = last.kind.code();
             o.defect_turn = f64::from(last.turn);
             o.defect_angle = last.angle;
@@ -139,6 +142,11 @@ impl Winding {
             (Some(laid), Some(fault)) if laid.time > fault.time => Some(laid),
             (laid, fault) => fault.or(laid),
         }
+    }
+
+    /// How many defects there are by now.
+    pub(super) fn defects_found(&self) -> i32 {
+        self.coil.defect_count() as i32 + self.run.faults.len() as i32
     }
 
     /// How many times the wire failed in this way.

@@ -2,8 +2,9 @@
 
 use super::Winding;
 use super::layon::LayOn;
+use crate::math::Spin;
 use crate::signals::Outputs;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Outputs for a model of the machine.
 pub(super) struct Machine {
@@ -31,10 +32,12 @@ impl Winding {
     pub(super) fn for_the_machine(&self, layon: &LayOn) -> Machine {
         let [low, high] = self.ends;
         let y = layon.point.y;
+        let on_core = Spin::new(self.sys.state.spindle.angle).to_core(layon.point);
+        let way = self.flange_beside(on_core);
         Machine {
             layon: [layon.point.x, layon.point.z],
             turn_in_layer: (layon.angle - self.coil.pass_begins(layon.angle)).max(0.0) / TAU,
-            clearance: (y - low).min(high - y) - self.scene.wire.radius(),
+            clearance: way.map_or((y - low).min(high - y), f64::abs) - self.scene.wire.radius(),
             resistance: self.resistance_of(layon.arc, layon.added_by_stretch),
             inertia: self.coil_inertia(),
             torque: self.sys.state.torque_on_core - self.torque_of_inertia(),
@@ -43,8 +46,7 @@ impl Winding {
 
     /// Moment of inertia of the settled wire about the axis, kg m2.
     fn coil_inertia(&self) -> f64 {
-        let wire = &self.scene.wire;
-        0.25 * PI * wire.diameter * wire.diameter * wire.density * self.coil.second_moment()
+        self.scene.wire.mass_per_length() * self.coil.second_moment()
     }
 
     /// Moment that speeds up the settled wire, over the last communication step, N m.

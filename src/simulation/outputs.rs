@@ -85,6 +85,19 @@ impl Winding {
         }
     }
 
+    /// Way along y from a place in the core frame, m, to the flange beside it, m, negative towards -y; none where there is none.
+    pub(super) fn flange_beside(&self, place: V3) -> Option<f64> {
+        let line = self.sys.model.contact.as_line();
+        match line.and_then(|line| line.flanges.as_ref()) {
+            Some(flanges) => flanges.beside(place),
+            None => {
+                let surface = self.sys.model.core.as_ref();
+                let surface = surface.filter(|_| self.scene.core.may_have_flanges());
+                surface.and_then(|surface| surface.flange_beside(place))
+            }
+        }
+    }
+
     pub(super) fn settled(
         &self,
         position: V3,
@@ -98,17 +111,8 @@ impl Winding {
         } else {
             0.0
         };
-        let line = self.sys.model.contact.as_line();
-        let flange = match line.and_then(|line| line.flanges.as_ref()) {
-            Some(flanges) => flanges.beside(position),
-            None => {
-                let surface = self.sys.model.core.as_ref();
-                let surface = surface.filter(|_| self.scene.core.may_have_flanges());
-                surface.and_then(|surface| surface.flange_beside(position))
-            }
-        };
         SettledNode {
-            flange,
+            flange: self.flange_beside(position),
             position,
             arc,
             height,
@@ -145,18 +149,8 @@ impl Winding {
             .sys
             .energy_residual(self.stepper.is_staggered().then_some(self.run.last_step));
         let feed = self.sys.state.feed.unwrap_or_default();
-        let worst = self.coil.worst();
         let tension = self.wire_tension();
-        let count = self.coil.defect_count() as usize + self.run.faults.len();
-        self.keep_last_defect();
-        let raised = self.coil.raised();
-        let faults = [
-            DefectKind::Break,
-            DefectKind::Slack,
-            DefectKind::Collision,
-            DefectKind::Runaway,
-        ]
-        .map(|kind| self.faults_of(kind) as i32);
+        self.count_defects();
         let nozzle_angle = self.nozzle_angle();
         let began = self.run.time > 0.0;
         self.watch_nozzle(began.then_some(self.run.outputs.nozzle_y));
@@ -166,27 +160,6 @@ impl Winding {
         o.wire_tension = tension;
         // A change of the mesh may have moved it since the last look.
         o.meet_tension(tension);
-        o.defect_break = faults[0] > 0;
-        o.defect_count = count as i32;
-        let raised = |kind: DefectKind| raised[kind as usize] as i32;
-        o.defect_count_bulge = raised(DefectKind::Bulge);
-        o.defect_count_gap = raised(DefectKind::Gap);
-        o.defect_count_overlap = raised(DefectKind::Overlap);
-        o.defect_count_double_turn = raised(DefectKind::DoubleTurn);
-        o.defect_count_skipped_groove = raised(DefectKind::SkippedGroove);
-        o.defect_count_early_jump = raised(DefectKind::EarlyJump);
-        o.defect_count_late_jump = raised(DefectKind::LateJump);
-        o.defect_count_loose_turn = raised(DefectKind::LooseTurn);
-        o.defect_count_overstretch = raised(DefectKind::Overstretch);
-        [
-            o.defect_count_break,
-            o.defect_count_slack,
-            o.defect_count_collision,
-            o.defect_count_runaway,
-        ] = faults;
-        o.bulge_height = worst.bulge_height;
-        o.gap_width = worst.gap_width;
-        o.overlap_depth = worst.overlap_depth;
         o.turns_wound = layon.angle.max(0.0) / std::f64::consts::TAU;
         o.turns_settled = self.coil.turns_settled();
         o.layer = self.coil.layer().max(1) as i32;
@@ -214,6 +187,43 @@ impl Winding {
         o.penetration_max = self.sys.state.deepest;
         o.energy_residual = residual;
         self.watch_for_doubt(residual);
+    }
+
+    /// Defects found so far, by the limits that hold now, and the largest values of the last turn.
+    pub(super) fn count_defects(&mut self) {
+        let worst = self.coil.worst();
+        self.keep_last_defect();
+        let count = self.defects_found();
+        let raised = self.coil.raised();
+        let faults = [
+            DefectKind::Break,
+            DefectKind::Slack,
+            DefectKind::Collision,
+            DefectKind::Runaway,
+        ]
+        .map(|kind| self.faults_of(kind) as i32);
+        let o = &mut self.run.outputs;
+        o.defect_break = faults[0] > 0;
+        o.defect_count = count;
+        let raised = |kind: DefectKind| raised[kind as usize] as i32;
+        o.defect_count_bulge = raised(DefectKind::Bulge);
+        o.defect_count_gap = raised(DefectKind::Gap);
+        o.defect_count_overlap = raised(DefectKind::Overlap);
+        o.defect_count_double_turn = raised(DefectKind::DoubleTurn);
+        o.defect_count_skipped_groove = raised(DefectKind::SkippedGroove);
+        o.defect_count_early_jump = raised(DefectKind::EarlyJump);
+        o.defect_count_late_jump = raised(DefectKind::LateJump);
+        o.defect_count_loose_turn = raised(DefectKind::LooseTurn);
+        o.defect_count_overstretch = raised(DefectKind::Overstretch);
+        [
+            o.defect_count_break,
+            o.defect_count_slack,
+            o.defect_count_collision,
+            o.defect_count_runaway,
+        ] = faults;
+        o.bulge_height = worst.bulge_height;
+        o.gap_width = worst.gap_width;
+        o.overlap_depth = worst.overlap_depth;
     }
 
     /// Plastic curvature at a live node, 1/m.

@@ -322,10 +322,11 @@ impl Winding {
     }
 }
 
-/// Where wire can be wound along y, m: between the flanges that the scene gives, or up to the ends of the core.
+/// Where wire can be wound along y, m: between the flanges that the scene or the mesh has, or up to the ends of the core.
 fn winding_ends(scene: &Scene, sys: &System) -> [f64; 2] {
-    match (scene.core.flange(), &sys.model.core) {
-        (Some(flange), _) => [-0.5 * flange.inner_distance, 0.5 * flange.inner_distance],
+    let faces = scene.window.and_then(|window| window.faces);
+    match (faces, &sys.model.core) {
+        (Some(faces), _) => faces,
         (None, Some(surface)) => {
             let (low, high) = surface.bounds();
             [low.y, high.y]

@@ -112,9 +112,12 @@ impl Winding {
             // What holds at rest with one friction may slide with another.
             self.run.quiet = 0.0;
         }
-        self.scene.defects = scene.defects;
         self.scene.friction = scene.friction;
-        self.coil.set_limits(scene.defects);
+        if self.scene.defects != scene.defects {
+            self.scene.defects = scene.defects;
+            self.coil.set_limits(scene.defects);
+            self.count_defects();
+        }
         if let Some(law) = self.sys.model.contact.law_mut() {
             law.mu_static = scene.friction.static_;
             law.mu_kinetic = scene.friction.kinetic;

@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 const TURNS: f64 = 5.0;
 
 /// Two layers between flanges with room for exactly [`TURNS`]. From the fourth turn on wire leans over by `lean`, diameters,
-/// within a part of each turn (shares of a turn), so that the fifth has less than its place there.
-fn squeezed(lean: f64, part: [f64; 2]) -> Coil {
+/// within a part of each turn (shares of a turn), so that the fifth has less than its place there. The nozzle turns back at `turned`, turns.
+fn squeezed(lean: f64, part: [f64; 2], turned: f64) -> Coil {
     let place = |angle: f64| {
         let turn = (angle / TAU).floor();
         let within = angle / TAU - turn;
@@ -52,26 +52,29 @@ fn squeezed(lean: f64, part: [f64; 2]) -> Coil {
         node.flange = Some(if ways[1] < -ways[0] { ways[1] } else { ways[0] });
     }
     let mut coil = wound(spec(), &nodes);
-    coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    coil.begin_pass(turned * TAU, -1.0);
     coil
 }
 
 /// Where it stood half a diameter high it began the next row, and the turn in the groove over it was a double turn.
 #[test]
 fn a_last_turn_pressed_up_for_a_while_begins_no_row() {
-    let coil = squeezed(0.15, [0.3, 0.36]);
-    assert_eq!(coil.flags(), DefectFlags::default(), "{:?}", coil.defects());
-    let layers: Vec<u32> = coil.turns().iter().map(|turn| turn.layer).collect();
-    assert_eq!(layers, [1, 1, 1, 1, 1, 2, 2, 2]);
-    let fifth = |s: &&coilwind::measure::Station| (4.0 * TAU..4.9 * TAU).contains(&s.angle);
-    assert!(coil.stations().filter(fifth).all(|s| s.layer == 1));
+    // wire that the nozzle leads is laid after the nozzle has turned
+    for turned in [TURNS - 0.05, TURNS - 0.8] {
+        let coil = squeezed(0.15, [0.3, 0.36], turned);
+        assert_eq!(coil.flags(), DefectFlags::default(), "{:?}", coil.defects());
+        let layers: Vec<u32> = coil.turns().iter().map(|turn| turn.layer).collect();
+        assert_eq!(layers, [1, 1, 1, 1, 1, 2, 2, 2]);
+        let fifth = |s: &&coilwind::measure::Station| (4.0 * TAU..4.9 * TAU).contains(&s.angle);
+        assert!(coil.stations().filter(fifth).all(|s| s.layer == 1));
+    }
 }
 
 /// It touches the turn before and the flange, and counted as wire that touches nothing.
 #[test]
 fn a_last_turn_wedged_beside_the_flange_is_not_loose() {
     for lean in [0.05, 0.12] {
-        let coil = squeezed(lean, [0.2, 0.85]);
+        let coil = squeezed(lean, [0.2, 0.85], TURNS - 0.05);
         assert!(!coil.flags().loose_turn, "{:?}", coil.defects());
     }
 }
