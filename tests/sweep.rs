@@ -396,7 +396,8 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
     assert_eq!(highest(&every), highest(&looked));
     let (free, not_free) = highest(&every);
     assert!(33.0 < free && not_free == free + 5.0, "{free} {not_free}");
-    assert_eq!((every.len(), looked.len()), (16, 6));
+    // three looks of the bisection, and one at the lowest value
+    assert_eq!((every.len(), looked.len()), (16, 8));
 }
 
 /// Runs that nothing was known of counted as free of defects, and runs that failed as defective: both were told as an answer.
@@ -564,4 +565,23 @@ fn runs_and_sweeps_do_not_share_a_folder() {
         0,
     );
     assert_eq!(files(&run), of_sweep);
+}
+
+/// The two values that bisection winds were free of defects, and the whole bracket was told to be; the lowest is not.
+#[test]
+fn free_values_above_a_defect_are_told_to_be_a_band() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    sweep.args(["sweep", "fig8", "--find-max", "traverse.per_turn_mm"]);
+    sweep.args(["--over", "traverse.per_turn_mm=0.1:0.7:3"]);
+    sweep.args(["--set", "spindle.turns=3.2", "--set", "spindle.speed=60"]);
+    sweep.arg("--out").arg(folder.path());
+    let told = String::from_utf8(finished(sweep, 0).stdout).unwrap();
+    for part in [
+        "= 0.7 is free of defects and 0.1, the lowest, is not",
+        "are a band",
+    ] {
+        assert!(told.contains(part), "{told}");
+    }
+    assert!(!told.contains("bracket"), "{told}");
 }

@@ -164,6 +164,9 @@ fn refuse_set_and_swept(set: &[(String, String)], ranges: &[Range]) -> Result<()
     Ok(())
 }
 
+/// What `--find-max` does not know.
+const ON_TRUST: &str = "values that were not wound are taken to be free below and not above; a sweep without --find-max shows whether they are\n";
+
 /// A sweep that is going on.
 struct Work {
     grid: Grid,
@@ -194,28 +197,16 @@ impl Work {
     /// Looks for the highest value without a defect; tells it with what was looked at.
     fn find_max(&mut self) -> Result<String, Failure> {
         let points = self.grid.points();
-        let looks = (points + 1).next_power_of_two().ilog2();
+        // those of the bisection, and one at the lowest value
+        let looks = (points + 1).next_power_of_two().ilog2() + 1;
         self.bar
             .set_length(u64::from(looks) * u64::from(self.grid.members));
         let mut told = String::new();
-        let limit = find_max::bisect(points, |point| {
-            self.wind(self.grid.runs_at(point))?;
-            told += &self.line(point).unwrap_or_default();
-            let runs = self.grid.runs_at(point);
-            let rows: Vec<&Row> = runs
-                .clone()
-                .filter_map(|run| self.ledger.row(run))
-                .collect();
-            // An interrupted look says nothing, and the sweep tells of its stop.
-            Ok::<Look, Failure>(match rows.len() < runs.len() {
-                true => Look::Unknown {
-                    unjudged: 0,
-                    failed: 0,
-                    of: runs.len(),
-                },
-                false => Look::at(&rows),
-            })
-        })?;
+        let limit = find_max::bisect(points, |point| self.look(point, &mut told))?;
+        let lowest = match (limit.free, limit.unknown) {
+            (2.., None) => self.look(0, &mut told)?,
+            _ => Look::Free,
+        };
         let range = &self.grid.ranges[0];
         let (name, value) = (&range.name, |index: usize| range.value(index as u32));
         if let Some((index, look)) = limit.unknown {
@@ -226,23 +217,56 @@ impl Work {
             self.open = open_question(name, value(index), look, &known);
             return Ok(told);
         }
+        if let Look::Unknown { .. } = lowest {
+            let known = Known {
+                free: Some(value(limit.free - 1)),
+                defect: (limit.end < points).then(|| value(limit.end)),
+            };
+            self.open = open_question(name, value(0), lowest, &known);
+            return Ok(told);
+        }
         told += &match limit.free {
+            n if lowest == Look::Defect => format!(
+                "{name} = {} is free of defects and {}, the lowest, is not: those without a defect are a band; a sweep without --find-max shows where it begins and ends\n",
+                value(n - 1),
+                value(0)
+            ),
             0 => format!(
                 "no value of {name} is free of defects: {} is not; try a lower bracket\n",
                 value(0)
             ),
             n if n == points => format!(
-                "{name} = {}: the whole bracket is free of defects; try a higher one\n",
-                value(n - 1)
+                "{name} = {} and {}, the ends of the bracket, are free of defects; try a higher one\n{ON_TRUST}",
+                value(n - 1),
+                value(0)
             ),
             n => format!(
-                "{name} = {} is the highest value without a defect; {} is not free of them\n\
-                 values that were not wound are taken to be free below and not above; a sweep without --find-max shows whether they are\n",
+                "{name} = {} is the highest value without a defect; {} is not free of them\n{ON_TRUST}",
                 value(n - 1),
                 value(n)
             ),
         };
         Ok(told)
+    }
+
+    /// Winds the runs of a point, adds its line to what is `told`, and says what they show.
+    fn look(&mut self, point: usize, told: &mut String) -> Result<Look, Failure> {
+        let runs = self.grid.runs_at(point);
+        self.wind(runs.clone())?;
+        *told += &self.line(point).unwrap_or_default();
+        let rows: Vec<&Row> = runs
+            .clone()
+            .filter_map(|run| self.ledger.row(run))
+            .collect();
+        // An interrupted look says nothing, and the sweep tells of its stop.
+        Ok(match rows.len() < runs.len() {
+            true => Look::Unknown {
+                unjudged: 0,
+                failed: 0,
+                of: runs.len(),
+            },
+            false => Look::at(&rows),
+        })
     }
 
     /// Winds those of these runs that are not there, as many at a time as there are threads.
