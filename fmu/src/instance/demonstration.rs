@@ -47,17 +47,19 @@ impl Instance {
 
 impl Run {
     /// Makes spindle speed and nozzle position those of the demonstration over the next `step`, s.
+    ///
+    /// A step over an end of a ramp changes the speed evenly by as much as the programme does, and turns the core as far.
     pub(super) fn demonstrate(&mut self, step: f64) {
         let scene = self.simulation.scene();
         let (spindle, per_turn) = (&scene.spindle, scene.traverse.per_turn);
         let time = self.simulation.time();
         let speed = demonstrated(spindle, time);
         let after = demonstrated(spindle, time + step);
-        let turned = 0.5 * (speed + after) * step / TAU;
-        self.inputs.spindle_speed = speed;
+        let mean = (turned(spindle, time + step) - turned(spindle, time)) / step;
+        self.inputs.spindle_speed = mean - 0.5 * (after - speed);
         self.rates = Inputs {
             spindle_speed: (after - speed) / step,
-            nozzle_position: per_turn * turned / step,
+            nozzle_position: per_turn * mean / TAU,
             tension_setpoint: 0.0,
             ..Inputs::HELD
         };
@@ -71,6 +73,18 @@ fn demonstrated(spindle: &Spindle, time: f64) -> f64 {
     let ramp = 2.0 * ramp_turns(spindle) * TAU / speed;
     let share = (time / ramp).min((end(spindle) - time) / ramp);
     (speed * share.clamp(0.0, 1.0)).copysign(spindle.speed)
+}
+
+/// Angle that the demonstration has turned by at a time of the run, s, in rad.
+fn turned(spindle: &Spindle, time: f64) -> f64 {
+    let speed = spindle.speed.abs().min(SPEED);
+    let (end, ramp) = (end(spindle), 2.0 * ramp_turns(spindle) * TAU / speed);
+    let time = time.clamp(0.0, end);
+    // what either ramp lacks of the full speed
+    let lacks = |left: f64| 0.5 * (ramp - left).max(0.0).powi(2) / ramp.max(f64::MIN_POSITIVE);
+    let up = 0.5 * ramp - lacks(time);
+    let down = lacks(end - time);
+    (speed * (time - up - down)).copysign(spindle.speed)
 }
 
 /// When the demonstration ends, s.
@@ -100,6 +114,18 @@ mod tests {
             .map(|k| step * demonstrated(spindle, f64::from(k) * step))
             .sum();
         assert!((angle / TAU - spindle.turns).abs() < 1e-4, "{angle}");
+        // a few long steps turned the core less far, and one over all of it not at all
+        let of_steps: f64 = (0..steps)
+            .map(|k| f64::from(k) * step)
+            .fold(0.0, |worst, time| {
+                let sum = turned(spindle, time + step) - turned(spindle, time);
+                let trapezium =
+                    0.5 * step * (demonstrated(spindle, time) + demonstrated(spindle, time + step));
+                worst.max((sum - trapezium).abs())
+            });
+        assert!(of_steps < 1e-6, "{of_steps}");
+        assert!((turned(spindle, DEFAULT_STOP_TIME) / TAU - spindle.turns).abs() < 1e-9);
+        assert_eq!(turned(spindle, 0.0), 0.0);
         assert_eq!(demonstrated(spindle, 0.0), 0.0);
         assert_eq!(demonstrated(spindle, DEFAULT_STOP_TIME), 0.0);
     }
