@@ -347,3 +347,28 @@ fn wire_that_comes_to_rest_takes_up_another_tension() {
         );
     }
 }
+
+/// Wire hung slack, all of it was at rest, and the tensioner that coasts was told a speed and no way.
+#[test]
+fn a_tensioner_that_coasts_gets_on() {
+    for beyond in [false, true] {
+        let mut sim = start(beyond);
+        let slack = Inputs {
+            tension_setpoint: 0.0,
+            ..held(0.0, 0.0)
+        };
+        let mut stand = || {
+            for _ in 0..300 {
+                sim.advance(slack, 1e-3).expect("a step");
+            }
+            *sim.outputs()
+        };
+        let (before, after) = (stand(), stand());
+        let way = after.tensioner_position - before.tensioner_position;
+        assert!(before.tensioner_speed > 0.1, "{before:?}");
+        assert!(
+            (way - 0.3 * after.tensioner_speed).abs() < 1e-3,
+            "{way} {after:?}"
+        );
+    }
+}

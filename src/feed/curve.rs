@@ -112,6 +112,10 @@ impl Curve {
 
     /// The curve with dry friction of this force added, which holds place 0.
     pub fn with_friction(mut self, force: f64) -> Self {
+        // (an upright piece without height has no slope)
+        if force == 0.0 {
+            return self;
+        }
         let here = self.tension(0.0);
         let at = self.corners().partition_point(|c| c[0] < 0.0);
         let behind = self.corners().partition_point(|c| c[0] <= 0.0);
@@ -229,6 +233,13 @@ mod tests {
         let corners = wire.corners();
         assert_eq!(corners.len(), 3, "slack, held, out: {corners:?}");
         assert_eq!(wire.plus(1.0, 2.0).tension(2.0), front.tension(2.0) + 5.0);
+    }
+
+    /// A pulley without friction put two corners in one place, with no slope between them: from rest no step went through.
+    #[test]
+    fn no_friction_changes_nothing() {
+        let mass = Curve::straight(3.0, 2.0);
+        assert_eq!(mass.with_friction(0.0), mass);
     }
 
     /// Any place of it is that of the elastic curve and what has yielded under the same tension.

@@ -121,7 +121,14 @@ impl Winding {
                 ),
             });
         }
-        let still = self.sys.state.spindle.speed == 0.0
+        // a tensioner that nothing holds goes on where the wire hangs slack
+        let coasts = self
+            .sys
+            .state
+            .feed
+            .is_some_and(|feed| feed.paid_rate.abs() >= QUIET);
+        let still = !coasts
+            && self.sys.state.spindle.speed == 0.0
             && self.sys.state.rod.v.iter().all(|v| v.amax() < QUIET);
         self.run.quiet = if still { self.run.quiet + taken } else { 0.0 };
         Ok(taken)
