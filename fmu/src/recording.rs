@@ -43,7 +43,7 @@ impl Recording {
         std::fs::create_dir_all(&directory).map_err(folder(&directory))?;
         // First what another run may hold, so that nothing of its is overwritten.
         let history = History::create(&directory.join("history.csv"))?;
-        std::fs::write(&scene, settings.to_toml()).map_err(folder(&scene))?;
+        std::fs::write(&scene, settings.to_toml_for_elsewhere()).map_err(folder(&scene))?;
         Ok(Self {
             history: Some(history),
             directory,

@@ -73,7 +73,7 @@ pub(super) fn begin(directory: &Path, settings: &SceneSettings) -> Result<(), Fa
     clear(directory)?;
     remove(directory, &sweep_files::ALL)?;
     let path = directory.join("scene.toml");
-    fs::write(&path, settings.to_toml()).map_err(|e| Failure::write(&path, e))
+    fs::write(&path, settings.to_toml_for_elsewhere()).map_err(|e| Failure::write(&path, e))
 }
 
 /// Removes the results of a run, but for its history and its scene.

@@ -167,9 +167,9 @@ impl Passes {
         if self.has_plan() {
             return None;
         }
-        let judged: Vec<Pass> = self.judged().collect();
-        let swings = judged.len() < self.passes.len() && judged.last() == self.passes.last();
-        (swings && angle - self.last().from < HUNG_BACK).then_some(judged.len() as u32)
+        let count = self.judged().count();
+        let swings = count < self.passes.len() && self.judged().last() == Some(self.last());
+        (swings && angle - self.last().from < HUNG_BACK).then_some(count as u32)
     }
 
     /// Where the wire begins that the last pass says something about, rad: with it the one before may turn out to be none.

@@ -144,12 +144,19 @@ impl SceneSettings {
         }
 
         for file in settings.files_mut() {
-            if !file.is_empty() {
-                *file = base_dir.join(&*file).to_string_lossy().into_owned();
-            }
+            *file = from_anywhere(&base_dir.join(&*file), file);
         }
         Ok((settings, found))
     }
+}
+
+/// A path that means the same from any folder; nothing where no file was `given`. Results and saved states are read elsewhere.
+pub(super) fn from_anywhere(path: &Path, given: &str) -> String {
+    let whole = std::path::absolute(path).ok().filter(|_| !given.is_empty());
+    whole.map_or_else(
+        || given.to_owned(),
+        |path| path.to_string_lossy().into_owned(),
+    )
 }
 
 /// The settings, or all that is wrong with them.

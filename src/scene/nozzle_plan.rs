@@ -178,6 +178,18 @@ impl SceneSettings {
         law.for_turns(turns)
     }
 
+    /// Turns that the planned layers hold, for wire of diameter `d`, m, where the scene has them.
+    pub(super) fn turns_of_layers(&self, d: f64, extent: &Extent) -> Option<f64> {
+        let planned = self.layers(d, extent, &mut Problems::default())?;
+        Some(
+            planned
+                .layers
+                .iter()
+                .map(|layer| f64::from(layer.turns))
+                .sum(),
+        )
+    }
+
     /// The layers that the nozzle winds, from the window between the flanges.
     fn layers(&self, d: f64, extent: &Extent, problems: &mut Problems) -> Option<Layers> {
         let w = &self.winding;
@@ -347,7 +359,8 @@ impl SceneSettings {
             .with_crossovers(stacked.pitch, crossover))
     }
 
-    /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there.
+    /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there; one that leads changes sides
+    /// meanwhile.
     fn helical(&self, Layers { layers, pitch }: &Layers) -> NozzleLaw {
         let (lead, dwell) = (self.traverse.lead, self.traverse.dwell_turns);
         let mut points = vec![[0.0, layers[0].first + layers[0].sense * lead]];
@@ -367,9 +380,8 @@ impl SceneSettings {
             match layers.get(number + 1) {
                 Some(next) => {
                     let from = go_to(next.first + lead, 0.0);
-                    let to = go_to(next.first + lead, dwell);
+                    let to = go_to(next.first - lead, dwell);
                     jumps.push([from, to]);
-                    go_to(next.first - lead, 0.0);
                 }
                 // the last turn has to be laid as well
                 None => drop(go_to(layer.last + lead, 1.0)),

@@ -235,6 +235,28 @@ impl SceneSettings {
                 warn("spindle.turns", message);
             }
         }
+        let natural = (law.travel_ends() + self.traverse.advance) / TAU;
+        if by_law
+            && self.traverse.mode == "helical"
+            && let Some(held) = self.turns_of_layers(wire.diameter, extent)
+            && natural - held > 0.1
+        {
+            let stands = self.traverse.dwell_turns > 1.0;
+            let message = format!(
+                "the nozzle takes {} turns through the layers, which hold {} turns; the rest is laid over the ends of the layers, where it {}",
+                si(natural),
+                si(held),
+                match stands {
+                    true => "stands",
+                    false => "changes sides",
+                }
+            );
+            let key = match stands {
+                true => "traverse.dwell_turns",
+                false => "traverse.lead",
+            };
+            warn(key, message);
+        }
         if by_law && let Some((key, message)) = self.nozzle_past_a_flange(wire, extent, law) {
             warn(key, message);
         }

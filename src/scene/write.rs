@@ -1,10 +1,21 @@
 //! Settings back to a scene file, so that a run can leave what it really ran.
 
+use super::file::from_anywhere;
 use crate::settings::SceneSettings;
 use crate::variables::{Access, Kind, Variable, table};
+use std::path::Path;
 
 impl SceneSettings {
-    /// The text of a scene file that loads to the same settings; every leaf, SI keys only.
+    /// [`Self::to_toml`] for a file in any folder: the scene's own files are named from the root.
+    pub fn to_toml_for_elsewhere(&self) -> String {
+        let mut there = self.clone();
+        for file in there.files_mut() {
+            *file = from_anywhere(Path::new(&*file), file);
+        }
+        there.to_toml()
+    }
+
+    /// The text of a scene file that loads to the same settings; every leaf, SI keys only. Files are named as they are.
     pub fn to_toml(&self) -> String {
         let leaves = table().iter().filter(|v| v.name != "scene.file");
         // Top-level keys must precede the first section.

@@ -4,6 +4,7 @@ use crate::common::{assert_says, fig8, parse};
 use coilwind::scene::Core;
 use coilwind::settings::{Origin, SceneSettings, Start};
 use coilwind::variables::{Value, by_name, table};
+use std::path::Path;
 
 /// `x` to six significant digits, as the reference prints its derived numbers.
 fn six_digits(x: f64) -> f64 {
@@ -262,5 +263,26 @@ fn mesh_files_are_found_beside_the_scene() {
     assert_says(
         &settings.build().unwrap_err().to_string(),
         &["core.file", "cannot be read"],
+    );
+}
+
+/// `scene.toml` in a folder of results named a mesh from where the run had begun, and no command found it.
+#[test]
+fn a_scene_written_elsewhere_finds_its_files() {
+    let text = "core.shape = 'mesh'\ncore.file = 'parts/core.stl'\ntraverse.file = 'way.csv'";
+    let read = |text: &str, folder: &str| {
+        SceneSettings::from_toml_str(text, "own.toml", Path::new(folder)).expect("reads")
+    };
+    let own = read(text, "scenes");
+    let there = read(&own.to_toml_for_elsewhere(), "results/7");
+    assert_eq!(there.core.file, own.core.file);
+    assert!(Path::new(&own.core.file).ends_with("scenes/parts/core.stl"));
+    // one that `--set` gave, which counts from here
+    let mut set = read("core.shape = 'mesh'", "scenes");
+    set.set_text("core.file", "core.stl").expect("a name");
+    let there = read(&set.to_toml_for_elsewhere(), "results/7").core.file;
+    assert_eq!(
+        Path::new(&there),
+        std::path::absolute("core.stl").expect("a path")
     );
 }
