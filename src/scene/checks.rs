@@ -2,7 +2,7 @@
 
 use super::build::{COARSEST, FINEST};
 use super::extent::{Extent, ROUNDING, between_turns};
-use super::impossible::si;
+use super::impossible::{si, si_down, si_up};
 use super::problems::Problems;
 use super::{Core, Integrator, NozzleLaw, SceneError, Solver};
 use crate::rod::Section;
@@ -269,8 +269,8 @@ impl SceneSettings {
                 ),
                 format!(
                     "nozzle.distance at least {} m, or solver.spacing_near at most {} m",
-                    si(extent.turning_radius + 3.0 * near),
-                    si(span / 3.0)
+                    si_up(extent.turning_radius + 3.0 * near),
+                    si_down(span / 3.0)
                 ),
             ));
         } else if free < near || 3.0 * free > span {
@@ -283,8 +283,8 @@ impl SceneSettings {
                 reason,
                 format!(
                     "solver.spacing_near, {} m, to {} m",
-                    si(near),
-                    si(span / 3.0)
+                    si_up(near),
+                    si_down(span / 3.0)
                 ),
             ));
         }

@@ -97,11 +97,22 @@ pub(super) fn check_way(
     );
     let remedy = if passes(clamp.y) {
         let last = last_clear(clamp.y, nozzle.y, passes);
-        format!(
-            "begin with the nozzle (nozzle.y_start, or the input nozzle_position) between {} and {} m",
-            si(clamp.y.min(last)),
-            si(clamp.y.max(last))
-        )
+        let (low, high) = (clamp.y.min(last), clamp.y.max(last));
+        // a nozzle that leads begins elsewhere than its key says
+        let ahead = nozzle.y - scene.nozzle.y_start;
+        match scene.traverse.lead != 0.0 && nozzle.y == scene.nozzle_law.position(0.0) {
+            true => format!(
+                "begin with nozzle.y_start between {} and {} m, or with a smaller traverse.lead, which has the nozzle {} m from there",
+                si(low - ahead),
+                si(high - ahead),
+                si(ahead)
+            ),
+            false => format!(
+                "begin with the nozzle (nozzle.y_start, or the input nozzle_position) between {} and {} m",
+                si(low),
+                si(high)
+            ),
+        }
     } else {
         "move the clamp (start.clamp_y)".to_owned()
     };
@@ -141,6 +152,26 @@ mod tests {
         assert!((-12e-3..-5e-3).contains(&least), "{told}");
         started(least + 1e-6).expect("a place in that range");
         started(least - 2e-5).expect_err("a place beyond it");
+    }
+
+    /// The place of the nozzle was told for its key, which a lead sets apart, and what was advised was refused.
+    #[test]
+    fn a_nozzle_that_leads_is_told_its_key() {
+        let start = |y_mm: f64| {
+            let text = format!(
+                "[core.flange]\ninner_distance_mm = 10\nheight_mm = 6\nthickness_mm = 2\n[start]\nclamp_y_mm = -4.6\n\
+                 [nozzle]\ny_start_mm = {y_mm}\n[traverse]\nmode = 'by-angle'\nlead_mm = -6"
+            );
+            let settings =
+                SceneSettings::from_toml_str(&text, "scene.toml", Path::new("")).expect("reads");
+            let started = Simulation::new(&settings.build().expect("a scene"));
+            started.map(|_| ()).map_err(|error| error.to_string())
+        };
+        let told = start(-4.6).expect_err("wire through a flange");
+        let (_, rest) = told.split_once("nozzle.y_start between ").expect("a range");
+        let least = rest.split(' ').next().and_then(|y| y.parse::<f64>().ok());
+        start(1e3 * least.expect("a number") + 1e-3).expect("a place in that range");
+        assert!(told.contains("traverse.lead"), "{told}");
     }
 
     #[test]

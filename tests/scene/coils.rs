@@ -362,12 +362,38 @@ fn a_nozzle_far_past_a_flange_is_told() {
         );
         let text = format!("{text}mode = 'helical'\nlead_mm = {lead_mm}\n");
         let (_, warnings) = parse(&text).unwrap().build_with_warnings().unwrap();
-        warnings.iter().any(|w| w.key == "traverse.lead")
+        let past = |message: &str| message.contains("past the inner face");
+        let mut all = warnings.iter().filter(|w| w.key == "traverse.lead");
+        all.any(|w| past(&w.message))
     };
     assert!(told(4.0, 25.0));
     assert!(!told(0.3, 25.0));
     // seen from far away the wire passes over the rim
     assert!(!told(4.0, 120.0));
+}
+
+/// Changing sides after its dwell, a nozzle that leads wound up to 35 turns more than the layers hold, and nothing said so.
+#[test]
+fn turns_beyond_the_layers_of_a_nozzle_that_leads_are_told() {
+    let wound = |keys: &str| {
+        let text = format!("{BOBBIN}mode = 'helical'\n{keys}\n");
+        let built = parse(&text).unwrap().build_with_warnings();
+        let (scene, warnings) = built.unwrap();
+        let told = warnings
+            .into_iter()
+            .find(|w| w.message.contains("which hold"));
+        (scene.nozzle_law.turns(), told.map(|w| w.key))
+    };
+    let (held, told) = wound("");
+    assert_eq!(told, None);
+    // half a turn of dwell is enough for a little lead
+    assert_eq!(wound("lead_mm = 0.1"), (held, None));
+    let (more, told) = wound("lead_mm = 0.9");
+    assert!(more > held + 0.5, "{more} {held}");
+    assert_eq!(told.as_deref(), Some("traverse.lead"));
+    let (more, told) = wound("dwell_turns = 2");
+    assert!(more > held + 1.0, "{more} {held}");
+    assert_eq!(told.as_deref(), Some("traverse.dwell_turns"));
 }
 
 /// Turns that are planned apart are judged as gaps, and the verdict came as a surprise.
