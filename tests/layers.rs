@@ -251,3 +251,26 @@ fn a_disc_coil_lies_turn_on_turn() {
         assert!(deepest > 4.0 * 0.35e-3, "{deepest}");
     }
 }
+
+/// Turns on the rim of a flange were told as overlaps and bulges of layers, and nothing said that wire had left its room.
+#[test]
+fn wire_that_gets_over_a_rim_is_told() {
+    let wound = |height_mm: f64| {
+        let text = format!(
+            "wire.material = 'copper'\nwire.diameter_mm = 0.5\ncore.shape = 'cylinder'\ncore.radius_mm = 8\n\
+             core.flange.inner_distance_mm = 4.52\ncore.flange.height_mm = {height_mm}\nnozzle.distance_mm = 20\n\
+             nozzle.y_start_mm = -2.01\nstart.clamp_y_mm = -2.01\ntensioner.tension = 6.25\nspindle.speed = 100\n\
+             traverse.mode = 'helical'\nwinding.layers = 3\n"
+        );
+        let settings =
+            SceneSettings::from_toml_str(&text, "rim.toml", Path::new("")).expect("reads");
+        let mut sim = Simulation::new(&settings.build().expect("a scene")).expect("starts");
+        sim.advance_profile(sim.motion_profile().end())
+            .expect("goes on");
+        sim.reasons()
+            .into_iter()
+            .any(|why| why.contains("got over the rim of a flange"))
+    };
+    assert!(wound(1.2));
+    assert!(!wound(2.5));
+}

@@ -73,3 +73,22 @@ fn motion_of_a_scene_as_inputs() {
         "{wrong}"
     );
 }
+
+/// Inputs that ended before the stop time went on as they were, with the nozzle standing, and heaped up wire without a word.
+#[test]
+fn inputs_that_end_before_the_stop_time_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let inputs = path("inputs.csv");
+    std::fs::write(&inputs, "time,spindle_speed\n0,0\n3e-4,5\n").unwrap();
+    let run = |more: &[&str]| {
+        let (out, own) = (path("out"), ["run", "fig8", "--no-geometry", "--no-report"]);
+        let by = [
+            "--force", "--inputs", &inputs, "--step", "1e-4", "--out", &out,
+        ];
+        finished(&[&own[..], &by, more].concat(), 0)
+    };
+    let told = "inputs.csv end at 0.0003 s; until --stop-time 0.0006 s";
+    assert!(run(&["--stop-time", "6e-4"]).contains(told));
+    assert!(!run(&[]).contains("--stop-time"));
+}

@@ -84,6 +84,13 @@ impl Drive {
         if end <= 0.0 {
             return Err(no_duration(path));
         }
+        if end > signals.end() {
+            eprintln!(
+                "warning: the inputs of {} end at {} s; until --stop-time {end} s speed and tension stay as in the last row, and the nozzle stands",
+                path.display(),
+                signals.end()
+            );
+        }
         let held = signals.before(0.0, scene.start_inputs());
         Ok(Self::Signals {
             held,

@@ -97,7 +97,14 @@ impl SceneSettings {
             let of_the_scene = self.core.flange.inner_distance != 0.0;
             let (who, or) = match (with_flanges, of_the_scene) {
                 (true, true) => ("flanges need", ", or a lower core.flange.height"),
-                (true, false) => ("flanges need", ", or a core.file with lower flanges"),
+                (true, false) => (
+                    "flanges need",
+                    ", or a core.file with lower flanges, or the core.unit in which it was written",
+                ),
+                (false, _) if self.core.shape == "mesh" => (
+                    "core needs",
+                    ", or the core.unit in which core.file was written",
+                ),
                 (false, _) => ("core needs", ""),
             };
             problems.add(self.impossible(

@@ -2,7 +2,7 @@
 
 use super::Winding;
 use super::product::Product;
-use crate::measure::{BulgeLimit, Defect, TurnMeasures, left_out, reasons};
+use crate::measure::{BulgeLimit, Defect, STATIONS_PER_TURN, TurnMeasures, left_out, reasons};
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
 
@@ -143,6 +143,7 @@ impl Winding {
             self.bulge_limit(),
             diameter,
         );
+        reasons.extend(self.wire_on_a_rim());
         let outputs = &self.run.outputs;
         reasons.extend(left_out(outputs.turns_wound, outputs.turns_settled));
         let limit = self.scene.window;
@@ -154,6 +155,21 @@ impl Winding {
             ));
         }
         reasons
+    }
+
+    /// Where wire first lies beyond the inner face of a flange, in words. It got over the rim, and what is wound there is measured as if
+    /// it lay on the core.
+    fn wire_on_a_rim(&self) -> Option<String> {
+        let half = 0.5 * self.scene.core.flange()?.inner_distance;
+        let at = self
+            .coil
+            .stations()
+            .position(|s| s.position.y.abs() > half)?;
+        Some(format!(
+            "Wire has got over the rim of a flange: it lies beyond the inner face from turn {} at {} deg on",
+            at / STATIONS_PER_TURN + 1,
+            at % STATIONS_PER_TURN
+        ))
     }
 
     /// The run in numbers.

@@ -22,18 +22,30 @@ function charts(run) {
   const words = [lying, happened.length ? `${happened.join(", ")}, at the instant of it` : null].filter(Boolean);
   const note = words.length ? `Dashed: ${words.join("; ")}.` : null;
   const torque = plain(history.torque, 1e3);
+  // Runs side by side are compared by eye, which takes one scale.
+  const over = (scale, ...names) => {
+    if (run.all.length < 2) return null;
+    let [low, high] = [Infinity, -Infinity];
+    for (const { history: one } of run.all) {
+      for (const name of one ? names : []) {
+        for (const value of one[name]) [low, high] = [Math.min(low, scale * value), Math.max(high, scale * value)];
+      }
+    }
+    const room = 0.05 * (high - low) || 1;
+    return [low - room, high + room];
+  };
   return [
     chart("Tension at the nozzle", axis, x, "N", [
       { label: "mean", values: plain(history.tension), width: 1.4 },
       { label: "least", values: plain(history.tension_min), band: true },
       { label: "largest", values: plain(history.tension_max), band: true },
-    ], marks, go, note),
+    ], marks, go, note, over(1, "tension", "tension_min", "tension_max")),
     chart("Torque of the wire on the core", axis, x, "mN m", [{ label: "torque", values: torque, width: 1.4 }], marks, go,
-      "Negative where the wire resists the spindle."),
+      "Negative where the wire resists the spindle.", over(1e3, "torque")),
   ];
 }
 
-function chart(title, axis, x, unit, curves, marks, go, note) {
+function chart(title, axis, x, unit, curves, marks, go, note, range) {
   const box = el("div", { class: "plot" });
   const section = el("section", { class: "card chart" }, el("div", { class: "bar" }, el("h2", {}, title)), box,
     note ? el("p", { class: "note" }, note) : null);
@@ -51,7 +63,7 @@ function chart(title, axis, x, unit, curves, marks, go, note) {
   }));
   const options = {
     width: 500, height: 250, axes, cursor: { drag: { x: true, y: false } },
-    scales: { x: { time: false } },
+    scales: { x: { time: false }, ...(range ? { y: { range } } : {}) },
     series: [{ label: axis, value: (u, value) => (value == null ? "–" : value.toFixed(3)) }, ...series],
     bands: curves.length === 3 ? [{ series: [3, 2], fill: () => css("--band") }] : [],
     hooks: { draw: [(u) => drawMarks(u, marks)] },
