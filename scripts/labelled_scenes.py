@@ -391,7 +391,9 @@ SCENES = [
     *[nominal("mesh cylinder", layers, 100.0) for layers in (1, 3)],
     nominal("mesh cylinder", 2, 300.0),
     *[nominal("mesh box", layers, 100.0) for layers in (1, 2)],
-    *[drawn(number) for number in range(1, 13)],
+    # Of number 12 the wire is about to go slack where it climbs: five of eight nozzles within 0.1 mm of its own let it, and no
+    # tolerance decides. So it has no label.
+    *[drawn(number) for number in (*range(1, 12), 13)],
     gap("cylinder", 100.0, 3, 0.5),
     gap("cylinder", 300.0, 2, 0.4),
     gap("box", 100.0, 2, 0.5),
