@@ -390,10 +390,10 @@ fn turns_beyond_the_layers_of_a_nozzle_that_leads_are_told() {
     assert_eq!(wound("lead_mm = 0.1"), (held, None));
     let (more, told) = wound("lead_mm = 0.9");
     assert!(more > held + 0.5, "{more} {held}");
-    assert_eq!(told.as_deref(), Some("traverse.lead"));
+    assert_eq!(told, Some("traverse.lead"));
     let (more, told) = wound("dwell_turns = 2");
     assert!(more > held + 1.0, "{more} {held}");
-    assert_eq!(told.as_deref(), Some("traverse.dwell_turns"));
+    assert_eq!(told, Some("traverse.dwell_turns"));
 }
 
 /// Turns that are planned apart are judged as gaps, and the verdict came as a surprise.
