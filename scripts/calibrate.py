@@ -69,6 +69,10 @@ CORRELATED = 0.95
 AUTOCORRELATED = 0.5
 # Of the sum of squares: less than this is no gain over the start.
 GAIN = 0.01
+# Rest over variation of a measured curve from which on a solution is none, however bad its start was. A curve that hardly varies counts as
+# one that varies by this share of its level. Both chosen.
+FAR_MORE = 3.0
+LEVEL = 0.1
 
 
 @dataclass
@@ -362,11 +366,16 @@ def ends_of(names, found):
 
 
 def explains_nothing(answer, curves):
-    """Whether the solution is no better than its start, and leaves as much as was measured, which is no noise."""
+    """Why the solution is no fit: it leaves as much as was measured, which is no noise, and is no better than its start or leaves far more."""
     left = [curve.values - values for curve, values in zip(curves, answer.computed)]
-    return answer.gain < 1.0 + GAIN and all(
-        rms(rest) >= np.std(curve.values) and autocorrelation(rest) > AUTOCORRELATED for curve, rest in zip(curves, left)
-    )
+    if not all(autocorrelation(rest) > AUTOCORRELATED for rest in left):
+        return None
+    varies = [np.std(curve.values) for curve in curves]
+    if all(rms(rest) > FAR_MORE * max(by, LEVEL * rms(curve.values)) for curve, rest, by in zip(curves, left, varies)):
+        return "what the solution leaves is far more than what was measured varies by"
+    if all(rms(rest) >= by for rest, by in zip(left, varies)) and answer.gain < 1.0 + GAIN:
+        return "the solution is no better than its start, and what it leaves is as large as what was measured"
+    return None
 
 
 def warnings_of(names, answer, curves):
@@ -519,10 +528,7 @@ def tell(args, model, starts, answer):
             "or give another start with --fit NAME=START"
         )
     if nothing and not reasons:
-        reasons.append(
-            "the solution is no better than its start, and what it leaves is as large as what was measured; "
-            "mend the scene with --set, or give other starts with --fit NAME=START"
-        )
+        reasons.append(f"{nothing}; mend the scene with --set, or give other starts with --fit NAME=START")
     if reasons:
         print(f"calibrate.py: no fit: {'; '.join(reasons)}", file=sys.stderr)
     else:

@@ -109,7 +109,8 @@ def test_what_does_not_show_is_told(calibrate, short, tmp_path):
 def test_a_setting_far_off_is_no_fit(calibrate, short, tmp_path):
     """A mass of 2 kg was told as fitted, from 0 to inf. It shows in how far the line yields, and no mass near it is right."""
     code, said = calibrate(short, *SHORT, "--set", "tensioner.mass=2", "--fit", "tensioner.mass", "--out", tmp_path)
-    assert code == 1 and "no fit: the solution is no better than its start" in said and "wind with" not in said, said
+    # one that is a little better than such a start is none either
+    assert code == 1 and "no fit: what the solution leaves is far more" in said and "wind with" not in said, said
 
 
 def test_a_solution_that_is_its_start_and_leaves_everything_is_no_fit(root, monkeypatch):
@@ -123,7 +124,9 @@ def test_a_solution_that_is_its_start_and_leaves_everything_is_no_fit(root, monk
     def nothing(computed, gain):
         return calibrate.explains_nothing(calibrate.Answer(None, None, None, 58, [computed], gain), [curve])
 
-    assert nothing(15.0 - np.sin(angle), 1.0)
+    assert "no better than its start" in nothing(15.0 - np.sin(angle), 1.0)
+    # It came closer and is far off.
+    assert "far more" in nothing(15.0 - 9.0 * np.sin(angle), 2.0)
     # It came closer, it is close, or what is left is noise.
     assert not nothing(15.0 - np.sin(angle), 2.0)
     assert not nothing(15.0 + 0.9 * np.sin(angle), 1.0)
