@@ -65,14 +65,11 @@ SHORT, FOREIGN_ANGLE = 0.25, 0.04
 # Measured values that each parameter takes, so that noise can be told from a fit.
 LEAST = 5
 # Of 1: above it, residuals are not noise, or two parameters cannot be told apart.
-CORRELATED = 0.95
-AUTOCORRELATED = 0.5
+CORRELATED, AUTOCORRELATED = 0.95, 0.5
 # Of the sum of squares: less than this is no gain over the start.
 GAIN = 0.01
-# Rest over variation of a measured curve from which on a solution is none, however bad its start was. A curve that hardly varies counts as
-# one that varies by this share of its level. Both chosen.
-FAR_MORE = 3.0
-LEVEL = 0.1
+# Rest over variation of a curve from which on a solution is none; one that hardly varies counts as varying by this share of its level.
+FAR_MORE, LEVEL = 3.0, 0.1
 
 
 @dataclass
@@ -504,8 +501,7 @@ def tell(args, model, starts, answer):
         low, high = best * np.exp(-width), best * np.exp(width)
     ends = ends_of(names, answer.found)
     open_ = [name for name, wide in zip(names, width) if not wide < np.log(REACH) and name not in ends]
-    nothing = explains_nothing(answer, curves)
-    told_of = list(warnings_of(names, answer, curves))
+    nothing, told_of = explains_nothing(answer, curves), list(warnings_of(names, answer, curves))
 
     print(f"{'parameter':32} {'start':>11} {'fitted':>11}   {100 * args.confidence:g} % interval")
     for name, start, value, a, b in zip(names, starts, best, low, high):
@@ -523,10 +519,9 @@ def tell(args, model, starts, answer):
             "(angle_deg, angle_rad, turns)? If so, give another start with --fit NAME=START"
         )
     if open_:
-        reasons.append(
-            f"what was measured does not determine {', '.join(open_)}; measure something that depends on it, leave it out, "
-            "or give another start with --fit NAME=START"
-        )
+        which = ", ".join(open_)
+        other = "measure something that depends on it, leave it out, or give another start with --fit NAME=START"
+        reasons.append(f"what was measured does not determine {which}; {other}")
     if nothing and not reasons:
         reasons.append(f"{nothing}; mend the scene with --set, or give other starts with --fit NAME=START")
     if reasons:

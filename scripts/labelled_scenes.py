@@ -391,8 +391,8 @@ SCENES = [
     *[nominal("mesh cylinder", layers, 100.0) for layers in (1, 3)],
     nominal("mesh cylinder", 2, 300.0),
     *[nominal("mesh box", layers, 100.0) for layers in (1, 2)],
-    # Of number 12 the wire is about to go slack where it climbs: five of eight nozzles within 0.1 mm of its own let it, and no
-    # tolerance decides. So it has no label.
+    # Number 12 has no label: where it climbs, five of eight nozzles within 0.1 mm of its own let the wire go slack. At finer tolerances a
+    # hundredth of its tension is left.
     *[drawn(number) for number in (*range(1, 12), 13)],
     gap("cylinder", 100.0, 3, 0.5),
     gap("cylinder", 300.0, 2, 0.4),

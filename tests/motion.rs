@@ -88,7 +88,8 @@ fn inputs_that_end_before_the_stop_time_are_told() {
         ];
         finished(&[&own[..], &by, more].concat(), 0)
     };
-    let told = "inputs.csv end at 0.0003 s; until --stop-time 0.0006 s";
+    let told = "the inputs end at 0.0003 s; until --stop-time 0.0006 s";
     assert!(run(&["--stop-time", "6e-4"]).contains(told));
+    assert!(!run(&["--stop-time", "6e-4", "--quiet"]).contains(told));
     assert!(!run(&[]).contains("--stop-time"));
 }

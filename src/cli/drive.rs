@@ -84,13 +84,6 @@ impl Drive {
         if end <= 0.0 {
             return Err(no_duration(path));
         }
-        if end > signals.end() {
-            eprintln!(
-                "warning: the inputs of {} end at {} s; until --stop-time {end} s speed and tension stay as in the last row, and the nozzle stands",
-                path.display(),
-                signals.end()
-            );
-        }
         let held = signals.before(0.0, scene.start_inputs());
         Ok(Self::Signals {
             held,
@@ -98,6 +91,17 @@ impl Drive {
             signals,
             end,
         })
+    }
+
+    /// What becomes of the inputs where the run goes on beyond them, in words.
+    pub(super) fn beyond_inputs(&self) -> Option<String> {
+        match self {
+            Self::Signals { signals, end, .. } if *end > signals.end() => Some(format!(
+                "the inputs end at {} s; until --stop-time {end} s speed and tension stay as in the last row, and the nozzle stands",
+                signals.end()
+            )),
+            _ => None,
+        }
     }
 
     /// Simulated time at the end, s.

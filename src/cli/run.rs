@@ -280,6 +280,9 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     };
     let follows = motion.nozzle_follows(&settings);
     let drive = Drive::new(&motion, &scene, follows)?;
+    if let Some(text) = drive.beyond_inputs().filter(|_| !args.quiet) {
+        eprintln!("warning: {text}");
+    }
     let simulation = match (&drive, follows) {
         (Drive::MotionProfile { .. }, _) => Simulation::new(&scene),
         (Drive::Signals { held, .. }, NozzleFollows::Law) => {

@@ -144,19 +144,18 @@ impl SceneSettings {
         }
 
         for file in settings.files_mut() {
-            *file = from_anywhere(&base_dir.join(&*file), file);
+            if !file.is_empty() {
+                *file = from_anywhere(&base_dir.join(&*file));
+            }
         }
         Ok((settings, found))
     }
 }
 
-/// A path that means the same from any folder; nothing where no file was `given`. Results and saved states are read elsewhere.
-pub(super) fn from_anywhere(path: &Path, given: &str) -> String {
-    let whole = std::path::absolute(path).ok().filter(|_| !given.is_empty());
-    whole.map_or_else(
-        || given.to_owned(),
-        |path| path.to_string_lossy().into_owned(),
-    )
+/// A path that means the same from any folder. Results and saved states are read elsewhere.
+pub(super) fn from_anywhere(path: &Path) -> String {
+    let whole = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    whole.to_string_lossy().into_owned()
 }
 
 /// The settings, or all that is wrong with them.

@@ -32,6 +32,9 @@ const fn keys_of(
 /// yields bit by bit is off by some 12 % at the corner of any bilinear law.
 const ROUGH: f64 = 15.0;
 
+/// Turns beyond those that the layers hold from which on they are told. Chosen: a step to the next layer takes as many.
+const MORE: f64 = 0.5;
+
 const SHAPE: &str = "core.shape";
 const MODE: &str = "traverse.mode";
 const PER_TURN: &str = "traverse.per_turn";
@@ -224,10 +227,11 @@ impl SceneSettings {
             );
             warn(key, message);
         }
+        // what the nozzle takes for its way through the layers
+        let planned = (law.travel_ends() + self.traverse.advance) / TAU;
         if by_law && self.winds_layers() {
-            let planned = (law.travel_ends() + self.traverse.advance) / TAU;
             let more = law.turns() - planned;
-            if more > 0.5 {
+            if more > MORE {
                 let message = format!(
                     "the layers hold {} turns, and what is wound then has no place but on the last one; leave the key out, or plan more turns or layers",
                     si(planned)
@@ -235,26 +239,22 @@ impl SceneSettings {
                 warn("spindle.turns", message);
             }
         }
-        let natural = (law.travel_ends() + self.traverse.advance) / TAU;
         if by_law
             && self.traverse.mode == "helical"
             && let Some(held) = self.turns_of_layers(wire.diameter, extent)
-            && natural - held > 0.1
+            && planned - held > MORE
         {
-            let stands = self.traverse.dwell_turns > 1.0;
-            let message = format!(
-                "the nozzle takes {} turns through the layers, which hold {} turns; the rest is laid over the ends of the layers, where it {}",
-                si(natural),
-                si(held),
-                match stands {
-                    true => "stands",
-                    false => "changes sides",
-                }
-            );
-            let key = match stands {
-                true => "traverse.dwell_turns",
-                false => "traverse.lead",
+            let (lead, dwell) = (self.traverse.lead.abs(), self.traverse.dwell_turns);
+            let changes_sides = law.pitch().is_some_and(|pitch| 2.0 * lead > dwell * pitch);
+            let (key, does) = match changes_sides {
+                true => ("traverse.lead", "changes sides"),
+                false => ("traverse.dwell_turns", "stands"),
             };
+            let message = format!(
+                "the nozzle takes {} turns through the layers, which hold {} turns; the rest is laid over the ends of the layers, where it {does}",
+                si(planned),
+                si(held)
+            );
             warn(key, message);
         }
         if by_law && let Some((key, message)) = self.nozzle_past_a_flange(wire, extent, law) {

@@ -10,7 +10,9 @@ impl SceneSettings {
     pub fn to_toml_for_elsewhere(&self) -> String {
         let mut there = self.clone();
         for file in there.files_mut() {
-            *file = from_anywhere(Path::new(&*file), file);
+            if !file.is_empty() {
+                *file = from_anywhere(Path::new(&*file));
+            }
         }
         there.to_toml()
     }

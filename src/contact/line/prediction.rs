@@ -13,8 +13,8 @@ const SAME_UPDATE: f64 = 0.2;
 impl LineContact<'_> {
     /// Evaluates the response where the update `move_of(point)` (m) leads every point, and replaces the models that promise
     /// something else by the tangents there; returns whether there were any. No node goes farther than `farthest`, m. A promise may
-    /// be off by `share` of what the model allows, and that of a bristle held beyond its friction limit by no more than the limit: a row of
-    /// them that each held a little more would hold the wire.
+    /// be off by `share` of what the model allows. That of a bristle held beyond its friction limit may be off by no more than the
+    /// limit. A row of them that each held a little more would hold the wire.
     ///
     /// `correct(point, change of the Hessian, change of the gradient at the iterate)` hands the replacement over, N/m and N.
     /// Without it a point on its way through a surface that the Hessian does not hold yet would be thrown back
