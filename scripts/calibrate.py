@@ -90,7 +90,7 @@ class Curve:
 
 def read_curves(path):
     try:
-        with open(path, newline="", encoding="utf-8") as file:
+        with open(path, newline="", encoding="utf-8-sig") as file:
             rows = list(csv.reader(line for line in file if not line.startswith("#")))
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         raise Mistake(f"{path} cannot be read: {error}") from None

@@ -37,14 +37,16 @@ def main():
         len(runs), 1, figsize=(8, height), sharex=True, sharey=True, squeeze=False,
         layout="constrained",
     )
-    low, high = 0.0, 0.0
+    low, high, spans = 0.0, 0.0, []
     for number, (axis, run) in enumerate(zip(axes[:, 0], runs)):
         data = read_columns(files[run.directory][1], COLUMNS)
         draw(axis, run, data, COLOURS[number % len(COLOURS)])
         low = min(low, data["wire_tension_min"].min())
         high = max(high, data["wire_tension_max"].max())
+        spans.append(data["spindle_angle"][[0, -1]] / (2 * np.pi))
     # One scale for all runs, from zero, so that swings compare by eye.
     axes[0, 0].set_ylim(1.1 * low, 1.12 * max(high, 1e-9))
+    axes[0, 0].set_xlim(np.min(spans), np.max(spans))
     axes[-1, 0].set_xlabel("turns of the spindle from the start position")
     figure.supylabel("wire tension at the nozzle (N)", fontsize=9, color="#30343b")
     figure.savefig(arguments.output)
@@ -67,7 +69,6 @@ def draw(axis, run, data, colour):
     axis.set_title(f"{run.label}", loc="left", fontweight="bold", color=colour)
     note += f"mean {mean:.1f} N, {low[steady].min():.1f} to {high[steady].max():.1f} N"
     axis.set_title(note, loc="right", color="#5b616b", fontsize=8)
-    axis.set_xlim(turns[0], turns[-1])
 
 
 if __name__ == "__main__":
