@@ -64,7 +64,7 @@ fn wound(start: &Simulation, step: f64, beyond: bool) -> Result<Wound, Box<dyn E
 }
 
 /// CPU time of `fig8` in fine communication steps over that in free steps, with the speed and the nozzle of the scene's own
-/// motion and their derivatives.
+/// motion and their derivatives. Last with a controller of the tension.
 fn against_free_steps() -> Result<(), Box<dyn Error>> {
     println!(
         "rad/s  free: CPU s, steps   over free (steps), by communication step and whether steps reach beyond it"
@@ -73,44 +73,69 @@ fn against_free_steps() -> Result<(), Box<dyn Error>> {
         let mut settings = SceneSettings::load("fig8")?;
         settings.set_text("spindle.speed", speed)?;
         let start = Simulation::new(&settings.build()?)?;
-        let profile = start.motion_profile().clone();
         let mut free = start.clone();
         let began = ThreadTime::now();
-        free.advance_profile(profile.end())?;
+        free.advance_profile(start.motion_profile().end())?;
         let cpu = began.elapsed().as_secs_f64();
         print!("{speed:5}  {cpu:.3}, {}", free.statistics().steps);
-        for step in [2e-5, 1e-4, 1e-3] {
+        for (step, gain) in [
+            (2e-5, 0.0),
+            (1e-4, 0.0),
+            (1e-3, 0.0),
+            (2e-5, 0.3),
+            (1e-4, 0.3),
+        ] {
             for beyond in [true, false] {
-                let mut sim = start.clone();
-                sim.step_beyond(beyond);
-                let mut last = None;
-                let began = ThreadTime::now();
-                for k in 0..(profile.end() / step) as usize {
-                    let (from, to) = (k as f64 * step, (k + 1) as f64 * step);
-                    let inputs = Inputs {
-                        spindle_speed: profile.speed(from),
-                        nozzle_position: profile.nozzle(from),
-                        tension_setpoint: 15.0,
-                        ..Inputs::HELD
-                    };
-                    let rates = Inputs {
-                        spindle_speed: (profile.speed(to) - inputs.spindle_speed) / step,
-                        nozzle_position: (profile.nozzle(to) - inputs.nozzle_position) / step,
-                        ..Inputs::HELD
-                    };
-                    // as the FMU keeps the step for derivatives
-                    last.replace(sim.clone());
-                    sim.advance_ramped(inputs, rates, step)?;
-                }
-                let over = began.elapsed().as_secs_f64() / cpu;
+                let wound = in_steps(&start, step, beyond, gain)?;
                 let way = if beyond { "beyond" } else { "to it" };
-                let steps = sim.statistics().steps;
-                print!("  {:.0} us {way} {over:.2} ({steps})", step * 1e6);
+                let set = if gain > 0.0 { " controlled" } else { "" };
+                let (over, steps) = (wound.cpu / cpu, wound.sim.statistics().steps);
+                print!("  {:.0} us{set} {way} {over:.2} ({steps})", step * 1e6);
             }
         }
         println!();
     }
     Ok(())
+}
+
+/// The scene's own motion in communication steps of `step`, s, with its derivatives. Every 0.1 ms a controller sets the tension anew,
+/// with so much of what it is off by as `gain` says.
+fn in_steps(
+    start: &Simulation,
+    step: f64,
+    beyond: bool,
+    gain: f64,
+) -> Result<Wound, Box<dyn Error>> {
+    let profile = start.motion_profile().clone();
+    let mut sim = start.clone();
+    sim.step_beyond(beyond);
+    let (mut last, mut integral, mut set) = (None, 0.0, 15.0);
+    let between = (1e-4 / step).round() as usize;
+    let began = ThreadTime::now();
+    for k in 0..(profile.end() / step) as usize {
+        let (from, to) = (k as f64 * step, (k + 1) as f64 * step);
+        if gain > 0.0 && k % between == 0 {
+            let error = 15.0 - sim.outputs().wire_tension;
+            integral += 0.1 * gain * error;
+            set = 15.0 + gain * error + integral;
+        }
+        let inputs = Inputs {
+            spindle_speed: profile.speed(from),
+            nozzle_position: profile.nozzle(from),
+            tension_setpoint: set,
+            ..Inputs::HELD
+        };
+        let rates = Inputs {
+            spindle_speed: (profile.speed(to) - inputs.spindle_speed) / step,
+            nozzle_position: (profile.nozzle(to) - inputs.nozzle_position) / step,
+            ..Inputs::HELD
+        };
+        // as the FMU keeps the step for derivatives
+        last.replace(sim.clone());
+        sim.advance_ramped(inputs, rates, step)?;
+    }
+    let cpu = began.elapsed().as_secs_f64();
+    Ok(Wound { sim, cpu })
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

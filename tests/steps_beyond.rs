@@ -159,6 +159,93 @@ fn a_saved_state_with_a_step_ahead_goes_on_to_the_bit() {
     }
 }
 
+/// A controller that corrects the tension by a few hundredths of a newton at every fifth communication point.
+fn corrected(sim: &mut Simulation, from: u32, to: u32) {
+    for k in from..to {
+        let set_anew = f64::from(k / 5);
+        let inputs = Inputs {
+            tension_setpoint: TENSION + 0.2 * (0.05 * set_anew).sin(),
+            ..held(30.0, 0.0)
+        };
+        sim.advance(inputs, 2e-5).expect("a step");
+    }
+}
+
+/// Winds for 0.25 s at 30 rad/s. The tension is measured and set anew every 0.1 ms, with as much of what it is off by as `gain` says.
+fn controlled(beyond: bool, gain: f64) -> (Simulation, f64) {
+    let (mut sim, mut integral, mut set, mut off) = (start(beyond), 0.0, TENSION, 0.0);
+    for k in 0..12_500 {
+        if k % 5 == 0 {
+            let error = TENSION - sim.outputs().wire_tension;
+            integral += 0.1 * gain * error;
+            set = TENSION + gain * error + integral;
+            off += error * error / 2500.0;
+        }
+        let inputs = Inputs {
+            tension_setpoint: set,
+            ..held(30.0, 0.0)
+        };
+        sim.advance(inputs, 2e-5).expect("a step");
+    }
+    (sim, off.sqrt())
+}
+
+/// Every change of an input once dropped the step under way, and a controller had three to six times the solves of constant tension.
+#[test]
+fn a_controller_costs_less_than_twice_a_constant_tension() {
+    let [
+        (sim, off),
+        (plain, off_plain),
+        (constant, _),
+        (constant_plain, _),
+    ] = [(true, 0.3), (false, 0.3), (true, 0.0), (false, 0.0)]
+        .map(|(beyond, gain)| controlled(beyond, gain));
+    let [taken, to_each, held] = [&sim, &plain, &constant].map(|sim| sim.statistics().evaluations);
+    let [fed, fed_at_constant] = [(&sim, &plain), (&constant, &constant_plain)]
+        .map(|(a, b)| a.outputs().fed_length - b.outputs().fed_length);
+    println!("{taken} evaluations, {to_each} to each point, {held} at a constant tension");
+    println!(
+        "tension off by {off:.3} and {off_plain:.3} N, fed wire by {fed:.2e} m ({fed_at_constant:.2e} m)"
+    );
+    assert!(taken < 2 * held, "{taken} against {held}");
+    assert!(off < 1.2 * off_plain, "{off} against {off_plain}");
+    // (short steps lessen the method's own error, also at a constant tension)
+    let ratio = (fed - fed_at_constant).abs() / fed_at_constant.abs();
+    assert!(ratio < 1.0, "{fed} against {fed_at_constant}");
+}
+
+#[test]
+fn a_state_saved_between_small_corrections_goes_on_to_the_bit() {
+    let mut sim = start(true);
+    for (from, to) in [(0, 203), (203, 208), (208, 214), (214, 301), (301, 333)] {
+        corrected(&mut sim, from, to);
+        let bytes = sim.to_bytes().expect("bytes");
+        let mut other = Simulation::from_bytes(sim.scene(), &bytes).expect("a state");
+        other.step_beyond(true);
+        let mut copy = sim.clone();
+        corrected(&mut copy, to, to + 100);
+        corrected(&mut other, to, to + 100);
+        assert_eq!(copy.outputs(), other.outputs());
+        assert!(copy.to_bytes().expect("bytes") == other.to_bytes().expect("bytes"));
+    }
+}
+
+/// A correction that comes last is taken up, however small: the wire comes to rest at the tension that is set.
+#[test]
+fn the_last_small_correction_is_taken_up() {
+    let mut sim = start(true);
+    corrected(&mut sim, 0, 500);
+    for _ in 0..500 {
+        let inputs = Inputs {
+            tension_setpoint: TENSION + 0.03,
+            ..held(0.0, 0.0)
+        };
+        sim.advance(inputs, 1e-4).expect("a step");
+    }
+    let tension = sim.outputs().wire_tension;
+    assert!((tension - TENSION - 0.03).abs() < 1e-3, "{tension}");
+}
+
 #[test]
 fn what_inputs_did_is_kept_when_they_change() {
     let (mut ahead, mut plain) = (start(true), start(false));

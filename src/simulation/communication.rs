@@ -24,6 +24,9 @@ const ALIKE: f64 = 1e-6;
 /// The same for the place of the nozzle. Its way in a ramp is told in straight pieces, which part from the curve by less, and a
 /// thousandth of an error moves no wire.
 const NOZZLE: f64 = 1e-3;
+/// Share of the tolerance by which a master that changes the tension again and again may move the wire before a step is dropped for it.
+/// A solve of the method leaves as much of the tolerance unsolved.
+const CORRECTION: f64 = 1e-2;
 /// Communication steps above which inputs have gone on for more than one.
 const MORE_THAN_ONE: f64 = 1.5;
 /// Steps of the method below which a change of the inputs is worth stepping to. Chosen: four. A step beyond a change is in vain,
@@ -87,10 +90,10 @@ impl Simulation {
         let given = Given::new(self.time(), inputs, rates, dt, nozzle);
         let before = self.talk.travel.replace((given.rates.nozzle_position, dt));
         let (told, told_tension) = (*self.outputs(), self.told_tension());
-        if self.goes_on_as(&given) {
+        if self.goes_on_as(&given, self.talk.newest(), ALIKE) {
             self.talk.wait = self.talk.wait.saturating_sub(1);
         } else {
-            self.turn_to(Course::from(&given, before), dt)?;
+            self.change_to(Course::from(&given, before), &given)?;
         }
         if self.talk.wait > 0 {
             return self.step_to_the_point(|winding| {
@@ -138,7 +141,9 @@ impl Simulation {
         if let Some(dropped) = self.ahead.take() {
             self.pool.give(dropped.winding);
         }
-        let (Some(served), Some(course)) = (self.talk.served.take(), self.talk.course) else {
+        let gone_along = self.talk.course;
+        self.talk.turn();
+        let (Some(served), Some(course)) = (self.talk.served.take(), gone_along) else {
             return Ok(());
         };
         self.talk.underway = false;
@@ -225,9 +230,10 @@ impl Simulation {
         self.finds_its_own_steps() && damped && aside <= NOZZLE * self.now.scene.solver.tolerance
     }
 
-    /// Whether a communication step goes on as the inputs were taken to.
-    fn goes_on_as(&self, given: &Given) -> bool {
-        let Some(taken) = &self.talk.course else {
+    /// Whether a communication step goes on as `taken`, with a set tension that moves the wire by no more than a `share` of the
+    /// tolerance.
+    fn goes_on_as(&self, given: &Given, taken: Option<Course>, share: f64) -> bool {
+        let Some(taken) = taken else {
             return false;
         };
         let end = given.start + given.dt;
@@ -241,9 +247,33 @@ impl Simulation {
             way: ALIKE * tolerance,
             nozzle: NOZZLE * tolerance,
             lever,
-            tension: ALIKE * tolerance * self.now.scene.wire.ea / lever,
+            tension: share * tolerance * self.now.scene.wire.ea / lever,
         };
         taken.goes_on_as(given, until, &alike)
+    }
+
+    /// Goes on along another course from the communication step `given` on.
+    ///
+    /// A controller changes the tension every few communication steps, mostly by little. The step under way is kept then, and the
+    /// next one takes the tension up. A change that comes alone acts at once, for a master that learns from small changes.
+    fn change_to(&mut self, course: Course, given: &Given) -> Result<(), SimError> {
+        let before = self.talk.newest().map(|course| course.start);
+        let went_on = before.map_or(f64::INFINITY, |start| course.start - start);
+        let lasted = std::mem::replace(&mut self.talk.lasted, went_on);
+        let little = went_on < self.now.stepper.next()
+            && self.goes_on_as(given, self.talk.course, CORRECTION);
+        if !self.talk.may_wait(little, self.ahead.is_some()) {
+            let even = (went_on - lasted).abs() <= ROUNDING * course.start;
+            return self.turn_to(course, given.dt, even);
+        }
+        self.talk.wait = 0;
+        if self.ahead.is_some() {
+            self.talk.turned = Some(course);
+            return Ok(());
+        }
+        self.settle()?;
+        self.talk.course = Some(course);
+        Ok(())
     }
 
     /// Begins another course with a communication step of `dt`, s: what has passed since the winding's time is gone through along
@@ -251,19 +281,20 @@ impl Simulation {
     ///
     /// The first step of a course that follows another ends at its communication point, for two reasons. Inputs that have just changed
     /// often change again. And what a master learns from small changes of a step is not blurred by the line between two ends.
-    /// A controller is slower than the master that steps it: where a course went on for several communication steps and for few
-    /// of the method, the next is taken to go on as long, and the method steps to its end.
-    fn turn_to(&mut self, course: Course, dt: f64) -> Result<(), SimError> {
+    /// A controller is slower than the master that steps it: where a course went on for several communication steps and as long as
+    /// the one before, or for few steps of the method, the next is taken to go on as long, and the method steps to its end.
+    fn turn_to(&mut self, course: Course, dt: f64, even: bool) -> Result<(), SimError> {
         if self.ahead.is_some() {
             self.talk.waited = (2 * self.talk.waited).clamp(1, LONGEST_WAIT);
         }
         let mut course = course;
-        if let Some(before) = &self.talk.course {
+        if let Some(before) = self.talk.newest() {
             self.talk.wait = self.talk.waited.max(1);
             let went_on = course.start - before.start;
-            if went_on > MORE_THAN_ONE * dt && went_on < FEW_STEPS * self.now.stepper.next() {
+            let few = went_on < FEW_STEPS * self.now.stepper.next();
+            if went_on > MORE_THAN_ONE * dt && (even || few) {
                 self.talk.wait = self.talk.waited;
-                course = course.as_long_as(before);
+                course = course.as_long_as(&before);
             }
         }
         self.settle()?;
@@ -304,7 +335,7 @@ impl Simulation {
                 let behind = std::mem::replace(&mut self.now, ahead.winding);
                 self.pool.give(behind);
                 self.talk.events.extend_from_slice(&self.now.run.events);
-                self.talk.waited /= 2;
+                self.talk.kept();
                 served.pass(&self.now);
                 continue;
             }

@@ -13,6 +13,9 @@ use serde::{Deserialize, Serialize};
 /// Communication steps with inputs that go on, after which at the latest a step ahead is tried again.
 pub(super) const LONGEST_WAIT: u32 = 64;
 
+/// Small changes in a row from which on a master is taken for a controller, at the least.
+const AGAIN: u32 = 3;
+
 /// What has been said at communication points, and what the inputs are taken to go on as.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Talk {
@@ -20,6 +23,14 @@ pub(super) struct Talk {
     pub(super) told: Option<Told>,
     /// what the inputs are taken to go on as
     pub(super) course: Option<Course>,
+    /// the same from the next step of the method on, where it differs by too little to drop the one under way
+    pub(super) turned: Option<Course>,
+    /// how long the last course went on, s
+    pub(super) lasted: f64,
+    /// changes in a row that were too small to drop a step for
+    small: u32,
+    /// how many of them it takes beyond [`AGAIN`] until the next is taken to be small
+    doubt: u32,
     /// mean velocity of the nozzle over the last communication step, m/s, and its length, s
     pub(super) travel: Option<(f64, f64)>,
     /// whether the winding has taken a step along the course, and none since by another way
@@ -48,6 +59,43 @@ pub(super) struct Served {
 }
 
 impl Talk {
+    /// What the inputs were last taken to go on as.
+    pub(super) fn newest(&self) -> Option<Course> {
+        self.turned.or(self.course)
+    }
+
+    /// Whether the next change of the inputs is taken to be small.
+    fn trusts(&self) -> bool {
+        self.small >= AGAIN + self.doubt
+    }
+
+    /// Takes notice of a change of the inputs that was small or not, while a step was `ahead` or none. Whether it may be left to the
+    /// next step.
+    pub(super) fn may_wait(&mut self, small: bool, ahead: bool) -> bool {
+        let in_vain = ahead && self.trusts() && self.turned.is_none();
+        if in_vain && !small {
+            self.doubt = (2 * self.doubt).clamp(1, LONGEST_WAIT);
+        }
+        self.small = if small { self.small.saturating_add(1) } else { 0 };
+        small && self.trusts()
+    }
+
+    /// Takes the course of the next step of the method, where it is another.
+    pub(super) fn turn(&mut self) {
+        if let Some(turned) = self.turned.take() {
+            (self.course, self.underway) = (Some(turned), false);
+        }
+    }
+
+    /// Takes notice of a step ahead that has been kept to its end.
+    pub(super) fn kept(&mut self) {
+        self.waited /= 2;
+        if self.turned.is_some() {
+            self.doubt /= 2;
+        }
+        self.turn();
+    }
+
     /// Whether it goes with a winding, and with a step ahead of it or none; bytes from elsewhere may say anything.
     pub(super) fn is_sound(&self, winding: &Winding, ahead: bool) -> bool {
         let served = match &self.served {
@@ -60,8 +108,15 @@ impl Talk {
             None => !ahead,
         };
         let course = self.course.as_ref().map_or(!ahead, Course::is_sound);
+        let turned = self.turned.as_ref().is_none_or(|c| ahead && c.is_sound());
         let told = self.told.as_ref().is_none_or(Told::is_sound);
-        served && course && told && self.wait <= LONGEST_WAIT && self.waited <= LONGEST_WAIT
+        served
+            && course
+            && turned
+            && told
+            && self.wait <= LONGEST_WAIT
+            && self.waited <= LONGEST_WAIT
+            && self.doubt <= LONGEST_WAIT
     }
 }
 
