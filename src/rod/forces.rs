@@ -66,6 +66,26 @@ pub struct Load {
 }
 
 impl Load {
+    /// Becomes a copy of another, in the room that this one has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let Self {
+            force,
+            torque,
+            tangent,
+            tension,
+            clamp_moment,
+            plastic,
+            stored,
+            beyond,
+        } = other;
+        self.force.clone_from(force);
+        self.torque.clone_from(torque);
+        self.tangent.clone_from(tangent);
+        self.tension.clone_from(tension);
+        (self.clamp_moment, self.plastic) = (*clamp_moment, *plastic);
+        (self.stored, self.beyond) = (*stored, *beyond);
+    }
+
     /// Makes room for a rod; keeps its capacity.
     pub fn fit(&mut self, rod: &Rod) {
         self.force.clear();

@@ -33,6 +33,30 @@ pub struct Rod {
 }
 
 impl Rod {
+    /// Becomes a copy of another, in the room that this one has.
+    pub(crate) fn copy_from(&mut self, other: &Self) {
+        let Self {
+            x,
+            v,
+            rest,
+            frame,
+            spin,
+            stretch,
+            bend,
+            twist,
+            lead,
+        } = other;
+        self.x.clone_from(x);
+        self.v.clone_from(v);
+        self.rest.clone_from(rest);
+        self.frame.clone_from(frame);
+        self.spin.clone_from(spin);
+        self.stretch.clone_from(stretch);
+        self.bend.clone_from(bend);
+        self.twist.clone_from(twist);
+        self.lead = *lead;
+    }
+
     /// Rod through these points, unstretched unless `rest` says otherwise, untwisted, at rest,
     /// with no plastic strain. The stress-free shape is straight.
     pub fn through(points: &[V3], rest: Option<Vec<f64>>) -> Self {

@@ -24,7 +24,7 @@ impl Winding {
         }
         let surface = self.sys.model.core.clone().ok_or("there is no core")?;
         let profile = quasi_static::profile(&self.scene, &surface, tension);
-        self.coil.set_profile(tension, profile);
+        self.coil_mut().set_profile(tension, profile);
         Ok(())
     }
 

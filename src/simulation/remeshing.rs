@@ -304,7 +304,7 @@ impl Winding {
             }
             self.sys.lay_frozen(node);
             let (turns, defects) = (self.coil.turns_settled(), self.coil.raised());
-            self.coil.settle(settled);
+            self.coil_mut().settle(settled);
             self.tell(turns, defects);
             arc += self.sys.state.rod.rest[i];
         }
@@ -433,7 +433,7 @@ impl Winding {
         let count = self.sys.thaw_front(count);
         self.sys.take_up_frozen(count);
         self.join_frozen_to_live();
-        self.coil.unsettle(count);
+        self.coil_mut().unsettle(count);
         self.run.watch.insert_front(count);
         if let Some(l) = self.sys.line_contact() {
             l.state.forget_surroundings();

@@ -154,7 +154,7 @@ impl Winding {
         self.sys.restore(saved.sys.into_owned())?;
         let far = self.sys.far().ok_or("there is no core")?;
         self.take_yardstick_for(saved.run.yardstick_tension)?;
-        self.coil.restore(saved.coil, far)?;
+        self.coil_mut().restore(saved.coil, far)?;
         if !saved.run.watch.fits(self.sys.state.rod.nodes()) {
             return Err("the watch does not go with the nodes");
         }

@@ -301,7 +301,7 @@ impl Winding {
             scene: scene.clone(),
             motion_profile: MotionProfile::new(scene),
             sys,
-            coil,
+            coil: Arc::new(coil),
             stepper,
             run,
             behind: Vec::new(),

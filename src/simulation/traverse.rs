@@ -20,9 +20,9 @@ impl Winding {
         let turn = self.sys.state.spindle.angle - self.run.angle0;
         let direction = self.coil.spec().direction;
         if turn * direction < -OTHER_WAY {
-            self.coil.set_direction(-direction);
+            self.coil_mut().set_direction(-direction);
             while self.coil.passes() > 1 {
-                self.coil.take_back_pass();
+                self.coil_mut().take_back_pass();
             }
             self.run.traverse = Traverse::new(self.sys.state.support[1].point.y);
         }
@@ -37,12 +37,12 @@ impl Winding {
             }
             match found {
                 Found::Nothing => {}
-                Found::First(sense) => self.coil.set_first_sense(sense),
+                Found::First(sense) => self.coil_mut().set_first_sense(sense),
                 Found::Turned(turn, sense) => {
-                    self.coil
-                        .begin_pass_at(turn.laid(ahead), sense, turn.place());
+                    let (from, place) = (turn.laid(ahead), turn.place());
+                    self.coil_mut().begin_pass_at(from, sense, place);
                 }
-                Found::TakenBack => self.coil.take_back_pass(),
+                Found::TakenBack => self.coil_mut().take_back_pass(),
             }
         }
     }

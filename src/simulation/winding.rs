@@ -19,7 +19,8 @@ pub struct Winding {
     pub(super) scene: Scene,
     pub(super) motion_profile: MotionProfile,
     pub(super) sys: System,
-    pub(super) coil: Coil,
+    /// copies share it until one of them changes it
+    pub(super) coil: Arc<Coil>,
     pub(super) stepper: Stepper,
     pub(super) run: RunState,
     /// polar angle from each laid node to lift-off, at the last look, rad
@@ -74,6 +75,10 @@ impl Winding {
         &self.coil
     }
 
+    pub(super) fn coil_mut(&mut self) -> &mut Coil {
+        Arc::make_mut(&mut self.coil)
+    }
+
     /// The motion profile of the scene.
     pub fn motion_profile(&self) -> &MotionProfile {
         &self.motion_profile
@@ -115,7 +120,7 @@ impl Winding {
         self.scene.friction = scene.friction;
         if self.scene.defects != scene.defects {
             self.scene.defects = scene.defects;
-            self.coil.set_limits(scene.defects);
+            self.coil_mut().set_limits(scene.defects);
             self.count_defects();
         }
         if let Some(law) = self.sys.model.contact.law_mut() {

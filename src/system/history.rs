@@ -38,6 +38,36 @@ pub struct Past {
 }
 
 impl Past {
+    /// Becomes a copy of another, in the room that this one has.
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let Self {
+            known,
+            x,
+            v,
+            q,
+            roll,
+            spin,
+            fed,
+            fed_rate,
+            paid,
+            paid_rate,
+            guided,
+            guided_rate,
+            longer,
+            h,
+        } = other;
+        self.known = *known;
+        self.x.clone_from(x);
+        self.v.clone_from(v);
+        self.q.clone_from(q);
+        self.roll.clone_from(roll);
+        self.spin.clone_from(spin);
+        (self.fed, self.fed_rate) = (*fed, *fed_rate);
+        (self.paid, self.paid_rate) = (*paid, *paid_rate);
+        (self.guided, self.guided_rate) = (*guided, *guided_rate);
+        (self.longer, self.h) = (*longer, *h);
+    }
+
     /// Forgets everything before the present instant: the next step starts afresh.
     pub fn forget(&mut self) {
         self.known = 0;

@@ -111,9 +111,9 @@ impl State {
             load,
             roll,
         } = other;
-        self.rod.clone_from(rod);
+        self.rod.copy_from(rod);
         (self.support, self.spindle) = (*support, *spindle);
-        self.past.clone_from(past);
+        self.past.copy_from(past);
         self.contact.copy_from(contact);
         self.frozen.clone_from(frozen);
         self.frozen_history.clone_from(frozen_history);
@@ -125,7 +125,7 @@ impl State {
         (self.deepest, self.torque_on_core) = (*deepest, *torque_on_core);
         (self.turning, self.unbalanced) = (*turning, *unbalanced);
         self.time = *time;
-        self.load.clone_from(load);
+        self.load.copy_from(load);
         self.roll.clone_from(roll);
     }
 

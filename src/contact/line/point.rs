@@ -57,6 +57,32 @@ impl PointState {
         passages: 0,
     };
 
+    /// Becomes a copy of another point. Most have little near them, and all other touches are unused.
+    #[inline]
+    pub(super) fn copy_from(&mut self, other: &Self) {
+        let used = match self.has_surroundings() || other.has_surroundings() {
+            true => WIRE + self.passages.max(other.passages),
+            false => 0,
+        };
+        self.touch[..used].copy_from_slice(&other.touch[..used]);
+        let Self {
+            last,
+            placed,
+            centre,
+            reach,
+            clear_at,
+            clear_within,
+            touch: _,
+            near,
+            passages,
+        } = *other;
+        (self.last, self.placed) = (last, placed);
+        (self.centre, self.reach) = (centre, reach);
+        (self.clear_at, self.clear_within) = (clear_at, clear_within);
+        (self.near, self.passages) = (near, passages);
+        debug_assert_eq!(self, other, "a touch that is not in use is not unused");
+    }
+
     /// Whether core or frozen wire is near.
     #[inline]
     pub(super) fn has_surroundings(&self) -> bool {

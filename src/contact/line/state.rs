@@ -65,7 +65,7 @@ impl LineState {
         self.points.truncate(points.len());
         let mut from = points.iter();
         for (to, from) in self.points.iter_mut().zip(&mut from) {
-            **to = **from;
+            to.copy_from(from);
         }
         self.points.extend(from.cloned());
         (self.loss, self.deepest, self.height) = (*loss, *deepest, *height);
