@@ -111,7 +111,8 @@ impl Coil {
             let way = at.flange?;
             let farthest = y + way - (0.5 * d).copysign(way);
             let room = (farthest - lower.position.y) * way.signum() / d;
-            let holds = height > lower.height && (BELOW..1.0).contains(&room);
+            let between = (y - lower.position.y) * way > 0.0;
+            let holds = between && height > lower.height && (BELOW..1.0).contains(&room);
             holds.then(|| lower.height + d * (1.0 - room * room).sqrt())
         };
         let mut support = Support {

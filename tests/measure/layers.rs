@@ -327,3 +327,26 @@ fn wire_between_a_flange_and_a_turn_lies_on_both() {
         assert!((bulge - drop * D).abs() < 1e-3 * D, "{room}: {bulge}");
     }
 }
+
+/// The second turn of a layer had a bulge of minus half a diameter, as if the first lay below it and not between it and the flange.
+#[test]
+fn wire_beyond_the_turn_beside_a_flange_lies_on_the_core() {
+    // (wire on wire is never level to the last digit)
+    let place = |angle: f64| match angle < TAU {
+        true => (0.0, 0.0),
+        false => (-D, 1e-4 * D),
+    };
+    let mut nodes = on_cylinder(1.9, 1.0, place);
+    for node in &mut nodes {
+        node.flange = Some(1.4 * D - node.position.y);
+    }
+    let coil = wound(
+        CoilSpec {
+            traverse: -1.0,
+            ..spec()
+        },
+        &nodes,
+    );
+    let station = coil.stations().nth(360 + 200).expect("a second turn");
+    assert!(station.bulge.abs() < 1e-3 * D, "{}", station.bulge);
+}
