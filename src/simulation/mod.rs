@@ -5,6 +5,7 @@
 
 mod ahead;
 mod broken;
+mod clamp_place;
 mod coarsen;
 mod collision;
 mod communication;
