@@ -39,6 +39,7 @@ mod stepping;
 mod straight_wire;
 mod summary;
 mod talk;
+mod telling;
 mod told;
 #[cfg(feature = "lab")]
 mod trail;

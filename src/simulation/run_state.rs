@@ -3,7 +3,7 @@
 use super::doubt::{Doubt, Throughput};
 use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_way::Traverse;
-use crate::measure::Defect;
+use crate::measure::{Defect, DefectKind};
 use crate::signals::{Event, Outputs};
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +48,8 @@ pub(super) struct RunState {
     pub(super) was_slack: bool,
     /// slack and breaks, in the order of their times
     pub(super) faults: Vec<Defect>,
+    /// defects of settled wire that have been told: kind, and the station from which on it counted
+    pub(super) told_defects: Vec<(DefectKind, usize)>,
     /// core angle at which the wire was last slack, rad
     pub(super) slack_at: Option<f64>,
     /// how long core, nozzle, tensioner and wire have been still, s

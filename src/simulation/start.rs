@@ -260,6 +260,7 @@ impl Winding {
             told_over: false,
             was_slack: false,
             faults: Vec::new(),
+            told_defects: Vec::new(),
             slack_at: None,
             quiet: 0.0,
             paid0: sys.state.feed.map_or(0.0, |feed| feed.paid),
