@@ -154,8 +154,14 @@ impl SceneSettings {
                 warn("core.window_height", message);
             }
         }
+        // (layers of a single turn have no neighbours)
+        let side_by_side = || {
+            let turns = self.turns_of_layers(wire.diameter, extent);
+            turns.is_none_or(|turns| turns > self.winding.layers)
+        };
         if let Some(pitch) = law.pitch()
             && pitch - wire.diameter > self.defects.gap * wire.diameter
+            && side_by_side()
         {
             let key = match self.winding.pitch {
                 0.0 => "winding.turns_per_layer",
