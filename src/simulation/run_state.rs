@@ -50,6 +50,8 @@ pub(super) struct RunState {
     pub(super) faults: Vec<Defect>,
     /// defects of settled wire that have been told: kind, and the station from which on it counted
     pub(super) told_defects: Vec<(DefectKind, usize)>,
+    /// wire has slipped off an end of the core, which has been told
+    pub(super) slipped: Option<Slip>,
     /// core angle at which the wire was last slack, rad
     pub(super) slack_at: Option<f64>,
     /// how long core, nozzle, tensioner and wire have been still, s
@@ -63,4 +65,15 @@ pub(super) struct RunState {
     pub(super) nozzle_by_law: bool,
     /// tension that the quasi-static height is for, N
     pub(super) yardstick_tension: f64,
+}
+
+/// Where wire has slipped off the core.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Slip {
+    /// s
+    pub(super) time: f64,
+    /// from 1
+    pub(super) turn: u32,
+    /// end of the core along y, or outer face of its flange, m
+    pub(super) end: f64,
 }

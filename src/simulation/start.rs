@@ -261,6 +261,7 @@ impl Winding {
             was_slack: false,
             faults: Vec::new(),
             told_defects: Vec::new(),
+            slipped: None,
             slack_at: None,
             quiet: 0.0,
             paid0: sys.state.feed.map_or(0.0, |feed| feed.paid),
