@@ -50,6 +50,8 @@ pub(super) struct RunState {
     pub(super) faults: Vec<Defect>,
     /// defects of settled wire that have been told: kind, and the station from which on it counted
     pub(super) told_defects: Vec<(DefectKind, usize)>,
+    /// unstretched wire from the clamp to the last that has lain on the coil and was not unwound, m
+    pub(super) laid: f64,
     /// wire has slipped off an end of the core, which has been told
     pub(super) slipped: Option<Slip>,
     /// core angle at which the wire was last slack, rad

@@ -2,7 +2,7 @@
 
 use super::Winding;
 use super::run_state::Slip;
-use crate::math::Spin;
+use crate::math::{Spin, V3};
 use crate::scene::si;
 use crate::signals::EventKind;
 use std::f64::consts::TAU;
@@ -13,6 +13,9 @@ impl Winding {
         if self.run.slipped.is_some() {
             return;
         }
+        let now = self.arc_at(self.lift_off());
+        let unwinds = self.sys.state.spindle.speed * self.coil.spec().direction < 0.0;
+        self.run.laid = if unwinds { now } else { self.run.laid.max(now) };
         let Some((node, end)) = self.node_past_an_end() else {
             return;
         };
@@ -36,15 +39,22 @@ impl Winding {
         );
     }
 
-    /// A node past an end of the core and within the core's outline there, and where that end is along y, m. Taut wire passes the
-    /// outline at a tangent, so no wire gets there but over the end.
+    /// A node past an end of the core and within the core's outline there, and where that end is along y, m.
+    ///
+    /// Only wire that has lain on the coil counts: it got there over the end. A free span that is slack may hang there as well.
     fn node_past_an_end(&self) -> Option<(usize, f64)> {
         let surface = self.sys.model.core.as_ref()?;
         let (low, high) = surface.bounds();
         let (radius, most) = (self.scene.wire.radius(), surface.radius_max());
         let spin = Spin::new(self.sys.state.spindle.angle);
         let x = &self.sys.state.rod.x;
-        (1..x.len() - 1).find_map(|node| {
+        let is_past = |p: &V3| p.y > high.y || p.y < low.y;
+        // (most wire never comes near)
+        if !x[1..x.len() - 1].iter().any(is_past) {
+            return None;
+        }
+        let was_laid = |node: &usize| self.arc_at(*node) < self.run.laid;
+        (1..x.len() - 1).take_while(was_laid).find_map(|node| {
             let p = x[node];
             let (end, inside) = match p.y {
                 y if y > high.y => (high.y, high.y - radius),
@@ -60,7 +70,13 @@ impl Winding {
         })
     }
 
-    /// The same in words, for the reasons of a verdict.
+    /// Unstretched wire from the clamp to a live node, m.
+    fn arc_at(&self, node: usize) -> f64 {
+        let live: f64 = self.sys.state.rod.rest[..node].iter().sum();
+        self.sys.state.arc0 + live
+    }
+
+    /// That wire has slipped off the core, for the reasons of a verdict.
     pub(super) fn slipped_off(&self) -> Option<String> {
         let Slip { time, turn, end } = self.run.slipped?;
         Some(format!(

@@ -261,6 +261,7 @@ impl Winding {
             was_slack: false,
             faults: Vec::new(),
             told_defects: Vec::new(),
+            laid: 0.0,
             slipped: None,
             slack_at: None,
             quiet: 0.0,
