@@ -243,6 +243,13 @@ pub fn with_plates(
     TriMesh::together(&parts)
 }
 
+/// A prism along y on this section, from one place (m) to another.
+pub(crate) fn prism(section: &Hull, [low, high]: [f64; 2]) -> Result<TriMesh, MeshError> {
+    let corners = section.outline(0.0, 1);
+    let ring = |y: f64| corners.iter().map(|&[x, z]| V3::new(x, y, z)).collect();
+    sewn(&[ring(low), ring(high)])
+}
+
 /// Pulley about y with a V groove at y = 0, `bottom_radius` (m) at its lowest, walls that include `angle` (rad) and rise by
 /// `depth` (m), in `segments` flat sides.
 #[cfg(any(feature = "lab", test))]
@@ -281,7 +288,7 @@ pub fn grooved_pulley(
 
 /// The closed surface through rings of as many points each, from low to high y, with a fan round the axis at both ends. Points of a
 /// ring may coincide.
-fn sewn(rings: &[Vec<V3>]) -> Result<TriMesh, MeshError> {
+pub(crate) fn sewn(rings: &[Vec<V3>]) -> Result<TriMesh, MeshError> {
     let mut vertices: Vec<V3> = Vec::new();
     let mut known = BTreeMap::new();
     let mut number = |p: V3| {

@@ -1,8 +1,19 @@
-//! Which stations a defect covers, for pictures of the coil.
+//! Which stations a defect covers: for lists of defects, for what is told of them, and for pictures of the coil.
 
 use super::coil::Coil;
 use super::defect::DefectKind;
 use super::runs::Run;
+
+/// Stations in a row of which a defect is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct CountedRun {
+    pub(crate) kind: DefectKind,
+    /// first and last station
+    pub(crate) first: usize,
+    pub(crate) last: usize,
+    /// the station from which on the run is long enough to count
+    pub(crate) counts_at: usize,
+}
 
 impl Coil {
     /// Kinds of defect at each station, in the order of [`Self::stations`], as a sum of [`DefectKind::code`]: every
@@ -18,21 +29,39 @@ impl Coil {
     /// Adds the code of a kind at each station of its runs that are long enough to count.
     pub(crate) fn mark(&self, kind: DefectKind, marks: &mut [u16]) {
         let code = kind.code() as u16;
-        let (mut start, mut counts) = (0, false);
-        for (index, record) in self.records.iter().enumerate() {
-            let run = record.runs[kind as usize];
+        for run in self.counted_runs(kind, 0) {
+            marks[run.first..=run.last]
+                .iter_mut()
+                .for_each(|m| *m |= code);
+        }
+    }
+
+    /// Runs of a kind that are long enough to count and reach the station `from` or beyond, along the wire.
+    pub(crate) fn counted_runs(&self, kind: DefectKind, from: usize) -> Vec<CountedRun> {
+        let run_at = |index: usize| self.records[index].runs[kind as usize];
+        let goes_on = |index: &usize| run_at(*index) != Run::default();
+        let before = (0..from.min(self.records.len())).rev();
+        let begin = from - before.take_while(goes_on).count();
+        let mut found = Vec::new();
+        let (mut first, mut counts_at) = (begin, None);
+        for index in begin..self.records.len() {
+            let run = run_at(index);
             if run == Run::default() {
-                (start, counts) = (index + 1, false);
+                (first, counts_at) = (index + 1, None);
                 continue;
             }
-            let (_, _, least) = self.criterion(kind, record);
-            if !counts && run.counts(least) {
-                counts = true;
-                marks[start..index].iter_mut().for_each(|m| *m |= code);
+            let (_, _, least) = self.criterion(kind, &self.records[index]);
+            if counts_at.is_none() && run.counts(least) {
+                counts_at = Some(index);
             }
-            if counts {
-                marks[index] |= code;
-            }
+            let ends = index + 1 == self.records.len() || !goes_on(&(index + 1));
+            found.extend(counts_at.filter(|_| ends).map(|counts_at| CountedRun {
+                kind,
+                first,
+                last: index,
+                counts_at,
+            }));
         }
+        found
     }
 }

@@ -32,6 +32,7 @@ pub use coil::{Coil, CoilSpec, SettledNode, added_by_stretch};
 pub use contour::LayerContour;
 pub use crossover::Crossover;
 pub use defect::{BulgeLimit, Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
+pub(crate) use marks::CountedRun;
 pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};

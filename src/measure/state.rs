@@ -2,8 +2,8 @@
 
 use super::coil::{Coil, Record};
 use super::defect::{Defect, DefectFlags, DefectKind, DefectPlace, MEASURED};
+use super::marks::CountedRun;
 use super::profile::Profile;
-use super::runs::Run;
 use super::station::Station;
 use super::{STATION_STEP, STATIONS_PER_TURN, Verdict};
 use serde::Serialize;
@@ -83,35 +83,20 @@ impl Coil {
     }
 
     fn defects_of(&self, kind: DefectKind) -> Vec<Defect> {
-        let mut found = Vec::new();
-        // where the present run is worst, and whether it counts
-        let mut worst: Option<(usize, f64)> = None;
-        let mut counts = false;
-        for (index, record) in self.records.iter().enumerate() {
-            let (value, _, least) = self.criterion(kind, record);
-            let run = record.runs[kind as usize];
-            if run == Run::default() {
-                found.extend(
-                    worst
-                        .filter(|_| counts)
-                        .map(|(k, _)| self.defect_at(kind, k)),
-                );
-                (worst, counts) = (None, false);
-                continue;
+        let worst = |run: CountedRun| -> Option<usize> {
+            let mut worst: Option<(usize, f64)> = None;
+            for index in run.first..=run.last {
+                if let (Some(value), ..) = self.criterion(kind, &self.records[index])
+                    && worst.is_none_or(|(_, most)| value > most)
+                {
+                    worst = Some((index, value));
+                }
             }
-            counts |= run.counts(least);
-            if let Some(value) = value
-                && worst.is_none_or(|(_, most)| value > most)
-            {
-                worst = Some((index, value));
-            }
-        }
-        found.extend(
-            worst
-                .filter(|_| counts)
-                .map(|(k, _)| self.defect_at(kind, k)),
-        );
-        found
+            worst.map(|(index, _)| index)
+        };
+        let runs = self.counted_runs(kind, 0).into_iter();
+        let worst = runs.filter_map(worst);
+        worst.map(|index| self.defect_at(kind, index)).collect()
     }
 
     /// The defect of a run that is worst at `index`.

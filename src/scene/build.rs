@@ -43,6 +43,9 @@ const BENT: f64 = 0.45;
 pub(super) const FINEST: f64 = 0.1;
 pub(super) const COARSEST: f64 = 10.0;
 
+/// How far beside the clamp the core is looked at too, diameters. Chosen: far above the rounding of an STL file's numbers.
+const ASIDE: f64 = 1e-3;
+
 impl SceneSettings {
     /// Checks the settings and derives the scene from them.
     ///
@@ -366,8 +369,8 @@ impl SceneSettings {
         let (clamp, wire) = (self.start.clamp_y, self.wire.outer_diameter());
         // (a clamp beside the core is told by itself)
         let beside = !(low..=high).contains(&clamp);
-        // a step in the core has no section right at it
-        let sections = [0.0, -0.5, 0.5].map(|aside| clamp + aside * wire);
+        // a step in the core has no section right at it; farther aside, a flange that the wire touches would do for the core
+        let sections = [0.0, -ASIDE, ASIDE].map(|aside| clamp + aside * wire);
         if beside || sections.iter().any(|&y| mesh.section(y).is_some()) {
             return Ok(());
         }

@@ -28,6 +28,7 @@ mod speed_law;
 mod spindle_plan;
 mod stress_strain;
 mod warnings;
+mod without_effect;
 mod write;
 
 pub use crate::rod::{Bilinear, Hardening, Pieces, RoundLaws, Section, Twist};

@@ -3,30 +3,11 @@
 use super::error::Warning;
 use super::extent::Extent;
 use super::impossible::si;
+use super::without_effect::Reader;
 use super::{Core, Integrator, NozzleLaw, Solver, Window};
 use crate::rod::{RoundLaws, Section, Twist};
-use crate::settings::{NozzleFollows, Origin, SceneSettings};
+use crate::settings::{NozzleFollows, SceneSettings};
 use std::f64::consts::TAU;
-
-/// Keys that only some values of a choice read: of the shape of the core, or of how the nozzle moves.
-struct KeysOf {
-    choice: &'static str,
-    values: &'static [&'static str],
-    keys: &'static [&'static str],
-}
-
-/// Keys of the values of a choice.
-const fn keys_of(
-    choice: &'static str,
-    values: &'static [&'static str],
-    keys: &'static [&'static str],
-) -> KeysOf {
-    KeysOf {
-        choice,
-        values,
-        keys,
-    }
-}
 
 /// Difference of a law to the curve's, in percent, from which on it is told. Chosen: a section that
 /// yields bit by bit is off by some 12 % at the corner of any bilinear law.
@@ -35,52 +16,7 @@ const ROUGH: f64 = 15.0;
 /// Turns beyond those that the layers hold from which on they are told. Chosen: a step to the next layer takes as many.
 const MORE: f64 = 0.5;
 
-const SHAPE: &str = "core.shape";
-const MODE: &str = "traverse.mode";
 const PER_TURN: &str = "traverse.per_turn";
-
-/// All keys that depend on a choice.
-const KEYS_OF_CHOICES: [KeysOf; 11] = [
-    keys_of(
-        SHAPE,
-        &["rounded-box"],
-        &["core.width_x", "core.height_z", "core.corner_radius"],
-    ),
-    keys_of(SHAPE, &["cylinder"], &["core.radius"]),
-    keys_of(
-        SHAPE,
-        &["rounded-box", "cylinder"],
-        &["core.length_y", "core.insulation"],
-    ),
-    keys_of(SHAPE, &["mesh"], &["core.file", "core.unit"]),
-    keys_of(MODE, &["by-input", "by-angle"], &[PER_TURN]),
-    keys_of(
-        MODE,
-        &["orthocyclic"],
-        &[
-            "traverse.crossover",
-            "traverse.crossover_delay",
-            "traverse.trail",
-        ],
-    ),
-    keys_of(MODE, &["helical"], &["traverse.dwell_turns"]),
-    keys_of(MODE, &["table"], &["traverse.file"]),
-    keys_of(
-        MODE,
-        &["orthocyclic", "helical", "table"],
-        &["traverse.advance"],
-    ),
-    keys_of(
-        MODE,
-        &["orthocyclic", "helical", "table"],
-        &["winding.turns_per_layer", "winding.layers"],
-    ),
-    keys_of(
-        MODE,
-        &["orthocyclic", "helical"],
-        &["winding.direction", "winding.pitch"],
-    ),
-];
 
 impl SceneSettings {
     /// Whether it is known between which turns wire climbs to the next layer.
@@ -143,7 +79,13 @@ impl SceneSettings {
         (law, follows): (&NozzleLaw, NozzleFollows),
     ) -> Vec<Warning> {
         let by_law = follows == NozzleFollows::Law;
-        let mut warnings = self.keys_without_effect(follows);
+        let reader = Reader {
+            settings: self,
+            integrator: solver.integrator,
+            window,
+            follows,
+        };
+        let mut warnings = reader.warnings();
         let mut warn = |key: &'static str, message: String| {
             let (origin, value) = (self.told_origin(key), self.shown(key));
             warnings.push(Warning {
@@ -212,8 +154,14 @@ impl SceneSettings {
                 warn("core.window_height", message);
             }
         }
+        // (layers of a single turn have no neighbours)
+        let side_by_side = || {
+            let turns = self.turns_of_layers(wire.diameter, extent);
+            turns.is_none_or(|turns| turns > self.winding.layers)
+        };
         if let Some(pitch) = law.pitch()
             && pitch - wire.diameter > self.defects.gap * wire.diameter
+            && side_by_side()
         {
             let key = match self.winding.pitch {
                 0.0 => "winding.turns_per_layer",
@@ -342,86 +290,5 @@ impl SceneSettings {
                 errors[0], errors[1], errors[2]
             ),
         })
-    }
-
-    /// Keys that were given for another choice. The scene that a run keeps has the keys of every choice; there the default says
-    /// nothing.
-    fn keys_without_effect(&self, follows: NozzleFollows) -> Vec<Warning> {
-        let by_law = follows == NozzleFollows::Law;
-        let usual = Self::default();
-        let mut all = KEYS_OF_CHOICES.iter().flat_map(|of| of.keys);
-        let has_all = all.all(|key| self.origins.contains_key(key));
-        let mut warnings: Vec<Warning> = Vec::new();
-        let mut warn = |key: &'static str, message: String| {
-            let (origin, value) = (self.told_origin(key), self.shown(key));
-            let is_given =
-                self.origins.contains_key(key) && !(has_all && value == usual.shown(key));
-            if is_given && !warnings.iter().any(|w| w.key == key) {
-                warnings.push(Warning {
-                    origin,
-                    key,
-                    value,
-                    message,
-                });
-            }
-        };
-        for of in &KEYS_OF_CHOICES {
-            let choice = of.choice;
-            let now = match choice {
-                SHAPE => self.core.shape.as_str(),
-                _ => self.traverse.mode.as_str(),
-            };
-            if of.values.contains(&now) {
-                continue;
-            }
-            let others = of.values.join(" or ");
-            let keys = of.keys.iter().filter(|key| by_law || **key != PER_TURN);
-            for &key in keys {
-                warn(
-                    key,
-                    format!(
-                        "has no effect: {choice} = {now} does not use it; set {choice} = {others}, or leave the key out"
-                    ),
-                );
-            }
-        }
-        if !by_law && self.origin(PER_TURN) == Origin::Set {
-            let message =
-                "has no effect: the nozzle follows its input; set traverse.mode = by-angle";
-            warn(PER_TURN, message.to_owned());
-        }
-        if self.spindle.file.is_empty() {
-            let message = "has no effect: there is no table without spindle.file";
-            warn("spindle.repeat_turns", message.to_owned());
-        }
-        if self.spindle.flange_share == 1.0 {
-            let message =
-                "has no effect: with spindle.flange_share = 1 the spindle does not slow down";
-            warn("spindle.flange_turns", message.to_owned());
-        }
-        if !self.plans_layers() {
-            let message = "has no effect: no layers are planned; set winding.turns_per_layer, or a traverse.mode that winds layers";
-            warn("spindle.flange_share", message.to_owned());
-        }
-        if self.core.flange.inner_distance > 0.0 {
-            if self.core.shape != "mesh" {
-                let message = "has no effect: between flanges the core ends at their outer faces";
-                warn("core.length_y", message.to_owned());
-            }
-        } else {
-            let message = "has no effect: there are no flanges without core.flange.inner_distance";
-            warn("core.flange.insulation", message.to_owned());
-        }
-        if self.nozzle.outer_diameter == 0.0 {
-            for key in ["nozzle.length", "nozzle.edge_radius"] {
-                let message = "has no effect: a nozzle without nozzle.outer_diameter is a point";
-                warn(key, message.to_owned());
-            }
-        }
-        if self.wire.enamelled_diameter == 0.0 {
-            let message = "has no effect: wire without wire.enamelled_diameter is bare";
-            warn("wire.enamel_density", message.to_owned());
-        }
-        warnings
     }
 }

@@ -5,6 +5,7 @@
 
 mod ahead;
 mod broken;
+mod clamp_place;
 mod coarsen;
 mod collision;
 mod communication;
@@ -32,12 +33,14 @@ mod remeshing;
 mod run;
 mod run_state;
 mod saved;
+mod slipping;
 mod start;
 mod step_derivatives;
 mod stepping;
 mod straight_wire;
 mod summary;
 mod talk;
+mod telling;
 mod told;
 #[cfg(feature = "lab")]
 mod trail;

@@ -9,7 +9,8 @@ use super::drawn_loop::{
     MOST_EDGES, SPACING, draw_tight, heights, loop_section, profile_of, stiffened, touching_core,
 };
 use super::whole_turn;
-use crate::geometry::Surface;
+use crate::geometry::generate::prism;
+use crate::geometry::{Hull, Surface};
 use crate::math::{V3, frame_along, scaled};
 use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN};
 use crate::rod::{Rod, Section, Twist};
@@ -34,30 +35,80 @@ pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Op
     if tension <= 0.0 {
         return None;
     }
-    let section = match scene.core {
-        Core::Cylinder { .. } => return Profile::new(vec![0.0]),
+    match scene.core {
+        Core::Cylinder { .. } => Profile::new(vec![0.0]),
         Core::RoundedBox {
             width_x,
             height_z,
             corner_radius,
             ..
-        } => CoreSection {
-            half: [0.5 * width_x, 0.5 * height_z],
-            corner: corner_radius,
-            y: 0.0,
-        },
-        Core::Mesh { .. } => match CoreSection::of(surface, SYMMETRIC * scene.wire.diameter) {
-            Some(section) => section,
-            None => return whole_turn::profile(scene, surface, tension),
-        },
-    };
-    let sys = quarter_loop(scene, surface, &section, tension)?;
+        } => {
+            let section = CoreSection {
+                half: [0.5 * width_x, 0.5 * height_z],
+                corner: corner_radius,
+                y: 0.0,
+            };
+            round_section(scene, surface, &section, tension)
+        }
+        Core::Mesh { .. } => round_mesh(scene, surface, tension).or_else(|| {
+            let prism = prism_at_waist(surface, scene.wire.diameter)?;
+            round_mesh(scene, &Arc::new(prism), tension)
+        }),
+    }
+}
+
+/// The same round the middle of a mesh.
+fn round_mesh(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Profile> {
+    match CoreSection::of(surface, SYMMETRIC * scene.wire.diameter) {
+        Some(section) => round_section(scene, surface, &section, tension),
+        None => whole_turn::profile(scene, surface, tension),
+    }
+}
+
+/// The same round a section with two mirror planes.
+fn round_section(
+    scene: &Scene,
+    surface: &Arc<Surface>,
+    section: &CoreSection,
+    tension: f64,
+) -> Option<Profile> {
+    let sys = quarter_loop(scene, surface, section, tension)?;
     let quarter = heights(scene, surface, &sys.state.rod.x);
     profile_of(&quarter, |angle| {
         // fold into the quarter from +x to +z
         let a = angle.rem_euclid(PI);
         a.min(PI - a)
     })
+}
+
+/// A prism on the section in the middle of a mesh, where that is a shallow waist; `diameter` of the wire, m.
+///
+/// Wire lies right on the edges of such a section, between faces that push it this way and that, and finds no rest but by
+/// friction. Round the prism it does, and lies as high.
+fn prism_at_waist(surface: &Surface, diameter: f64) -> Option<Surface> {
+    let (low, high) = surface.bounds();
+    let y = 0.5 * (low.y + high.y);
+    let points = [0.0, -0.5, 0.5].map(|aside| surface.mesh().section_points(y + aside * diameter));
+    let is_waist = (0..STATIONS_PER_TURN).all(|k| {
+        let [here, below, above] = points
+            .each_ref()
+            .map(|at| reach(at, k as f64 * STATION_STEP));
+        let rises = 0.0..=SYMMETRIC * diameter;
+        rises.contains(&(below - here)) && rises.contains(&(above - here))
+    });
+    if !is_waist {
+        return None;
+    }
+    let hull = Hull::of(points[0].iter().map(|p| [p.x, p.z]).collect())?;
+    let mesh = prism(&hull, [y - hull.radius(), y + hull.radius()]).ok()?;
+    Some(Surface::new(mesh))
+}
+
+/// How far points reach from the axis in a direction, rad from +x to +z, m.
+fn reach(points: &[V3], angle: f64) -> f64 {
+    let (x, z) = (libm::cos(angle), libm::sin(angle));
+    let along = points.iter().map(|p| x * p.x + z * p.z);
+    along.fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// The core's section square to its axis, as far as a loop round it needs it.
@@ -77,12 +128,7 @@ impl CoreSection {
         let (low, high) = surface.bounds();
         let y = 0.5 * (low.y + high.y);
         let points = surface.mesh().section_points(y);
-        // how far the section reaches in a direction
-        let reach = |angle: f64| {
-            let (x, z) = (libm::cos(angle), libm::sin(angle));
-            let along = points.iter().map(|p| x * p.x + z * p.z);
-            along.fold(f64::NEG_INFINITY, f64::max)
-        };
+        let reach = |angle: f64| reach(&points, angle);
         let is_symmetric = (0..=STATIONS_PER_TURN / 4).all(|k| {
             let angle = k as f64 * STATION_STEP;
             let here = reach(angle);
@@ -195,6 +241,7 @@ mod tests {
     use super::super::core_model::core_surface;
     use super::*;
     use crate::geometry::TriMesh;
+    use crate::geometry::generate::sewn;
     use crate::math::Spin;
     use crate::settings::SceneSettings;
 
@@ -305,6 +352,44 @@ mod tests {
         let as_mesh = profile(&mesh, &surface, 15.0).expect("a loop round the mesh");
         for (a, b) in as_box.heights().iter().zip(as_mesh.heights()) {
             assert!((a - b).abs() < 10e-6, "{a} {b}");
+        }
+    }
+
+    /// A ring of edges round the narrowest place had no yardstick: wire on it was judged against a whole diameter.
+    #[test]
+    fn a_waist_with_its_edges_in_the_middle_has_the_yardstick_of_its_section() {
+        let (scene, surface) = copper([12.0, 30.0, 2.0], 15.0);
+        let known = profile(&scene, &surface, 15.0).expect("a box");
+        let core = Core::Mesh {
+            path: "unused".into(),
+            unit: 1e-3,
+            flange: None,
+        };
+        let scene = Scene { core, ..scene };
+        let points = surface.mesh().section_points(0.0);
+        let hull = Hull::of(points.iter().map(|p| [p.x, p.z]).collect()).expect("convex");
+        let corners = hull.outline(0.0, 1);
+        // narrowest in the middle, and so much wider at both ends; one is turned as well
+        for (wider, degrees) in [(2e-3, 0.0), (20e-3, 0.0), (5e-3, 25.0)] {
+            let spin = Spin::new(f64::to_radians(degrees));
+            let ring = |y: f64, size: f64| -> Vec<V3> {
+                let at = |&[x, z]: &[f64; 2]| spin.to_lab(V3::new(size * x, y, size * z));
+                corners.iter().map(at).collect()
+            };
+            let rings = [
+                ring(-8e-3, 1.0 + wider),
+                ring(0.0, 1.0),
+                ring(8e-3, 1.0 + wider),
+            ];
+            let waist = sewn(&rings).expect("closed");
+            let found = profile(&scene, &Arc::new(Surface::new(waist)), 15.0);
+            let found = found.unwrap_or_else(|| panic!("no rest: {wider}, {degrees} deg"));
+            let largest = |p: &Profile| p.heights().iter().copied().fold(0.0, f64::max);
+            let apart = (largest(&found) - largest(&known)).abs();
+            assert!(
+                apart < 0.05 * scene.wire.diameter,
+                "{wider}, {degrees} deg: {apart} m"
+            );
         }
     }
 

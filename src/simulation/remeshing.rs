@@ -7,7 +7,6 @@ use crate::math::turn_about_y;
 use crate::math::{polar_angle, wrap_to_pi};
 use crate::measure::DefectKind;
 use crate::scene::LiveContact;
-use crate::signals::EventKind;
 use std::f64::consts::{PI, TAU};
 
 /// The live wire never gets shorter than this many nodes: clamp, nozzle and two between.
@@ -303,9 +302,7 @@ impl Winding {
                 self.run.rest_depth = self.run.rest_depth.max(self.sys.depth(i));
             }
             self.sys.lay_frozen(node);
-            let (turns, defects) = (self.coil.turns_settled(), self.coil.raised());
-            self.coil_mut().settle(settled);
-            self.tell(turns, defects);
+            self.settle_and_tell(settled);
             arc += self.sys.state.rod.rest[i];
         }
         self.sys.freeze_front(count);
@@ -440,35 +437,6 @@ impl Winding {
         }
         // what was frozen wire to the wire on it is live wire now, and is lost sight of until it is watched
         self.watch_live_wire();
-    }
-
-    /// Tells of turns and defects that came to those there were, by kind in the order of [`DefectKind::MEASURED`].
-    fn tell(&mut self, turns: f64, defects: [u32; DefectKind::MEASURED.len()]) {
-        let now = self.coil.turns_settled();
-        if now.floor() > turns.floor() {
-            self.report(
-                EventKind::Turn,
-                format!("turn {} has come to rest", now.floor()),
-            );
-        }
-        let raised = self.coil.raised();
-        let new = |kind: &DefectKind| raised[*kind as usize] > defects[*kind as usize];
-        let kinds = DefectKind::MEASURED.into_iter().filter(new);
-        let names: Vec<&str> = kinds.map(DefectKind::words).collect();
-        if !names.is_empty()
-            && let Some(d) = self.coil.last_defect()
-        {
-            self.keep_last_defect();
-            self.report(
-                EventKind::Defect,
-                format!(
-                    "defect in turn {} at {:.0} deg ({})",
-                    d.turn,
-                    d.angle.to_degrees(),
-                    names.join(", ")
-                ),
-            );
-        }
     }
 
     /// How many nodes from the clamp lie at least the keep length behind lift-off.

@@ -177,7 +177,10 @@ impl Simulation {
     /// If the method gives up on the way to the communication point, from which on they hold.
     pub fn retune(&mut self, scene: &Scene) -> Result<(), SimError> {
         self.settle()?;
-        Arc::make_mut(&mut self.now).retune(scene);
+        let winding = Arc::make_mut(&mut self.now);
+        winding.run.events.clear();
+        winding.retune(scene);
+        self.talk.events.append(&mut winding.run.events);
         self.pool = Pool::default();
         Ok(())
     }

@@ -3,7 +3,7 @@
 use super::doubt::{Doubt, Throughput};
 use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_way::Traverse;
-use crate::measure::Defect;
+use crate::measure::{Defect, DefectKind};
 use crate::signals::{Event, Outputs};
 use serde::{Deserialize, Serialize};
 
@@ -48,6 +48,12 @@ pub(super) struct RunState {
     pub(super) was_slack: bool,
     /// slack and breaks, in the order of their times
     pub(super) faults: Vec<Defect>,
+    /// defects of settled wire that have been told: kind, and the station from which on it counted
+    pub(super) told_defects: Vec<(DefectKind, usize)>,
+    /// unstretched wire from the clamp to the last that has lain on the coil and was not unwound, m
+    pub(super) laid: f64,
+    /// wire has slipped off an end of the core, which has been told
+    pub(super) slipped: Option<Slip>,
     /// core angle at which the wire was last slack, rad
     pub(super) slack_at: Option<f64>,
     /// how long core, nozzle, tensioner and wire have been still, s
@@ -61,4 +67,15 @@ pub(super) struct RunState {
     pub(super) nozzle_by_law: bool,
     /// tension that the quasi-static height is for, N
     pub(super) yardstick_tension: f64,
+}
+
+/// Where wire has slipped off the core.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct Slip {
+    /// s
+    pub(super) time: f64,
+    /// from 1
+    pub(super) turn: u32,
+    /// end of the core along y, or outer face of its flange, m
+    pub(super) end: f64,
 }

@@ -1,5 +1,6 @@
 //! The state at the start: wire clamped at mid-face, straight to the nozzle, at the set tension.
 
+use super::clamp_place::half_width;
 use super::core_model::{core_flanges, core_shape, core_surface};
 use super::door::check_finite;
 use super::doubt::Throughput;
@@ -33,35 +34,6 @@ const MASSLESS: f64 = 1e-6;
 /// any contact, and what fails there fails for another reason; a tenth of a second is longer than any motion of a wire
 /// takes.
 const STEPS: [f64; 3] = [1e-9, 1e-5, 0.1];
-
-/// Half width of the core on +x at mid-length: where the wire is clamped.
-fn half_width(scene: &Scene, surface: &Surface) -> Result<f64, SimError> {
-    match &scene.core {
-        Core::RoundedBox { width_x, .. } => Ok(0.5 * width_x),
-        Core::Cylinder { radius, .. } => Ok(*radius),
-        Core::Mesh { path, .. } => {
-            // walk in from outside, never farther than the surface is away
-            let mut x = surface.radius_max() * 1.01;
-            for _ in 0..500 {
-                let d = surface
-                    .nearest(V3::new(x, scene.start.clamp_y, 0.0))
-                    .distance;
-                if d < 1e-9 {
-                    return Ok(x);
-                }
-                x -= d;
-                if x < 0.0 {
-                    break;
-                }
-            }
-            Err(SimError::setup(format!(
-                "core: {} has no surface on +x at y = {} m to clamp the wire to; change start.clamp_y or move the mesh",
-                path.display(),
-                scene.start.clamp_y
-            )))
-        }
-    }
-}
 
 /// Builds the system at rest, an empty coil and the core angle at the start.
 fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
@@ -288,6 +260,9 @@ impl Winding {
             told_over: false,
             was_slack: false,
             faults: Vec::new(),
+            told_defects: Vec::new(),
+            laid: 0.0,
+            slipped: None,
             slack_at: None,
             quiet: 0.0,
             paid0: sys.state.feed.map_or(0.0, |feed| feed.paid),

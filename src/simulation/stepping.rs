@@ -107,6 +107,7 @@ impl Winding {
             (self.stepper.statistics().tried() - tried) * self.sys.state.rod.nodes() as u64;
         self.run.last_step = taken;
         self.run.steps += 1;
+        self.watch_ends();
         self.watch_tension();
         self.remesh(taken)?;
         self.follow_traverse();

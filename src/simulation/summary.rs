@@ -143,6 +143,7 @@ impl Winding {
             self.bulge_limit(),
             diameter,
         );
+        reasons.extend(self.slipped_off());
         reasons.extend(self.wire_on_a_rim());
         let outputs = &self.run.outputs;
         reasons.extend(left_out(outputs.turns_wound, outputs.turns_settled));

@@ -25,6 +25,7 @@ impl Winding {
                 self.coil_mut().take_back_pass();
             }
             self.run.traverse = Traverse::new(self.sys.state.support[1].point.y);
+            self.tell_of_defects(0);
         }
         let core = turn * self.coil.spec().direction;
         let y = self.sys.state.support[1].point.y;
@@ -43,6 +44,10 @@ impl Winding {
                     self.coil_mut().begin_pass_at(from, sense, place);
                 }
                 Found::TakenBack => self.coil_mut().take_back_pass(),
+            }
+            if found != Found::Nothing {
+                // settled wire may have been measured again
+                self.tell_of_defects(0);
             }
         }
     }

@@ -135,3 +135,25 @@ fn preset_decides_the_integrator_unless_it_is_set() {
     let scene = parse("preset = 'paper'").unwrap().build().unwrap();
     assert_eq!(scene.preset, Preset::Paper);
 }
+
+/// A disc coil was warned of gaps between the turns of a layer, of which each layer has one.
+#[test]
+fn gaps_are_warned_of_only_where_turns_lie_side_by_side() {
+    let keys = |mode: &str, inner_mm: f64, turns: u32| -> Vec<&str> {
+        let text = format!(
+            "[wire]\ndiameter_mm = 0.6\n[core.flange]\ninner_distance_mm = {inner_mm}\nheight_mm = 6\n\
+             [nozzle]\ny_start_mm = {0}\n[start]\nclamp_y_mm = {0}\n[tensioner]\ntension = 9\n\
+             [traverse]\nmode = '{mode}'\n[winding]\nlayers = 4\nturns_per_layer = {turns}\n",
+            0.3 - 0.5 * inner_mm
+        );
+        let (_, warnings) = parse(&text).unwrap().build_with_warnings().unwrap();
+        warnings.iter().map(|w| w.key).collect()
+    };
+    for mode in ["orthocyclic", "helical"] {
+        for (inner_mm, turns, warned) in [(1.0, 1, false), (1.7, 1, false), (1.7, 2, true)] {
+            let keys = keys(mode, inner_mm, turns);
+            let told = keys.contains(&"winding.turns_per_layer");
+            assert_eq!(told, warned, "{mode}, {inner_mm} mm, {turns}: {keys:?}");
+        }
+    }
+}

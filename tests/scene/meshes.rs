@@ -156,6 +156,45 @@ fn a_core_beside_its_axis_is_told_with_its_place() {
     assert_eq!(said, None);
 }
 
+/// A flange that surrounds the axis stood for the core where the clamped wire touches it; the coil was planned beside the axis.
+#[test]
+fn a_core_beside_its_axis_is_told_where_the_clamp_touches_a_flange_round_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("beside.stl");
+    let build = |aside: f32, clamp_mm: f64, more: &str| {
+        let mut all = of_a_box(6.0, [-6.0, 7.0], 10.0);
+        for t in all.iter_mut().flatten() {
+            t[0] += aside;
+        }
+        all.extend(of_a_box(16.0, [-5.0, -4.0], 14.0));
+        all.extend(of_a_box(16.0, [5.0, 6.0], 14.0));
+        std::fs::write(&file, text(" tooth", &all)).unwrap();
+        let scene = format!(
+            "[core]\nshape = 'mesh'\nfile = {file:?}\n[wire]\ndiameter_mm = 0.5\n[start]\nclamp_y_mm = {clamp_mm}\n\
+             [nozzle]\ndistance_mm = 40\ny_start_mm = {clamp_mm}\n[traverse]\nmode = 'orthocyclic'\n[winding]\n{more}"
+        );
+        let built = parse(&scene).expect("parses").build();
+        built.map(|_| ()).map_err(|error| error.to_string())
+    };
+    for more in ["", "turns_per_layer = 10"] {
+        for clamp_mm in [-3.75, 0.0, 4.75] {
+            let said = build(8.0, clamp_mm, more).expect_err("beside its axis");
+            let clamp = format!("start.clamp_y = {} m", clamp_mm * 1e-3);
+            assert_says(
+                &said,
+                &[
+                    "test.toml:3: core.file = ",
+                    "x = 0.002 to 0.014 m",
+                    &clamp,
+                    "move the mesh so that its axis is y",
+                ],
+            );
+            assert!(!said.contains("turns_per_layer"), "{said}");
+        }
+        assert_eq!(build(0.0, -3.75, more), Ok(()));
+    }
+}
+
 /// Wire of 0.5 mm on a box of 12 x 20 mm between flanges of the file's own, 3 mm high, with their faces at -4 and 5 mm.
 fn between_flanges(folder: &Path, wire_mm: f64, more: &str) -> Result<Scene, String> {
     let mut all = of_a_box(6.0, [-6.0, 7.0], 10.0);

@@ -1,0 +1,264 @@
+//! Keys that were given although nothing reads them.
+
+use super::error::Warning;
+use super::{Integrator, Window};
+use crate::settings::{NozzleFollows, Origin, SceneSettings};
+
+/// What decides which keys a run reads.
+pub(super) struct Reader<'a> {
+    pub(super) settings: &'a SceneSettings,
+    pub(super) integrator: Integrator,
+    pub(super) window: Option<Window>,
+    pub(super) follows: NozzleFollows,
+}
+
+/// Keys that only some values of a choice read: of the shape of the core, or of how the nozzle moves.
+struct KeysOf {
+    choice: &'static str,
+    values: &'static [&'static str],
+    keys: &'static [&'static str],
+}
+
+/// Keys of the values of a choice.
+const fn keys_of(
+    choice: &'static str,
+    values: &'static [&'static str],
+    keys: &'static [&'static str],
+) -> KeysOf {
+    KeysOf {
+        choice,
+        values,
+        keys,
+    }
+}
+
+const SHAPE: &str = "core.shape";
+const MODE: &str = "traverse.mode";
+const PER_TURN: &str = "traverse.per_turn";
+
+/// All keys that depend on a choice.
+const KEYS_OF_CHOICES: [KeysOf; 11] = [
+    keys_of(
+        SHAPE,
+        &["rounded-box"],
+        &["core.width_x", "core.height_z", "core.corner_radius"],
+    ),
+    keys_of(SHAPE, &["cylinder"], &["core.radius"]),
+    keys_of(
+        SHAPE,
+        &["rounded-box", "cylinder"],
+        &["core.length_y", "core.insulation"],
+    ),
+    keys_of(SHAPE, &["mesh"], &["core.file", "core.unit"]),
+    keys_of(MODE, &["by-input", "by-angle"], &[PER_TURN]),
+    keys_of(
+        MODE,
+        &["orthocyclic"],
+        &[
+            "traverse.crossover",
+            "traverse.crossover_delay",
+            "traverse.trail",
+        ],
+    ),
+    keys_of(MODE, &["helical"], &["traverse.dwell_turns"]),
+    keys_of(MODE, &["table"], &["traverse.file"]),
+    keys_of(
+        MODE,
+        &["orthocyclic", "helical", "table"],
+        &["traverse.advance"],
+    ),
+    keys_of(
+        MODE,
+        &["orthocyclic", "helical", "table"],
+        &["winding.turns_per_layer", "winding.layers"],
+    ),
+    keys_of(
+        MODE,
+        &["orthocyclic", "helical"],
+        &["winding.direction", "winding.pitch"],
+    ),
+];
+
+/// Keys of a part that a scene may lack.
+struct KeysOfPart {
+    keys: &'static [&'static str],
+    lacks: fn(&Reader<'_>) -> bool,
+    /// why nothing reads the keys then
+    why: &'static str,
+}
+
+/// All keys of parts. Where several lacks hold for a key, the first one is told.
+const KEYS_OF_PARTS: &[KeysOfPart] = &[
+    KeysOfPart {
+        keys: &[PER_TURN],
+        lacks: |r| r.follows != NozzleFollows::Law && r.settings.origin(PER_TURN) == Origin::Set,
+        why: "the nozzle follows its input; set traverse.mode = by-angle",
+    },
+    KeysOfPart {
+        keys: &["spindle.repeat_turns"],
+        lacks: |r| r.settings.spindle.file.is_empty(),
+        why: "there is no table without spindle.file",
+    },
+    KeysOfPart {
+        keys: &["spindle.flange_turns"],
+        lacks: |r| r.settings.spindle.flange_share == 1.0,
+        why: "with spindle.flange_share = 1 the spindle does not slow down",
+    },
+    KeysOfPart {
+        keys: &["spindle.flange_share"],
+        lacks: |r| !r.settings.plans_layers(),
+        why: "no layers are planned; set winding.turns_per_layer, or a traverse.mode that winds layers",
+    },
+    KeysOfPart {
+        keys: &["core.length_y"],
+        lacks: |r| r.has_flanges() && r.settings.core.shape != "mesh",
+        why: "between flanges the core ends at their outer faces",
+    },
+    KeysOfPart {
+        keys: &[
+            "core.flange.height",
+            "core.flange.thickness",
+            "core.flange.edge_radius",
+            "core.flange.insulation",
+        ],
+        lacks: |r| !r.has_flanges(),
+        why: "there are no flanges without core.flange.inner_distance",
+    },
+    KeysOfPart {
+        keys: &["core.window_taper"],
+        lacks: |r| r.window.is_none(),
+        why: "there is no limit line without core.window_height or flanges",
+    },
+    KeysOfPart {
+        keys: &["nozzle.length", "nozzle.edge_radius"],
+        lacks: |r| r.settings.nozzle.outer_diameter == 0.0,
+        why: "a nozzle without nozzle.outer_diameter is a point",
+    },
+    KeysOfPart {
+        keys: &["tensioner.line_damping_ratio"],
+        lacks: |r| r.settings.tensioner.mass == 0.0,
+        why: "without tensioner.mass nothing swings on the line",
+    },
+    KeysOfPart {
+        keys: &["tensioner.line_damping_ratio"],
+        lacks: |r| r.settings.tensioner.line_length == 0.0,
+        why: "without tensioner.line_length the tensioner is at the nozzle",
+    },
+    KeysOfPart {
+        keys: &["tensioner.pulley_place"],
+        lacks: |r| !r.settings.tensioner.has_pulley(),
+        why: "there is no pulley without tensioner.pulley_mass or tensioner.pulley_friction",
+    },
+    KeysOfPart {
+        keys: &["wire.enamel_density"],
+        lacks: |r| r.settings.wire.enamelled_diameter == 0.0,
+        why: "wire without wire.enamelled_diameter is bare",
+    },
+    KeysOfPart {
+        keys: &[
+            "wire.yield_stress",
+            "wire.flow_stress",
+            "wire.N_y",
+            "wire.M_y",
+            "wire.T_y",
+            "wire.moment_cap",
+        ],
+        lacks: |r| r.settings.wire.elastic,
+        why: "wire with wire.elastic = true does not yield",
+    },
+    KeysOfPart {
+        // custom wire has to say them
+        keys: &["wire.EAp", "wire.EIp", "wire.GJp"],
+        lacks: |r| r.settings.wire.elastic && r.settings.wire.material != "custom",
+        why: "wire with wire.elastic = true does not yield",
+    },
+    KeysOfPart {
+        keys: &["friction.static", "friction.kinetic", "friction.slip_speed"],
+        lacks: |r| r.settings.solver.friction == "off",
+        why: "with solver.friction = off nothing rubs",
+    },
+    KeysOfPart {
+        keys: &["solver.step_share"],
+        lacks: |r| r.integrator == Integrator::Implicit,
+        why: "the implicit method has no stability limit; set solver.tolerance for shorter steps, or solver.integrator = rk4 or verlet",
+    },
+    KeysOfPart {
+        keys: &["solver.step_share"],
+        lacks: |r| r.settings.solver.step > 0.0,
+        why: "solver.step fixes the time step",
+    },
+    KeysOfPart {
+        keys: &["solver.tolerance"],
+        lacks: |r| r.integrator != Integrator::Implicit,
+        why: "the explicit methods estimate no error; set solver.step_share",
+    },
+];
+
+impl Reader<'_> {
+    fn has_flanges(&self) -> bool {
+        self.settings.core.flange.inner_distance > 0.0
+    }
+
+    /// Keys that were given although nothing reads them. The scene that a run keeps has all keys; there the default says
+    /// nothing.
+    pub(super) fn warnings(&self) -> Vec<Warning> {
+        let settings = self.settings;
+        let by_law = self.follows == NozzleFollows::Law;
+        let usual = SceneSettings::default();
+        let has_all = all_keys().all(|key| settings.origins.contains_key(key));
+        let mut warnings: Vec<Warning> = Vec::new();
+        let mut warn = |key: &'static str, why: &str| {
+            let (origin, value) = (settings.told_origin(key), settings.shown(key));
+            let is_given =
+                settings.origins.contains_key(key) && !(has_all && value == usual.shown(key));
+            if is_given && !warnings.iter().any(|w| w.key == key) {
+                warnings.push(Warning {
+                    origin,
+                    key,
+                    value,
+                    message: format!("has no effect: {why}"),
+                });
+            }
+        };
+        for of in &KEYS_OF_CHOICES {
+            let choice = of.choice;
+            let now = match choice {
+                SHAPE => settings.core.shape.as_str(),
+                _ => settings.traverse.mode.as_str(),
+            };
+            if of.values.contains(&now) {
+                continue;
+            }
+            let others = of.values.join(" or ");
+            let keys = of.keys.iter().filter(|key| by_law || **key != PER_TURN);
+            for &key in keys {
+                let why = format!(
+                    "{choice} = {now} does not use it; set {choice} = {others}, or leave the key out"
+                );
+                warn(key, &why);
+            }
+        }
+        for part in KEYS_OF_PARTS.iter().filter(|part| (part.lacks)(self)) {
+            part.keys.iter().for_each(|key| warn(key, part.why));
+        }
+        warnings
+    }
+}
+
+fn all_keys() -> impl Iterator<Item = &'static str> {
+    let of_choices = KEYS_OF_CHOICES.iter().flat_map(|of| of.keys);
+    let of_parts = KEYS_OF_PARTS.iter().flat_map(|of| of.keys);
+    of_choices.chain(of_parts).copied()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::variables::by_name;
+
+    #[test]
+    fn every_key_is_a_variable() {
+        let unknown: Vec<&str> = all_keys().filter(|key| by_name(key).is_none()).collect();
+        assert!(unknown.is_empty(), "{unknown:?}");
+    }
+}
