@@ -251,3 +251,36 @@ fn springback_does_not_hang_on_the_tolerance() {
         assert_eq!(run(&args, |_| ()), Ok(true), "{tolerance}");
     }
 }
+
+/// Nodes lay too far apart for wire that tension straightens right behind an edge, and drag had thick wire bend too sharply.
+#[test]
+fn sharp_bends_of_thick_fine_and_hard_wire_are_as_exact_as_those_of_the_packed_one() {
+    let once = |name: &str| format!("tests/reference/once_wrong/{name}.json").into();
+    let args = VerifyOptions {
+        files: [
+            "corner_edge_steel",
+            "corner_edge_hardly_yields",
+            "square_loop_fine",
+            "square_loop_thick",
+        ]
+        .map(once)
+        .to_vec(),
+        ..VerifyOptions::default()
+    };
+    let mut table = String::new();
+    let right = run(&args, |line| table.push_str(&format!("{line}\n")));
+    assert_eq!(right, Ok(true), "{table}");
+}
+
+/// Each jump of the direction at the edge set off a swing, which steps of small tolerances follow, and the wire yielded in it.
+#[test]
+fn the_bend_at_an_edge_does_not_hang_on_the_tolerance() {
+    for tolerance in ["1e-6", "5e-8"] {
+        let args = VerifyOptions {
+            files: vec!["tests/reference/square_loop.json".into()],
+            set: vec![format!("solver.tolerance={tolerance}")],
+            ..VerifyOptions::default()
+        };
+        assert_eq!(run(&args, |_| ()), Ok(true), "{tolerance}");
+    }
+}

@@ -294,6 +294,7 @@ fn run_case(
         folder: &file.folder,
         integrator: manner.integrator,
         spacing: manner.spacing.or(winds.then_some(near)),
+        spacing_given: manner.spacing.is_some(),
         tolerance: manner.tolerance.unwrap_or(usual),
         setup,
     };
