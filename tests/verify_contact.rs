@@ -90,3 +90,15 @@ fn tension_laid_with_friction_converges() {
         assert_eq!(right, Ok(true), "{tolerance} m\n{table}");
     }
 }
+
+/// Wire that was pushed while it fell flew out of a groove that holds it.
+#[test]
+fn a_groove_holds_wire_up_to_the_load_that_lifts_it_out() {
+    let args = VerifyOptions {
+        files: vec!["tests/reference/once_wrong/groove_seat.json".into()],
+        ..VerifyOptions::default()
+    };
+    let mut table = String::new();
+    let right = run(&args, |line| table.push_str(&format!("{line}\n")));
+    assert_eq!(right, Ok(true), "{table}");
+}

@@ -216,6 +216,11 @@ impl Bench {
         Ok(())
     }
 
+    /// Pushes along y as well, with this share of the load.
+    pub(super) fn push_aside(&mut self, share: f64) {
+        self.sys.model.loads.gravity.y = -share * self.full.z;
+    }
+
     /// Goes on for `units` of time.
     pub(super) fn run(&mut self, units: f64) -> Result<(), VerifyError> {
         let time = units * self.unit;

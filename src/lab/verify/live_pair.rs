@@ -37,6 +37,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             "the spheres of the explicit method do not lie on each other evenly".to_owned(),
         ));
     };
+    let round = (TAU * (radius + ctx.section.radius()) / spacing).ceil();
+    ctx.few_enough(2.0 * round)?;
     let mut sys = stack(ctx, (radius, ctx.positive("T0_N")?), spacing, mu);
     let edges = sys.state.rod.edges();
     let start = sys.state.rod.x.clone();
