@@ -223,7 +223,7 @@ fn inputs_without_a_meaning_are_told_and_not_computed() {
         ("spinning_ring", "R_m", -1.0, "above 0"),
         ("spinning_ring", "R_m", 1e2, "edges"),
         ("spinning_ring", "R_m", 1e9, "at most 700"),
-        ("capstan", "F0_N", 0.0, "above 0"),
+        ("capstan", "F0_N", 0.0, "from 0.0489"),
         ("capstan", "R_m", 1e2, "edges"),
         ("bending_modes", "T_N", 1e9, "at most 4890"),
         ("bending_modes", "T_N", 1e4, "at most 4890"),
