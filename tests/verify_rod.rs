@@ -269,6 +269,7 @@ fn sharp_bends_of_thick_fine_and_hard_wire_are_as_exact_as_those_of_the_packed_o
         files: [
             "corner_edge_steel",
             "corner_edge_hardly_yields",
+            "corner_edge_slack",
             "square_loop_fine",
             "square_loop_thick",
         ]

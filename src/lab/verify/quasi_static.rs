@@ -117,15 +117,18 @@ impl QuasiStatic {
     /// Goes on until nothing moves.
     pub(super) fn rest(&mut self, sys: &mut System) -> Result<(), VerifyError> {
         let most = RESTS * self.tolerance / self.unit;
+        let mut last = f64::INFINITY;
         for _ in 0..PATIENCE {
             self.step.through(sys, LOOK * self.unit, self.unit)?;
             let fastest = sys.state.rod.v.iter().map(V3::norm).fold(0.0, f64::max);
-            if fastest < most {
-                if balanced(sys)? {
-                    return Ok(());
-                }
+            if fastest < most && balanced(sys)? {
+                return Ok(());
+            }
+            // what no longer slows down is what the last steps left undone
+            if fastest < most || fastest > 0.5 * last {
                 self.step.tighten();
             }
+            last = fastest;
         }
         Err(VerifyError::NoAnswer(format!(
             "the wire did not come to rest within {} s",
