@@ -74,3 +74,40 @@ fn stiff_wire_and_round_corners_keep_their_spacing() {
     let given = fine_wire(&[("solver.spacing_near_mm", "0.2")]);
     assert_eq!(given.build().expect("a scene").solver.spacing_near, 0.2e-3);
 }
+
+/// Edges were as long on a sharp corner as on a round one: longer than half of what tension straightens hard wire in.
+#[test]
+fn wire_pulled_hard_over_a_sharp_corner_has_its_nodes_nearer() {
+    let near = |tension: &str, corner: &str| {
+        let mut settings = SceneSettings::load("fig8").expect("packed");
+        for (name, value) in [
+            ("wire.material", "custom"),
+            ("wire.diameter_mm", "1.5"),
+            ("wire.density", "7850"),
+            ("wire.EA", "371100"),
+            ("wire.EAp", "3534"),
+            ("wire.EI", "0.05219"),
+            ("wire.EIp", "0.000497"),
+            ("wire.GJ", "0.04045"),
+            ("wire.GJp", "0.000331"),
+            ("wire.N_y", "441.8"),
+            ("wire.M_y", "0.1406"),
+            ("wire.T_y", "0.1275"),
+            ("traverse.per_turn_mm", "1.5"),
+            ("tensioner.tension", tension),
+            ("core.corner_radius_mm", corner),
+        ] {
+            settings.set_text(name, value).expect("a valid setting");
+        }
+        settings.build().expect("a scene").solver.spacing_near
+    };
+    let usual = near("40", "5");
+    assert_eq!(
+        near("40", "0.01"),
+        usual,
+        "pulled so little it bends widely"
+    );
+    assert_eq!(near("360", "5"), usual, "it lies on the corner");
+    // sqrt(EIp/T) is 1.2 mm
+    assert_eq!(near("360", "0.01"), 0.5 * usual);
+}

@@ -90,3 +90,25 @@ fn tension_laid_with_friction_converges() {
         assert_eq!(right, Ok(true), "{tolerance} m\n{table}");
     }
 }
+
+fn right_now(once_wrong: &str) {
+    let args = VerifyOptions {
+        files: vec![format!("tests/reference/once_wrong/{once_wrong}.json").into()],
+        ..VerifyOptions::default()
+    };
+    let mut table = String::new();
+    let right = run(&args, |line| table.push_str(&format!("{line}\n")));
+    assert_eq!(right, Ok(true), "{table}");
+}
+
+/// Wire that was pushed while it fell flew out of a groove that holds it.
+#[test]
+fn a_groove_holds_wire_up_to_the_load_that_lifts_it_out() {
+    right_now("groove_seat");
+}
+
+/// The load along the axis of a helix drew the wire along it, which looked like friction.
+#[test]
+fn a_pair_with_next_to_no_friction_slides_with_no_more() {
+    right_now("live_pair");
+}

@@ -221,9 +221,18 @@ fn inputs_without_a_meaning_are_told_and_not_computed() {
     for (kind, input, value, told) in [
         ("spinning_ring", "R_m", 0.0, "above 0"),
         ("spinning_ring", "R_m", -1.0, "above 0"),
-        ("spinning_ring", "R_m", 1e9, "edges"),
-        ("capstan", "F0_N", 0.0, "above 0"),
-        ("capstan", "R_m", 1e9, "edges"),
+        ("spinning_ring", "R_m", 1e2, "edges"),
+        ("spinning_ring", "R_m", 1e9, "at most 700"),
+        ("capstan", "F0_N", 0.0, "from 0.0489"),
+        ("capstan", "R_m", 1e2, "edges"),
+        ("bending_modes", "T_N", 1e9, "at most 4890"),
+        ("bending_modes", "T_N", 1e4, "at most 4890"),
+        ("live_pair", "R_m", 1e9, "at most 0.7"),
+        ("live_pair", "drawn_m", -1.0, "above 0"),
+        ("helix", "twist_density_1_per_m", 1e9, "at most 1428"),
+        ("frozen_helix", "mu", -1.0, "from 0 to 10"),
+        ("capstan", "mu", -0.2, "from 0 to 10"),
+        ("feed_tension", "line_mass_kg", -1.0, "from 0"),
         ("groove_seat", "pitch_m", 0.0, "above 0"),
     ] {
         let mut file = packed(kind);
@@ -250,4 +259,59 @@ fn springback_does_not_hang_on_the_tolerance() {
         };
         assert_eq!(run(&args, |_| ()), Ok(true), "{tolerance}");
     }
+}
+
+/// Nodes lay too far apart for wire that tension straightens right behind an edge, and drag had thick wire bend too sharply.
+#[test]
+fn sharp_bends_of_thick_fine_and_hard_wire_are_as_exact_as_those_of_the_packed_one() {
+    let once = |name: &str| format!("tests/reference/once_wrong/{name}.json").into();
+    let args = VerifyOptions {
+        files: [
+            "corner_edge_steel",
+            "corner_edge_hardly_yields",
+            "corner_edge_slack",
+            "square_loop_fine",
+            "square_loop_thick",
+        ]
+        .map(once)
+        .to_vec(),
+        ..VerifyOptions::default()
+    };
+    let mut table = String::new();
+    let right = run(&args, |line| table.push_str(&format!("{line}\n")));
+    assert_eq!(right, Ok(true), "{table}");
+}
+
+/// Each jump of the direction at the edge set off a swing, which steps of small tolerances follow, and the wire yielded in it.
+#[test]
+fn the_bend_at_an_edge_does_not_hang_on_the_tolerance() {
+    for tolerance in ["1e-6", "5e-8"] {
+        let args = VerifyOptions {
+            files: vec!["tests/reference/square_loop.json".into()],
+            set: vec![format!("solver.tolerance={tolerance}")],
+            ..VerifyOptions::default()
+        };
+        assert_eq!(run(&args, |_| ()), Ok(true), "{tolerance}");
+    }
+}
+
+/// A kind that counts for the other preset only was checked by nothing, and that was a success.
+#[test]
+fn a_kind_that_is_asked_for_and_not_judged_is_no_success() {
+    let mut said = String::new();
+    let mut asked = |kinds: &[&str], preset| {
+        let args = VerifyOptions {
+            kinds: kinds.iter().map(|&kind| kind.to_owned()).collect(),
+            preset,
+            ..VerifyOptions::default()
+        };
+        run(&args, |line| said.push_str(line))
+    };
+    assert_eq!(asked(&["penalty_impact"], Preset::Default), Ok(false));
+    assert_eq!(
+        asked(&["end_couple", "penalty_impact"], Preset::Default),
+        Ok(false)
+    );
+    assert_eq!(asked(&["penalty_impact"], Preset::Paper), Ok(true));
+    assert!(said.contains("not judged"), "{said}");
 }

@@ -6,6 +6,7 @@ use super::features::Decisions;
 use super::impossible::si;
 use super::material::section;
 use super::problems::Problems;
+use super::spacing::{coarsest_on, halved, spacing_for};
 use super::{
     Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver, Window,
 };
@@ -15,33 +16,6 @@ use crate::math::V3;
 use crate::rod::Twist;
 use crate::settings::{NozzleFollows, SceneSettings, SolverSettings, Spindle};
 use std::path::{Path, PathBuf};
-
-/// Node spacing near the core that goes with a tolerance, m, for wire of `diameter`, m: 0.3 mm to 2e-6 m for 0.7 mm.
-///
-/// Above, steps are as the cube root of the tolerance, and both time and space are of second order.
-/// A spacing as that root too keeps the shares of the error that come from either. (`fig8` at 1e-5 m
-/// and 0.4 mm: nearly all was from the steps. At 2e-6 m, 500 rad/s, 0.4 mm: the mean gap of turn 2 is 0.008 d from
-/// that of half the spacing, with 0.3 mm 0.002 d.)
-///
-/// On a wide cylinder of this radius, m, chords of that spacing lie on the core as none of the rest needs it. There they
-/// may be off it by as much as on one of [`WIDE`] diameters, and at most twice as long.
-fn spacing_for(tolerance: f64, diameter: f64, cylinder: f64) -> f64 {
-    let with_wire = |usual: f64| SolverSettings::with_wire(usual, diameter);
-    let wide = (cylinder / (WIDE * diameter)).sqrt().clamp(1.0, 2.0);
-    with_wire(0.3e-3) * wide * libm::cbrt((tolerance / with_wire(2e-6)).max(1.0))
-}
-
-/// Radius of a cylinder, in diameters, from which on edges get longer: there a chord is 0.2 % of the diameter off it.
-const WIDE: f64 = 10.0;
-
-/// Largest node spacing near the core over the radius that its corners bend the wire to. Chosen: with more, copper of 0.1 mm on
-/// corners of 0.2 mm stands off the faces twice as far as it does.
-const BENT: f64 = 0.45;
-
-/// Finest and coarsest spacing, diameters. Below, a rod is no model of the wire any more and the explicit step falls with the
-/// square; above, no turn is resolved.
-pub(super) const FINEST: f64 = 0.1;
-pub(super) const COARSEST: f64 = 10.0;
 
 /// How far beside the clamp the core is looked at too, diameters. Chosen: far above the rounding of an STL file's numbers.
 const ASIDE: f64 = 1e-3;
@@ -122,12 +96,12 @@ impl SceneSettings {
         let twist = problems.note(self.twist(integrator, &wire, &mut decisions));
         let twist = twist.unwrap_or(Twist::Off);
         let span = self.nozzle.distance - extent.turning_radius;
-        let bend = core.bend(&wire, self.tensioner.tension);
+        let coarsest = coarsest_on(&core, &wire, self.tensioner.tension);
         let cylinder = match core {
             Core::Cylinder { radius, .. } => radius,
             _ => 0.0,
         };
-        let round = (bend, cylinder);
+        let round = (coarsest, cylinder);
         let solver = self.solver_for(integrator, twist, (wire.diameter, span), round);
         self.check_spacing(&solver, &wire, &extent, &mut problems);
         self.check_stiffness(&core, &wire, &mut problems);
@@ -398,7 +372,7 @@ impl SceneSettings {
         integrator: Integrator,
         twist: Twist,
         (diameter, span): (f64, f64),
-        (bend, cylinder): (f64, f64),
+        (coarsest, cylinder): (f64, f64),
     ) -> Solver {
         // the explicit step falls with the square of the finest spacing wherever it is, so a coarse
         // free span saves little there and costs a refinement front
@@ -412,12 +386,10 @@ impl SceneSettings {
         } else {
             (0.5e-3, 6e-3)
         };
-        // halved, so that the free span can stay as it is
-        let mut halvings = 1.0;
-        while implicit && near > BENT * bend * halvings && near > 2.0 * FINEST * diameter * halvings
-        {
-            halvings *= 2.0;
-        }
+        let halvings = match implicit {
+            true => halved(near, coarsest, diameter),
+            false => 1.0,
+        };
         let near = near / halvings;
         let spacing_near = given(s.spacing_near, near.min(given(s.spacing_free, near)));
         let free_over_near = match s.spacing_near > 0.0 {

@@ -1,9 +1,9 @@
 //! Leaves that contradict each other, each told with the leaf to change.
 
-use super::build::{COARSEST, FINEST};
 use super::extent::{Extent, ROUNDING, between_turns};
 use super::impossible::{si, si_down, si_up};
 use super::problems::Problems;
+use super::spacing::{COARSEST, FINEST};
 use super::{Core, Integrator, NozzleLaw, SceneError, Solver};
 use crate::rod::Section;
 use crate::settings::SceneSettings;

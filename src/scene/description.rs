@@ -172,22 +172,6 @@ impl Core {
         }
     }
 
-    /// Radius that the core's corners bend this wire to under this `tension` (N), m; a mesh does not tell.
-    ///
-    /// That of its centreline on them, or where it is stiffer, what an elastica of its bending rigidity beyond yield has in the
-    /// middle of a right angle.
-    pub(super) fn bend(&self, wire: &Section, tension: f64) -> f64 {
-        let Some(corner) = self.corner() else {
-            return f64::INFINITY;
-        };
-        let rigidity = match wire.m_y.is_finite() {
-            true => wire.ei_p,
-            false => wire.ei,
-        };
-        let stiff = (rigidity / tension).sqrt() / (2.0 * libm::sin(std::f64::consts::FRAC_PI_8));
-        stiff.max(corner + wire.radius())
-    }
-
     /// Whether there may be flanges beside what wire is wound on.
     pub fn may_have_flanges(&self) -> bool {
         matches!(self, Self::Mesh { .. }) || self.flange().is_some()

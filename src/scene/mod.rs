@@ -24,6 +24,7 @@ mod nozzle_plan;
 mod nozzle_trail;
 mod problems;
 mod saved;
+mod spacing;
 mod speed_law;
 mod spindle_plan;
 mod stress_strain;
@@ -40,6 +41,8 @@ pub use file::packed_names;
 pub(crate) use impossible::si;
 pub use key::{assignment, unit_suffixes};
 pub use nozzle_law::{NozzleLaw, Piece};
+#[cfg(feature = "lab")]
+pub(crate) use spacing::spacing_at_edge;
 pub use speed_law::{SpeedLaw, Stretch};
 
 #[cfg(doc)]

@@ -146,8 +146,8 @@ pub struct SolverSettings {
     pub twist: String,
     /// node spacing near the core, m; 0: 0.5 mm explicit, implicit 0.3 mm for wire of 0.7 mm and in proportion to its diameter
     ///
-    /// The implicit one is coarser as the cube root of a tolerance above its own. It is halved until below 0.45 of the radius that
-    /// corners bend the wire to.
+    /// The implicit one is coarser as the cube root of a tolerance above its own. It is halved until it resolves how
+    /// the core's corners bend the wire under its tension.
     pub spacing_near: f64,
     /// node spacing in the free span, m; 0: 1 mm explicit, eight times that near the core implicit
     pub spacing_free: f64,

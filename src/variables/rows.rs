@@ -427,7 +427,7 @@ table! {
     fixed(1802, "friction.slip_speed", friction.slip_speed, "m/s", "mm/s", 1e-5, 100.0, 1e-2, "slip speed over which static turns into kinetic");
 
     text(1900, "solver.integrator", (solver.integrator), ["auto", "implicit", "rk4", "verlet"], "time integrator; auto: rk4 for preset paper, else implicit");
-    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit; implicit as the wire's diameter, 0.3 mm for 0.7 mm, coarser as the cube root of a tolerance above its own, halved until below 0.45 of the radius that corners bend the wire to");
+    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit; implicit as the wire's diameter, 0.3 mm for 0.7 mm, coarser as the cube root of a tolerance above its own, halved until fine enough for the bends on corners");
     fixed(1902, "solver.spacing_free", solver.spacing_free, "m", "mm", 0.0, 0.1, 1e-3, "node spacing in the free span; 0: 1 mm explicit, eight times that near the core implicit");
     fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core or the layer below at which free-span edges are split; 0: 3 mm implicit, 6 mm explicit");
     fixed(1904, "solver.step_share", solver.step_share, "1", "", 1e-3, 1.0, 1.0, "time step as a share of the stability limit");

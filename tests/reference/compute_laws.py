@@ -416,7 +416,7 @@ def main():
         "Bend and twist that yield together while the wire rolls",
         "legs: curvature 0 -> k; at k roll and twist 0 -> their values together; curvature k -> 0. Return maps of bend (vector) and twist; roll of the edge between two clamps from the balance of torques",
         "Simo & Hughes 1998 (return map); integrated in 8000 increments a leg, limit by Richardson", "1e-5 relative",
-        "0.5% of a moment, 30 uN m", "one edge of 0.3 mm, so each joint stands for 0.15 mm; no moment cap; lists: two components, and the torque, of the first joint at the end of each leg",
+        "0.5% of a moment, 30 uN m", "one edge of a wind's spacing, 3/7 of the diameter and so 0.3 mm for this wire; each joint stands for half of it; no moment cap; lists: two components, and the torque, of the first joint at the end of each leg",
     ), {"bend_moment_Nm": {"rel": 0.005, "abs": 3e-5}, "torque_Nm": {"rel": 0.001, "abs": 1e-6}}, [
         (f"k{k:g}_roll{roll:g}_twist{twist:g}", {"curvature_1_per_m": k, "roll_rad": roll, "twist_1_per_m": twist}, rolling_path(k, roll, twist))
         for k, roll, twist in ((100.0, 1.0, 0.0), (100.0, 2.0, 20.0), (50.0, -1.5, 60.0), (1.5, 3.0, 1.0))

@@ -70,8 +70,23 @@ impl Balance {
         forces && torques
     }
 
+    /// Size of the loads, N.
+    pub(super) fn load(&self) -> f64 {
+        self.force
+    }
+
     /// Largest force out of balance over the load.
     pub(super) fn worst(&self, sys: &System) -> f64 {
+        let worst = Self::largest(sys);
+        if self.force > 0.0 {
+            worst / self.force
+        } else {
+            worst
+        }
+    }
+
+    /// Largest force out of balance along an axis that is not held, N.
+    pub(super) fn largest(sys: &System) -> f64 {
         let mut worst = 0.0_f64;
         for i in 0..sys.state.rod.nodes() {
             for a in 0..3 {
@@ -80,10 +95,6 @@ impl Balance {
                 }
             }
         }
-        if self.force > 0.0 {
-            worst / self.force
-        } else {
-            worst
-        }
+        worst
     }
 }

@@ -67,6 +67,11 @@ const QUICK: usize = 7;
 const GROWTH: f64 = 1.4;
 const SHRINK: f64 = 0.5;
 
+/// Largest force out of balance of a wire whose forces are those of its present place, and the size of its loads, N.
+pub(crate) fn out_of_balance(sys: &System) -> Result<(f64, f64), RelaxError> {
+    Ok((Balance::largest(sys), Balance::of(sys)?.load()))
+}
+
 /// Moves `sys` to equilibrium under its present loads and supports, and commits it.
 ///
 /// Velocities and spins become zero. Held coordinates may start away from their supports: they go

@@ -68,16 +68,25 @@ impl Stepper {
         )))
     }
 
-    /// Goes through `time`, in steps of `dt` where they are explicit.
+    /// Lowers the tolerance of the production method to a tenth.
+    pub(super) fn tighten(&mut self) {
+        if let Self::Implicit(method) = self {
+            method.tolerance *= 0.1;
+        }
+    }
+
+    /// Goes through `time`, in steps of `dt` where they are explicit; how many steps that took.
     pub(super) fn through(
         &mut self,
         sys: &mut System,
         time: f64,
         dt: f64,
-    ) -> Result<(), VerifyError> {
+    ) -> Result<usize, VerifyError> {
+        let mut steps = 0;
         match self {
             Self::Explicit(explicit) => {
-                for _ in 0..(time / dt).ceil() as usize {
+                steps = (time / dt).ceil() as usize;
+                for _ in 0..steps {
                     explicit.step(sys, dt);
                 }
             }
@@ -86,10 +95,11 @@ impl Stepper {
                 while left > 0.0 {
                     let taken = method.step(sys, left).map_err(no_answer)?;
                     left = if taken >= left { 0.0 } else { left - taken };
+                    steps += 1;
                 }
             }
         }
-        Ok(())
+        Ok(steps)
     }
 }
 
@@ -206,9 +216,15 @@ impl Bench {
         Ok(())
     }
 
+    /// Pushes along y as well, with this share of the load.
+    pub(super) fn push_aside(&mut self, share: f64) {
+        self.sys.model.loads.gravity.y = -share * self.full.z;
+    }
+
     /// Goes on for `units` of time.
     pub(super) fn run(&mut self, units: f64) -> Result<(), VerifyError> {
-        self.step.through(&mut self.sys, units * self.unit, self.dt)
+        let time = units * self.unit;
+        self.step.through(&mut self.sys, time, self.dt).map(|_| ())
     }
 
     /// Centre of mass.

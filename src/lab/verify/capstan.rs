@@ -187,7 +187,9 @@ impl Capstan {
     fn settle(&mut self) -> Result<(), VerifyError> {
         let transit = self.leg / self.wave;
         self.sys.model.loads.drag = 4.0 / transit;
-        self.step.through(&mut self.sys, 4.0 * transit, self.dt)
+        self.step
+            .through(&mut self.sys, 4.0 * transit, self.dt)
+            .map(|_| ())
     }
 
     /// Draws the wire at constant speed until the force ratio is steady; its mean.

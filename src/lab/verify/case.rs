@@ -3,7 +3,7 @@
 use crate::integrate::StepError;
 use crate::lab::statics::RelaxError;
 use crate::rod::Section;
-use crate::scene::Integrator;
+use crate::scene::{Integrator, spacing_at_edge};
 use std::path::Path;
 
 /// One case, ready to run.
@@ -19,6 +19,8 @@ pub struct Context<'a> {
     pub integrator: Integrator,
     /// node spacing where it is finest, m; `None`: what the kind finds fit
     pub spacing: Option<f64>,
+    /// whether that spacing was asked for, whatever the case bends its wire to
+    pub spacing_given: bool,
     /// local error that a step of the implicit method may have, m, where the kind winds as a scene does
     pub tolerance: f64,
     /// whose set-up the case takes
@@ -151,6 +153,16 @@ impl Context<'_> {
             name: name.to_owned(),
             problem: "a list of finite numbers is wanted".to_owned(),
         })
+    }
+
+    /// Node spacing where tension draws this wire by twice the angle `half_turn` over a sharp edge, m: a wind's, as near as that asks for; `None`: what the kind
+    /// finds fit.
+    pub fn spacing_at_edge(&self, section: &Section, tension: f64, half_turn: f64) -> Option<f64> {
+        if self.spacing_given {
+            return self.spacing;
+        }
+        self.spacing
+            .map(|near| spacing_at_edge(near, section, tension, half_turn))
     }
 
     /// Even number of edges for a wire of `length` whose own spacing would be `spacing`.

@@ -1,9 +1,9 @@
 //! Runs of cases with exact answers: which ones, how, and a record for each number.
 
 use super::file::{Case, CaseFile, Check};
-use super::report::{Outcome, Record, judge, unknown};
+use super::report::{Outcome, Record, judge, unjudged, unknown};
 use super::side_by_side::side_by_side;
-use super::{Context, KINDS, Kind, Setup, VerifyError, WIND, Wind};
+use super::{Context, KINDS, Kind, Setup, VerifyError, WIND, Wind, inputs};
 use crate::scene::{Integrator, Preset};
 use crate::settings::SceneSettings;
 use cpu_time::ThreadTime;
@@ -159,7 +159,7 @@ fn wind_spacing(tolerance: f64) -> Result<f64, VerifyError> {
 /// Runs what `args` ask for on all cores, handing each line to `print` in the order of the files; whether every number was right.
 ///
 /// An error is bad input (exit code 2); `Ok(false)` a number out of tolerance, a case without
-/// an answer or a kind that is not known (exit code 1).
+/// an answer, a kind that is not known, or one that was asked for and of which no number counts for the preset (exit code 1).
 pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, VerifyError> {
     let manner = args.manner()?;
     let files = args.case_files()?;
@@ -186,10 +186,19 @@ pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, Ve
         }
     }
     let asked = |file: &&CaseFile| args.kinds.is_empty() || args.kinds.contains(&file.kind);
+    let by_name = |file: &&CaseFile| !args.files.is_empty() || args.kinds.contains(&file.kind);
+    for file in files.iter().filter(asked).filter(by_name) {
+        if !judged(file, manner.preset) {
+            count(&unjudged(&file.kind));
+        }
+    }
     let tasks: Vec<Task> = files
         .iter()
         .filter(asked)
-        .flat_map(|file| tasks(file, &manner))
+        .map(|file| tasks(file, &manner))
+        .collect::<Result<Vec<_>, _>>()?
+        .into_iter()
+        .flatten()
         .collect();
     side_by_side(
         &tasks,
@@ -201,12 +210,12 @@ pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, Ve
     )?;
     if !args.json {
         let nothing = match all {
-            0 => ": no number of these cases counts for this preset",
+            0 => ": nothing was judged",
             _ => "",
         };
         print(&format!("{right} of {all} right, {seconds:.1} s{nothing}"));
     }
-    Ok(right == all)
+    Ok(right == all && all > 0)
 }
 
 /// Runs the cases of one file; `each` gets the records of a case and the seconds of processor time it took.
@@ -215,7 +224,7 @@ pub fn run_file(
     manner: &Manner,
     mut each: impl FnMut(&[Record], f64),
 ) -> Result<(), VerifyError> {
-    for task in tasks(file, manner) {
+    for task in tasks(file, manner)? {
         let (records, cpu) = task.run(manner)?;
         each(&records, cpu);
     }
@@ -230,19 +239,20 @@ struct Task<'a> {
     how: Option<(&'static Kind, Setup, String)>,
 }
 
-/// What there is to run of a file.
-fn tasks<'a>(file: &'a CaseFile, manner: &Manner) -> Vec<Task<'a>> {
+/// What there is to run of a file, once every input is in its range.
+fn tasks<'a>(file: &'a CaseFile, manner: &Manner) -> Result<Vec<Task<'a>>, VerifyError> {
+    inputs::check(file)?;
     let Some(kind) = KINDS.iter().find(|kind| kind.name == file.kind) else {
         let of = |case| Task {
             file,
             case,
             how: None,
         };
-        return file.cases.iter().map(of).collect();
+        return Ok(file.cases.iter().map(of).collect());
     };
-    if !file.check.iter().any(|(_, c)| c.counts(manner.preset)) {
+    if !judged(file, manner.preset) {
         // nobody asks for what the other preset is judged by
-        return Vec::new();
+        return Ok(Vec::new());
     }
     let setups = manner.setups(kind);
     let of = |case| {
@@ -252,7 +262,12 @@ fn tasks<'a>(file: &'a CaseFile, manner: &Manner) -> Vec<Task<'a>> {
             how: Some((kind, *setup, name.clone())),
         })
     };
-    file.cases.iter().flat_map(of).collect()
+    Ok(file.cases.iter().flat_map(of).collect())
+}
+
+/// Whether any number of the file counts for the preset.
+fn judged(file: &CaseFile, preset: Preset) -> bool {
+    file.check.iter().any(|(_, c)| c.counts(preset))
 }
 
 impl Task<'_> {
@@ -294,6 +309,7 @@ fn run_case(
         folder: &file.folder,
         integrator: manner.integrator,
         spacing: manner.spacing.or(winds.then_some(near)),
+        spacing_given: manner.spacing.is_some(),
         tolerance: manner.tolerance.unwrap_or(usual),
         setup,
     };

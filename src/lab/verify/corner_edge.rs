@@ -48,7 +48,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let layer = (section.ei / pull).sqrt();
     let finest = SHARPEST_TURN / sharpest(&section, pull, 0.5 * turn);
     let finest = ctx
-        .spacing
+        .spacing_at_edge(&section, pull, 0.5 * turn)
         .unwrap_or(finest.min(yielded_layer(&section, pull) / 20.0));
     let rest = graded(12.0 * layer, finest, GROWTH, finest.max(layer / 10.0));
     let mut sys = straight(section, &rest);

@@ -8,7 +8,7 @@ use super::{Answer, Answers, Context, VerifyError};
 use crate::geometry::FrozenNode;
 use crate::math::Spin;
 use crate::math::V3;
-use crate::scene::{Core, Integrator, Scene};
+use crate::scene::{Core, Integrator, Scene, si};
 use crate::settings::SceneSettings;
 use crate::signals::Inputs;
 use crate::simulation::Simulation;
@@ -21,10 +21,28 @@ const SAMPLE: f64 = TAU / 50.0;
 /// Turns from the clamp on whose wire the start still shapes.
 const START: f64 = 2.5;
 
+/// Refuses a wind so fast that what the wire weighs as it goes round is more than a tenth of its tension: it would not lie.
+fn whirls_little(ctx: &Context, scene: &Scene, radius: f64) -> Result<(), VerifyError> {
+    let (pull, mass) = (scene.tensioner.tension, ctx.section.mass_per_length());
+    let most = (0.1 * pull / mass).sqrt() / radius;
+    if scene.spindle.speed <= most {
+        return Ok(());
+    }
+    Err(VerifyError::Input {
+        name: "omega_rad_per_s".to_owned(),
+        problem: format!(
+            "{}: at most {} is wanted for this radius and tension, or the wire flies off",
+            si(scene.spindle.speed),
+            si(most)
+        ),
+    })
+}
+
 /// Runs a case.
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let (radius, pitch) = (ctx.positive("R_m")?, ctx.positive("pitch_m")?);
     let scene = scene(ctx, radius, pitch)?;
+    whirls_little(ctx, &scene, radius)?;
     let fail = |e: crate::simulation::SimError| VerifyError::NoAnswer(e.to_string());
     let mut sim = Simulation::new(&scene).map_err(fail)?;
     let speed = scene.spindle.speed;

@@ -1,7 +1,7 @@
 //! Live wire on live wire: one turn pressed on the turn before it, and drawn along it.
 //!
 //! Three turns of a helix on a cylinder, a diameter apart, under tension: the first is frozen, two are live. A dead load along the
-//! axis presses the last turn on the one before, and that one harder on the frozen wire. Then the far end is drawn along the wire
+//! axis, but across the wire, presses the last turn on the one before, and that one harder on the frozen wire. Then the far end is drawn along the wire
 //! until all of the last turn slides, on the core and on its neighbour. Coulomb's friction of both gives
 //! `dT/ds = mu (q + T/a)`, so that `T + q a` grows by `exp(mu phi)`.
 
@@ -37,6 +37,8 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             "the spheres of the explicit method do not lie on each other evenly".to_owned(),
         ));
     };
+    let round = (TAU * (radius + ctx.section.radius()) / spacing).ceil();
+    ctx.few_enough(2.0 * round)?;
     let mut sys = stack(ctx, (radius, ctx.positive("T0_N")?), spacing, mu);
     let edges = sys.state.rod.edges();
     let start = sys.state.rod.x.clone();
@@ -45,7 +47,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             .map(|i| {
                 let load = if 2 * i > edges { 1.0 } else { BETWEEN };
                 let q = load * press * share * sys.state.rod.voronoi(i);
-                (i, V3::y() * -q)
+                (i, across(&start, i) * -q)
             })
             .collect();
     })?;
@@ -74,6 +76,12 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
             Answer::Number(libm::log(grown(b) / grown(a)) / angle),
         ),
     ])
+}
+
+/// The axis across the wire at node `i`: a load along the axis itself would draw wire along its helix.
+fn across(x: &[V3], i: usize) -> V3 {
+    let along = (x[i + 1] - x[i - 1]).normalize();
+    (V3::y() - along * along.y).normalize()
 }
 
 /// Angle about the axis from node `j` to the next, rad.

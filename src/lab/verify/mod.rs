@@ -24,6 +24,7 @@ mod grooved_capstan;
 mod hanging_wire;
 mod helix;
 mod helix_gap;
+mod inputs;
 mod kinds;
 mod live_pair;
 mod mandrel_springback;

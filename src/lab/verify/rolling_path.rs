@@ -11,8 +11,8 @@ use crate::math::{Quat, V3};
 use crate::rod::{Joint, respond_bend, respond_scalar};
 use crate::system::{Support, System};
 
-/// Edge of the kind's own set-up, m.
-const EDGE: f64 = 0.3e-3;
+/// Edge of the kind's own set-up over the diameter: that of a wind.
+const EDGE: f64 = 3.0 / 7.0;
 
 /// Pieces of a leg, each a ramp of its own: the return map is of first order where the direction of the bend changes.
 const PIECES: usize = 10;
@@ -21,7 +21,7 @@ const PIECES: usize = 10;
 pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
     let curvature = ctx.positive("curvature_1_per_m")?;
     let (roll, twist) = (ctx.number("roll_rad")?, ctx.number("twist_1_per_m")?);
-    let edge = ctx.spacing.unwrap_or(EDGE);
+    let edge = ctx.spacing.unwrap_or(EDGE * ctx.section.diameter);
     let mut sys = straight(ctx.section.clone(), &[edge]);
     let base = sys.state.rod.frame[0];
     sys.state.support = [

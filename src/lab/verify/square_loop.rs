@@ -63,7 +63,7 @@ fn drawn(ctx: &Context, pull: f64, length: f64) -> Result<(System, f64), VerifyE
     // bent evenly all along or sharply at the edge
     let most = sharpest(&section, pull, FRAC_PI_4) + FRAC_PI_4 / length;
     let coarsest = (length / 60.0).min(layer / 10.0);
-    let finest = ctx.spacing.unwrap_or(
+    let finest = ctx.spacing_at_edge(&section, pull, FRAC_PI_4).unwrap_or(
         (SHARPEST_TURN / most)
             .min(coarsest)
             .min(yielded_layer(&section, pull) / 20.0),
