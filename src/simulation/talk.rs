@@ -76,7 +76,11 @@ impl Talk {
         if in_vain && !small {
             self.doubt = (2 * self.doubt).clamp(1, LONGEST_WAIT);
         }
-        self.small = if small { self.small.saturating_add(1) } else { 0 };
+        self.small = if small {
+            self.small.saturating_add(1)
+        } else {
+            0
+        };
         small && self.trusts()
     }
 
