@@ -1,7 +1,7 @@
 //! Runs of cases with exact answers: which ones, how, and a record for each number.
 
 use super::file::{Case, CaseFile, Check};
-use super::report::{Outcome, Record, judge, unjudged, unknown};
+use super::report::{Outcome, Record, judge, unknown};
 use super::side_by_side::side_by_side;
 use super::{Context, KINDS, Kind, Setup, VerifyError, WIND, Wind, inputs};
 use crate::scene::{Integrator, Preset};
@@ -159,7 +159,7 @@ fn wind_spacing(tolerance: f64) -> Result<f64, VerifyError> {
 /// Runs what `args` ask for on all cores, handing each line to `print` in the order of the files; whether every number was right.
 ///
 /// An error is bad input (exit code 2); `Ok(false)` a number out of tolerance, a case without
-/// an answer, a kind that is not known, or one that was asked for and of which no number counts for the preset (exit code 1).
+/// an answer, or a kind that is not known (exit code 1).
 pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, VerifyError> {
     let manner = args.manner()?;
     let files = args.case_files()?;
@@ -187,9 +187,10 @@ pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, Ve
     }
     let asked = |file: &&CaseFile| args.kinds.is_empty() || args.kinds.contains(&file.kind);
     let by_name = |file: &&CaseFile| !args.files.is_empty() || args.kinds.contains(&file.kind);
+    let mut unjudged = Vec::new();
     for file in files.iter().filter(asked).filter(by_name) {
         if !judged(file, manner.preset) {
-            count(&unjudged(&file.kind));
+            unjudged.push(file.kind.as_str());
         }
     }
     let tasks: Vec<Task> = files
@@ -209,13 +210,15 @@ pub fn run(args: &VerifyOptions, mut print: impl FnMut(&str)) -> Result<bool, Ve
         },
     )?;
     if !args.json {
-        let nothing = match all {
-            0 => ": nothing was judged",
-            _ => "",
-        };
-        print(&format!("{right} of {all} right, {seconds:.1} s{nothing}"));
+        print(&format!("{right} of {all} right, {seconds:.1} s"));
+        if !unjudged.is_empty() {
+            print(&format!(
+                "not judged, since no number counts for this preset: {}; --preset names the other",
+                unjudged.join(", ")
+            ));
+        }
     }
-    Ok(right == all && all > 0)
+    Ok(right == all)
 }
 
 /// Runs the cases of one file; `each` gets the records of a case and the seconds of processor time it took.

@@ -22,7 +22,7 @@ pub struct Record {
     pub rel_error: Option<f64>,
     /// the file's check object for this quantity
     pub tolerance: Option<Check>,
-    /// within tolerance; none for a kind that is not known or not judged
+    /// within tolerance; none for a kind that is not known
     pub ok: Option<bool>,
     /// computing time of the whole case, s (one thread)
     pub cpu_s: Option<f64>,
@@ -150,16 +150,6 @@ pub(super) fn unknown(kind: &str, id: Option<&str>) -> Record {
         cpu_s: None,
         setup: None,
         error: Some(format!("kind {kind} is not known")),
-    }
-}
-
-/// The record of a kind that was asked for and is judged under the other preset only.
-pub(super) fn unjudged(kind: &str) -> Record {
-    Record {
-        error: Some(
-            "not judged: no number counts for this preset; --preset names the other".to_owned(),
-        ),
-        ..unknown(kind, None)
     }
 }
 
