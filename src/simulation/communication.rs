@@ -281,20 +281,21 @@ impl Simulation {
     ///
     /// The first step of a course that follows another ends at its communication point, for two reasons. Inputs that have just changed
     /// often change again. And what a master learns from small changes of a step is not blurred by the line between two ends.
-    /// A controller is slower than the master that steps it: where a course went on for several communication steps and as long as
-    /// the one before, or for few steps of the method, the next is taken to go on as long, and the method steps to its end.
+    ///
+    /// A controller is slower than the master that steps it. Where a course went on for several communication steps, and either as
+    /// long as the one before (`even`) or for few steps of the method, the next is taken to go on as long. The method steps to
+    /// its end then.
     fn turn_to(&mut self, course: Course, dt: f64, even: bool) -> Result<(), SimError> {
         if self.ahead.is_some() {
             self.talk.waited = (2 * self.talk.waited).clamp(1, LONGEST_WAIT);
         }
-        let mut course = course;
-        if let Some(before) = self.talk.newest() {
+        let (mut course, went_on) = (course, self.talk.lasted);
+        if went_on.is_finite() {
             self.talk.wait = self.talk.waited.max(1);
-            let went_on = course.start - before.start;
             let few = went_on < FEW_STEPS * self.now.stepper.next();
             if went_on > MORE_THAN_ONE * dt && (even || few) {
                 self.talk.wait = self.talk.waited;
-                course = course.as_long_as(&before);
+                course = course.as_long_as(went_on);
             }
         }
         self.settle()?;

@@ -95,10 +95,10 @@ impl Course {
         }
     }
 
-    /// The same, which goes on for as long as the one `before` did, if a master changes its inputs in even intervals.
-    pub(super) fn as_long_as(self, before: &Self) -> Self {
+    /// The same, which goes on for as long as the one before, s, if a master changes its inputs in even intervals.
+    pub(super) fn as_long_as(self, before: f64) -> Self {
         Self {
-            next: Some(self.start + (self.start - before.start)),
+            next: Some(self.start + before),
             ..self
         }
     }

@@ -76,33 +76,20 @@ const MASS: Range = From0(1000.0, Own);
 const SIDEWAYS: Range = Signed(10.0, Own);
 const HALF_TURN: Range = Above0(std::f64::consts::PI, Own);
 
-type Inputs = &'static [(&'static str, Range)];
+type Input = (&'static str, Range);
 
-const CAPSTAN: [(&str, Range); 4] = [
-    ("mu", FRICTION),
-    ("wrap_rad", Above0(20.0, Own)),
-    ("R_m", ROUND),
-    ("F0_N", PULL),
-];
-const MU: (&str, Range) = CAPSTAN[0];
-const WRAP: (&str, Range) = CAPSTAN[1];
-const RADIUS: (&str, Range) = CAPSTAN[2];
-const HOLD: (&str, Range) = CAPSTAN[3];
-const WOUND: [(&str, Range); 5] = [
-    ("core_w_m", CORE),
-    ("core_h_m", CORE),
-    ("corner_radius_m", From0(1000.0, Diameter)),
-    ("nozzle_distance_m", Above0(1e4, Diameter)),
-    ("T0_N", PULL),
-];
-const WIDTH: (&str, Range) = WOUND[0];
-const HEIGHT: (&str, Range) = WOUND[1];
-const CORNER: (&str, Range) = WOUND[2];
-const DISTANCE: (&str, Range) = WOUND[3];
-const TENSION: (&str, Range) = WOUND[4];
+const MU: Input = ("mu", FRICTION);
+const WRAP: Input = ("wrap_rad", Above0(20.0, Own));
+const RADIUS: Input = ("R_m", ROUND);
+const HOLD: Input = ("F0_N", PULL);
+const WIDTH: Input = ("core_w_m", CORE);
+const HEIGHT: Input = ("core_h_m", CORE);
+const CORNER: Input = ("corner_radius_m", From0(1000.0, Diameter));
+const DISTANCE: Input = ("nozzle_distance_m", Above0(1e4, Diameter));
+const TENSION: Input = ("T0_N", PULL);
 
 /// Inputs of each kind that its answers depend on.
-const TABLE: &[(&str, Inputs)] = &[
+const TABLE: &[(&str, &[Input])] = &[
     (
         "elastica_cantilever",
         &[("alpha", Signed(1000.0, Own)), ("L_m", LONG)],
@@ -151,7 +138,7 @@ const TABLE: &[(&str, Inputs)] = &[
     ),
     ("corner_edge", &[("T_N", PULL), ("turn_rad", HALF_TURN)]),
     ("square_loop", &[("T_N", PULL), ("side_m", SPAN)]),
-    ("capstan", &CAPSTAN),
+    ("capstan", &[MU, WRAP, RADIUS, HOLD]),
     (
         "grooved_capstan",
         &[MU, WRAP, RADIUS, HOLD, ("groove_rad", HALF_TURN)],
@@ -183,7 +170,7 @@ const TABLE: &[(&str, Inputs)] = &[
             ("damping_ratio", From0(10.0, Own)),
         ],
     ),
-    ("winding_feed", &WOUND),
+    ("winding_feed", &[WIDTH, HEIGHT, CORNER, DISTANCE, TENSION]),
     (
         "feed_tension",
         &[
