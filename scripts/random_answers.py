@@ -166,13 +166,13 @@ def feed_tension(draw):
     # swings about twice those of the packed cases; beyond, wire goes slack
     found, pull = exact.feed_tension(draw.wire, inputs), inputs["T0_N"]
     exact.need(found["tension_rms_N"] < 0.25 * pull and found.get("tension_min_N", pull) > 0.4 * pull, "swings beyond any packed case")
-    # waves of the free span are 1/0.03 times as fast as the core, and may not be slower than what swings behind it
+    # waves of the free span are 100 times as fast as the core, and may not be slower than what swings behind it
     spring, share, line = inputs["line_stiffness_N_per_m"], inputs["pulley_place"], inputs["line_mass_kg"]
     quickest = [spring / (inputs["tensioner_mass_kg"] + line / 2)]
     if inputs["pulley_mass_kg"] > 0:
         quickest[0] = spring / (1 - share) / (inputs["tensioner_mass_kg"] + line * (1 - share) / 2)
         quickest.append(spring / share / (1 - share) / (inputs["pulley_mass_kg"] + line / 2))
-    exact.need(0.03 * math.sqrt(max(quickest)) < 2.5 * inputs["omega_rad_per_s"], "quicker than the free span of any packed case")
+    exact.need(0.01 * math.sqrt(max(quickest)) < 2.5 * inputs["omega_rad_per_s"], "quicker than the free span of any packed case")
     return inputs
 
 

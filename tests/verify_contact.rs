@@ -112,3 +112,9 @@ fn a_groove_holds_wire_up_to_the_load_that_lifts_it_out() {
 fn a_pair_with_next_to_no_friction_slides_with_no_more() {
     right_now("live_pair");
 }
+
+/// Waves that the corners start in the free span were taken for swings of the feed.
+#[test]
+fn a_span_that_is_quick_enough_adds_nothing_to_a_small_swing() {
+    right_now("feed_tension");
+}
