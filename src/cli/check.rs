@@ -20,7 +20,7 @@ pub(super) struct CheckArgs {
 
 /// Builds the scene and the wire at rest; warnings go to standard error.
 pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
-    let (_, scene, warnings) = args.scene.build()?;
+    let (settings, scene, warnings) = args.scene.build()?;
     for warning in &warnings {
         eprintln!("warning: {warning}");
     }
@@ -40,12 +40,17 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         ),
         false => String::new(),
     };
+    // density and resistivity stay the metal's, where no key gives them
+    let curve = match settings.wire.stress_strain.is_empty() {
+        true => "",
+        false => " with a stress-strain curve of its own",
+    };
     let turns = match scene.spindle.turns {
         1.0 => "1 turn".into(),
         turns => format!("{} turns", rounded(turns, DIGITS)),
     };
     print(&format!(
-        "{}: valid; {} wire of {} mm{enamel} at {} N, {turns} at {} rad/s in {seconds:.4} s\n",
+        "{}: valid; {} wire of {} mm{enamel}{curve} at {} N, {turns} at {} rad/s in {seconds:.4} s\n",
         args.scene.scene,
         scene.wire_material,
         rounded(wire.bare_diameter * 1e3, DIGITS),
