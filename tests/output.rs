@@ -3,12 +3,12 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use coilwind::math::V3;
-use coilwind::measure::DefectLimits;
 use coilwind::measure::{Coil, CoilSpec, SettledNode};
 use coilwind::output::{
     Colouring, CoreMesh, OutputError, Picture, WireFields, render, render_png, write_core_vtp,
     write_stations, write_summary, write_turns, write_vtp,
 };
+use coilwind::settings::SceneSettings;
 use coilwind::simulation::Centreline;
 use quick_xml::Reader;
 use quick_xml::events::Event;
@@ -118,22 +118,7 @@ fn wire(turns: f64) -> Centreline {
 fn coil(wire: &Centreline) -> Coil {
     let mut coil = Coil::new(CoilSpec {
         diameter: D,
-        limits: DefectLimits {
-            gap: 0.15,
-            gap_fraction: 0.10,
-            bulge_excess: 0.5,
-            bulge_absolute: 0.0,
-            overlap_axial: 0.9,
-            overlap_height: 0.3,
-            skip_angle: 1.2,
-            double_turn: 0.5,
-            skipped_groove: 0.25,
-            jump: 0.5,
-            loose_height: 0.1,
-            loose_fraction: 0.5,
-            loose_tension: 0.5,
-            stretch: 0.02,
-        },
+        limits: SceneSettings::default().defects,
         profile: None,
         tension: 15.0,
         jumps: [].into(),

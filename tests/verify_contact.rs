@@ -1,22 +1,10 @@
 //! Contact, friction and feed against exact answers: the packed reference cases, by the production
 //! method and by the paper's.
 
-use coilwind::lab::verify::{VerifyOptions, run};
-use coilwind::scene::Preset;
+#[path = "common/verified.rs"]
+mod verified;
 
-fn all_right(kind: &str, preset: Preset) {
-    let args = VerifyOptions {
-        kinds: vec![kind.to_owned()],
-        preset,
-        ..VerifyOptions::default()
-    };
-    let mut table = String::new();
-    let right = run(&args, |line| {
-        table.push_str(line);
-        table.push('\n');
-    });
-    assert_eq!(right, Ok(true), "\n{table}");
-}
+use coilwind::lab::verify::{VerifyOptions, run};
 
 macro_rules! kinds {
     ($preset:ident = $value:expr; $($kind:ident),* $(,)?) => {
@@ -25,7 +13,7 @@ macro_rules! kinds {
 
             $(#[test]
             fn $kind() {
-                super::all_right(stringify!($kind), $value);
+                super::verified::all_right(stringify!($kind), $value);
             })*
         }
     };

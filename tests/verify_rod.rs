@@ -1,5 +1,8 @@
 //! The rod against exact answers: the packed reference cases, and the modes stepped in time.
 
+#[path = "common/verified.rs"]
+mod verified;
+
 use coilwind::integrate::{Explicit, ExplicitMethod, highest_frequency};
 use coilwind::lab::verify::{CaseFile, Manner, Record, VerifyOptions, run, run_file};
 use coilwind::math::V3;
@@ -8,27 +11,13 @@ use coilwind::scene::Preset;
 use coilwind::system::{Loads, Support, System};
 use std::f64::consts::PI;
 
-fn all_right(kind: &str, preset: Preset) {
-    let args = VerifyOptions {
-        kinds: vec![kind.to_owned()],
-        preset,
-        ..VerifyOptions::default()
-    };
-    let mut table = String::new();
-    let right = run(&args, |line| {
-        table.push_str(line);
-        table.push('\n');
-    });
-    assert_eq!(right, Ok(true), "\n{table}");
-}
-
 /// By the production method and by the forces of the explicit steps.
 macro_rules! kinds {
     ($($kind:ident),* $(,)?) => {
         $(#[test]
         fn $kind() {
             for preset in [Preset::Default, Preset::Paper] {
-                all_right(stringify!($kind), preset);
+                verified::all_right(stringify!($kind), preset);
             }
         })*
     };
@@ -54,7 +43,7 @@ macro_rules! default_only {
     ($($kind:ident),* $(,)?) => {
         $(#[test]
         fn $kind() {
-            all_right(stringify!($kind), Preset::Default);
+            verified::all_right(stringify!($kind), Preset::Default);
         })*
     };
 }

@@ -2,6 +2,7 @@
 
 use coilwind::math::V3;
 use coilwind::measure::{Coil, CoilSpec, DefectLimits, Profile, SettledNode};
+use coilwind::settings::SceneSettings;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 pub(crate) const D: f64 = 0.7e-3;
@@ -10,22 +11,7 @@ pub(crate) const RADIUS: f64 = 10e-3;
 pub(crate) const PULL: f64 = 15.0;
 
 pub(crate) fn limits() -> DefectLimits {
-    DefectLimits {
-        gap: 0.15,
-        gap_fraction: 0.10,
-        bulge_excess: 0.5,
-        bulge_absolute: 0.0,
-        overlap_axial: 0.9,
-        overlap_height: 0.3,
-        skip_angle: 1.2,
-        double_turn: 0.5,
-        skipped_groove: 0.25,
-        jump: 0.5,
-        loose_height: 0.1,
-        loose_fraction: 0.5,
-        loose_tension: 0.5,
-        stretch: 0.02,
-    }
+    SceneSettings::default().defects
 }
 
 pub(crate) fn spec() -> CoilSpec {
