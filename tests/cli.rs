@@ -74,15 +74,6 @@ fn check_says_valid_or_where_it_is_wrong() {
         "{said}"
     );
 
-    // wire of another metal is no copper wire
-    let curve = "wire.stress_strain=[[0.0075, 1500e6], [0.02, 1900e6]]";
-    let output = finished(&mut coilwind(&["check", "bobbin", "--set", curve]), 0);
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert!(
-        said.contains(" mm with a stress-strain curve of its own at "),
-        "{said}"
-    );
-
     let folder = tempfile::tempdir().unwrap();
     let scene = folder.path().join("bad.toml");
     let scene = scene.to_str().unwrap();
