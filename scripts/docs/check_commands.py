@@ -9,14 +9,17 @@ Without a page: README.md and its neighbours, and everything under docs/. In eac
 * ```python fences run if the line above them is <!-- run -->.
 * ```toml fences have to pass `coilwind check`, unless they are manifests of cargo.
 * A fence with title="NAME" is written to the file NAME first, so that later commands find it.
+* ```text fences below one that has run show what those above printed: every line of theirs. A line "..." stands for lines that are left out,
+  and "..." within a line for what is another each time, such as a time.
 * Wherever code calls `coilwind SUBCOMMAND --option`, in fences that run, in others and in running text, both have to exist.
 
-A fence under the line <!-- not run: REASON --> is skipped and counted. Fences of one page share one copy, pages do not.
+A fence under the line <!-- not run: REASON --> or <!-- not compared: REASON --> is skipped and counted. Fences of one page share one copy, pages do not.
 In the copy, target/ holds what is built in the real one; the rest of it is thrown away with the copy. PATH begins with
 the Python of scripts/venv.sh and target/release. A copy in which something failed stays in target/pages/.
 """
 
 import argparse
+import difflib
 import os
 import re
 import shutil
@@ -41,6 +44,10 @@ SHELLS_BY_OTHER_NAMES = {"bash", "shell", "zsh", "console", "shell-session", "te
 MANIFEST_TABLES = {"package", "dependencies", "dev-dependencies", "features", "workspace", "profile", "toolchain", "lints"}
 # Languages whose code calls no commands.
 NO_COMMANDS = {"rust", "python", "toml", "json", "csv", "c", "math", "xml"}
+# Marks of fences that are left alone, each with a reason.
+SKIPPED = ("not run", "not compared")
+# Languages of fences that are run or compared.
+RUN = ("sh", "python", "toml", "text")
 TIMEOUT_S = 600
 TAIL_LINES = 30
 
@@ -56,7 +63,7 @@ class Fence:
     # number in the page of the first line inside
     line: int
     text: str
-    # "run", "not run" or None, and the reason for not running
+    # "run", "not run", "not compared" or None, and the reason for not running or comparing
     mark: str | None
     reason: str | None
 
@@ -69,14 +76,14 @@ def fences_of(text):
     while number < len(lines):
         line = lines[number]
         number += 1
-        comment = re.fullmatch(r"\s*<!--\s*(not run|run)\b\s*:?\s*(.*?)\s*-->\s*", line)
+        comment = re.fullmatch(r"\s*<!--\s*(not run|not compared|run)\b\s*:?\s*(.*?)\s*-->\s*", line)
         opening = re.match(r"\s*(`{3,}|~{3,})\s*([\w-]*)(.*)$", line)
         if comment:
             if mark:
                 problems.append((mark[0], "marks no fence"))
             mark = (number, comment[1], comment[2])
-            if comment[1] == "not run" and not comment[2]:
-                problems.append((number, "gives no reason: <!-- not run: REASON -->"))
+            if comment[1] != "run" and not comment[2]:
+                problems.append((number, f"gives no reason: <!-- {comment[1]}: REASON -->"))
         elif opening:
             first = number
             while number < len(lines) and not re.fullmatch(rf"\s*{opening[1]}{opening[1][0]}*\s*", lines[number]):
@@ -176,17 +183,21 @@ def copy_of(root, target, folder):
 class Runner:
     def __init__(self, folder, python, command):
         self.folder, self.python, self.command = folder, python, command
+        # what the fences of the page have printed so far, and the problems of those that show it
+        self.printed, self.stale = [], []
 
     def run(self, fence):
         """Runs a fence; says whether there was anything to run."""
         if fence.title:
             (self.folder / fence.title).write_text(fence.text, encoding="utf-8")
-        if fence.mark == "not run":
+        if fence.mark in SKIPPED:
             return False
         if fence.language == "sh":
             self.shell(fence)
         elif fence.language == "python" and fence.mark == "run":
             self.script(fence)
+        elif fence.language == "text" and self.printed:
+            self.compare(fence)
         elif fence.language == "toml":
             return self.scene(fence)
         else:
@@ -234,6 +245,7 @@ class Runner:
                 number, _, called = failures.read_text(encoding="utf-8").partition("\n")[0].partition(" ")
                 line, what = int(number), f"`{called}`"
         self.judge(code, printed, line, what)
+        self.printed += printed.splitlines()
 
     def script(self, fence):
         with tempfile.TemporaryDirectory() as aside:
@@ -241,6 +253,18 @@ class Runner:
             script.write_text("\n" * (fence.line - 1) + fence.text, encoding="utf-8")
             code, printed = self.execute([str(self.python), script])
         self.judge(code, printed, fence.line, "the script")
+        self.printed += printed.splitlines()
+
+    def compare(self, fence):
+        """Looks for every line of a fence among what was printed."""
+        printed = [line.strip() for line in self.printed]
+        for line, shown in enumerate(map(str.strip, fence.text.splitlines()), fence.line):
+            pattern = re.compile(".*".join(map(re.escape, shown.split("..."))))
+            if any(map(pattern.fullmatch, printed)):
+                continue
+            near = difflib.get_close_matches(shown, printed, 1, 0.0)
+            instead = f"; the nearest that was:\n    {near[0]}" if near else ""
+            self.stale.append((line, f"shows a line that no fence above it printed{instead}"))
 
     def scene(self, fence):
         tables = set(re.findall(r"^\s*\[+\s*([\w-]+)", fence.text, re.MULTILINE))
@@ -262,7 +286,7 @@ def check_page(page, text, root, target, python, command):
     for line, code in [*pieces, *spans_of(text)]:
         problems += command.problems(line, code)
     ran = []
-    runnable = any(fence.mark != "not run" and fence.language in ("sh", "python", "toml") for fence in fences)
+    runnable = any(fence.mark not in SKIPPED and fence.language in RUN for fence in fences)
     if not problems and runnable:
         folder = target / "pages" / re.sub(r"\W+", "-", page)
         shutil.rmtree(folder, ignore_errors=True)
@@ -274,6 +298,7 @@ def check_page(page, text, root, target, python, command):
                 began = time.monotonic()
                 if runner.run(fence):
                     ran.append((fence, time.monotonic() - began))
+            problems += runner.stale
             shutil.rmtree(folder)
         except Failed as failed:
             line, sentence = failed.args
@@ -306,8 +331,8 @@ def main():
         for line, sentence in sorted(problems):
             print(f"{page}:{line}: {sentence}", flush=True)
         for fence in fences:
-            if fence.mark == "not run":
-                print(f"{page}:{fence.line}: not run: {fence.reason}", flush=True)
+            if fence.mark in SKIPPED:
+                print(f"{page}:{fence.line}: {fence.mark}: {fence.reason}", flush=True)
                 skipped += 1
         for fence, seconds in ran:
             if seconds > 20:
@@ -315,7 +340,7 @@ def main():
         found += len(problems)
         total += len(ran)
     took = time.monotonic() - began
-    print(f"{len(pages)} pages, {total} fences run in {took:.0f} s, {skipped} not run, {found} problems")
+    print(f"{len(pages)} pages, {total} fences run in {took:.0f} s, {skipped} not run or compared, {found} problems")
     sys.exit(found > 0)
 
 

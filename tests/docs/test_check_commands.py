@@ -48,6 +48,42 @@ def test_a_command_that_dies_in_a_pipe_is_found(check):
     assert "README.md:4:" in said
 
 
+def shown(text, mark=None):
+    """A page that prints two lines and shows this text below."""
+    return page("sh", "echo one 1.5; echo two") + "\n" + (f"{mark}\n" if mark else "") + f"```text\n{text}\n```\n"
+
+
+@pytest.mark.parametrize("text", ["two", "one 1.5\ntwo", "...\ntwo", "one ...", "  two"])
+def test_what_was_printed_may_be_shown_in_part(check, text):
+    code, said = check(shown(text))
+    assert code == 0, said
+
+
+@pytest.mark.parametrize("text", ["one 1.4", "one", "on... 1.4"])
+def test_a_shown_line_that_was_not_printed_is_named_with_the_nearest(check, text):
+    code, said = check(shown(text))
+    assert code == 1
+    assert "README.md:8: shows a line that no fence above it printed" in said
+    assert "    one 1.5" in said
+
+
+def test_a_text_with_nothing_run_above_it_is_no_output(check):
+    code, said = check("# Page\n\n```text\ntree\n```\n\n```sh\necho two\n```\n")
+    assert code == 0, said
+
+
+def test_a_marked_text_is_counted_and_not_compared(check):
+    code, said = check(shown("three", "<!-- not compared: another each time -->"))
+    assert code == 0, said
+    assert "README.md:9: not compared: another each time" in said
+
+
+def test_a_text_that_is_not_compared_needs_a_reason(check):
+    code, said = check(shown("three", "<!-- not compared -->"))
+    assert code == 1
+    assert "gives no reason" in said
+
+
 def test_a_fence_in_a_list_is_run(check):
     code, said = check("# Page\n\n- item\n\n    ```sh\n    false\n    ```\n")
     assert code == 1
@@ -58,7 +94,7 @@ def test_a_marked_fence_is_counted_and_not_run(check):
     code, said = check(page("sh", "false", "<!-- not run: takes an hour -->"))
     assert code == 0, said
     assert "README.md:5: not run: takes an hour" in said
-    assert "0 fences run" in said and "1 not run" in said
+    assert "0 fences run" in said and "1 not run or compared" in said
 
 
 @pytest.mark.parametrize(
