@@ -76,6 +76,22 @@ def write_whole(path, write):
         raise
 
 
+def is_under_way(folder):
+    """Whether a run writes here: it holds its history. Not told on Windows, nor by file systems without locks."""
+    try:
+        import fcntl
+    except ModuleNotFoundError:
+        return False
+    try:
+        with open(folder / "history.csv", "rb") as history:
+            fcntl.flock(history, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    except OSError:
+        pass
+    return False
+
+
 def wind_again(folder, *words):
     """What gives a run that is not whole, in words."""
     if has(folder, CHECKPOINT):

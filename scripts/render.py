@@ -5,12 +5,13 @@
     render.py DIR --colour layer --from x             coloured by layer, seen along x
     render.py DIR --film FILM.mp4                     a film of the frames (coilwind run --frames N); .gif works too
 
-The Python is that of `scripts/venv.sh render`. The camera stands so that the windings fill the picture. Of a core with
-flanges it shows the part between them; --flanges shows it whole.
+The Python is that of `scripts/venv.sh render`. The camera stands so that the windings fill the picture, beside the scale
+of colours. Of a core with flanges it shows the part between them; --flanges shows it whole.
 """
 
 import argparse
 import contextlib
+import json
 import logging
 import re
 import warnings
@@ -39,6 +40,10 @@ COLOURS = {
 VIEWS = {"corner": (1.0, 0.55, 0.8), "x": (1.0, 0.0, 0.0), "z": (0.0, 0.0, 1.0), "axis": (0.001, 1.0, 0.0)}
 COPPER, CORE, PAPER = "#c87941", "#9aa3ad", "white"
 SIDES = 20
+# Room that the scale of colours takes at the right, pixels, and its largest share of the width.
+BAR, BAR_SHARE = 200, 0.4
+# Frames a second that players show.
+RATES = (0.5, 120.0)
 # The last bytes of a whole file of VTK hold it.
 END = b"</VTKFile>"
 
@@ -53,12 +58,14 @@ def main():
     parser.add_argument("--flanges", action="store_true", help="show the flanges of the core")
     parser.add_argument("--no-core", action="store_true", help="show the wire alone")
     parser.add_argument("--size", default="1280x960", metavar="WxH", help="pixels (default: 1280x960)")
-    parser.add_argument("--rate", type=float, default=20.0, metavar="FPS", help="frames a second of the film (default: 20)")
+    parser.add_argument("--rate", type=float, default=20.0, metavar="FPS", help=f"frames a second of the film, {RATES[0]:g} to {RATES[1]:g} (default: 20)")
     args = parser.parse_args()
     # It warns that there is no screen.
     vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_ERROR)
     with told(parser.prog):
-        refuse_stopped(args.run)
+        if not RATES[0] <= args.rate <= RATES[1]:
+            raise Mistake(f"--rate {args.rate:g}: frames a second have to be from {RATES[0]:g} to {RATES[1]:g}")
+        refuse_unfinished(args.run)
         print(f"wrote {film(args) if args.film else picture(args)}")
 
 
@@ -115,8 +122,11 @@ def broken(run, name, reason, *words):
     return Mistake(f"{run}: {name} is not whole ({reason}); {folders.wind_again(run, *words)}")
 
 
-def refuse_stopped(run):
-    """A mistake where the folder holds a run that was killed before it wrote its results."""
+def refuse_unfinished(run):
+    """A mistake where the folder holds a run without results: one that is under way, or was killed before it wrote them."""
+    ended = (run / "summary.json").exists() and not (run / folders.CHECKPOINT).exists()
+    if not ended and folders.is_under_way(run):
+        raise Mistake(f"{run}: the run is under way and has not written its results; wait for its end, or stop it first")
     if (run / "scene.toml").exists() and not (run / "summary.json").exists():
         raise Mistake(f"{run}: the run was stopped before it wrote its results; {folders.wind_again(run)}")
 
@@ -201,14 +211,35 @@ class Coil:
         counted = array in ("layer", "turn")
         # One place that stands out must not take the colours from all others.
         low, high = (values.min(), values.max()) if counted else np.percentile(values, [1, 99])
+        shown = factor * self.end[array].astype(float)
+        reach = np.nanmin(shown), np.nanmax(shown)
+        if not counted and (reach[0] < low or reach[1] > high):
+            title += f"\nvalues from\n{reach[0]:.3g} to {reach[1]:.3g}"
         high = max(high, low + (1.0 if counted else 1e-9))
+        width, share = self.size[0], self.bar_share()
+        small = min(1.0, share * width / BAR + 0.1)
         bar = {
             # An empty line keeps the title clear of the number at the top of the bar.
-            "title": f"{title}\n", "color": "black", "vertical": True, "position_x": 0.88, "position_y": 0.2, "width": 0.06, "height": 0.6,
-            "title_font_size": 20, "label_font_size": 18, "fmt": "%.0f" if counted else "%.3g",
+            "title": f"{title}\n", "color": "black", "vertical": True, "position_x": 1.0 - 0.65 * share, "position_y": 0.15, "width": 0.35 * share,
+            "height": 0.65, "title_font_size": round(20 * small), "label_font_size": round(18 * small), "fmt": "%.0f" if counted else "%.3g",
             "n_labels": int(min(high - low + 1, 6)) if counted else 5,
         }
         return {"scalars": "shown", "clim": (low, high), "cmap": "viridis", "nan_color": "#c9c9c9", "scalar_bar_args": bar}
+
+    def bar_share(self):
+        """Share of the picture's width that the scale of colours takes."""
+        return min(BAR / self.size[0], BAR_SHARE)
+
+    def faces(self):
+        """Where the inner faces of the flanges stand along the axis, m; None without flanges."""
+        summary = self.args.run / "summary.json"
+        if not summary.is_file():
+            return None
+        try:
+            window = json.loads(summary.read_text(encoding="utf-8"))["product"]["window"]
+            return window and window["faces_m"]
+        except (ValueError, KeyError, TypeError):
+            raise broken(self.args.run, summary.name, "it does not tell the winding window") from None
 
     def tube(self, wire):
         """The surface of a wire, with the numbers that colour it."""
@@ -228,18 +259,33 @@ class Coil:
         low, high = points.min(axis=0) - self.radius, points.max(axis=0) + self.radius
         core = None if self.args.no_core else read(self.args.run, "core.vtp", "wind the run without --no-geometry")
         if core is not None:
-            if not self.args.flanges:
-                core = between(core, low[1] + 0.3 * self.radius, high[1] - 0.3 * self.radius)
+            faces = self.faces()
+            if faces and not self.args.flanges:
+                # A face in the plane of the cut would be left in shreds.
+                inset = 1e-3 * (faces[1] - faces[0])
+                core = between(core, faces[0] + inset, faces[1] - inset)
             plotter.add_mesh(core, color=CORE, specular=0.1, reset_camera=False)
         middle, reach = 0.5 * (low + high), 0.5 * np.linalg.norm(high - low)
         if core is not None and self.args.flanges:
             reach = max(reach, np.linalg.norm(core.points - middle, axis=1).max())
         towards = np.array(VIEWS[self.args.view]) / np.linalg.norm(VIEWS[self.args.view])
         plotter.camera.view_angle = 30.0
-        distance = 1.05 * reach / np.sin(np.radians(15.0))
+        width, height = self.size
+        room = 1.0 - self.bar_share() if "scalars" in self.look else 1.0
+        half = np.tan(np.radians(15.0)) * min(1.0, room * width / height)
+        distance = 1.05 * reach / np.sin(np.arctan(half))
+        # To the left, clear of the scale of colours.
+        plotter.camera.SetWindowCenter(1.0 - room, 0.0)
         plotter.camera.focal_point = middle
         plotter.camera.position = middle + distance * towards
         # The axis of the core stands upright, but where the camera looks along it.
+        if self.args.view == "axis":
+            # A core that stands out of its coil would hide it in perspective.
+            plotter.camera.parallel_projection = True
+            plotter.camera.parallel_scale = 1.05 * reach / min(1.0, room * width / height)
+            if core is not None:
+                distance += np.linalg.norm(core.points - middle, axis=1).max()
+                plotter.camera.position = middle + distance * towards
         plotter.camera.up = (0.0, 0.0, 1.0) if self.args.view == "axis" else (0.0, 1.0, 0.0)
         plotter.camera.clipping_range = (0.05 * distance, 20.0 * distance)
         return plotter

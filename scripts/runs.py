@@ -7,6 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
+try:
+    import tomllib
+except ModuleNotFoundError:  # Python 3.10
+    import tomli as tomllib
+
+from failure import Mistake
+
 # Calm to alarming: runs are plotted in the order of their speed.
 COLOURS = ["#33658a", "#2a9d8f", "#e0a030", "#c8442d", "#7a3b69", "#555b6e"]
 
@@ -42,13 +49,15 @@ class Run:
         """Spindle speed in rad/s, None if nothing tells.
 
         The demonstration names its directories by it; the summary knows the last speed, which is
-        another one where a run ended in the ramp.
+        a lower one where a run ended in the ramp. Members of ensembles have numbers as names too.
         """
-        try:
-            return float(self.directory.resolve().name)
-        except ValueError:
-            pass
         speed = self.summary.get("speed_rad_per_s")
+        try:
+            named = float(self.directory.resolve().name)
+        except ValueError:
+            named = None
+        if named is not None and abs(speed or 0.0) <= named * (1 + 1e-6):
+            return named
         # Held inputs are means over a step, and their rounding should not show.
         return None if speed is None else float(f"{speed:.9g}")
 
@@ -62,6 +71,17 @@ class Run:
     def ending(self):
         """`done`, `interrupted` or `failed`; `no results` without a summary."""
         return self.summary.get("status", "no results")
+
+    @property
+    def scene(self):
+        """The scene that was wound, SI units, its default values filled in: a dictionary for each table of the file."""
+        path = self.directory / "scene.toml"
+        try:
+            return tomllib.loads(path.read_text(encoding="utf-8"))
+        except FileNotFoundError:
+            raise Mistake(f"{path} is missing; it says what was wound, so wind the scene again") from None
+        except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+            raise Mistake(f"{path} is not whole ({error}); wind the scene again") from None
 
     def turn(self, number):
         """Measures of a turn (from 1), empty if it has not settled."""

@@ -300,6 +300,33 @@ fn a_break_tells_where_the_wire_parted() {
     );
 }
 
+/// The history says that nothing pulls at the nozzle, and so do `coil.vtp` and the frames.
+#[test]
+fn wire_that_parted_carries_no_tension_from_there_on() {
+    let mut run = Simulation::new(&fig8(&[("spindle.speed", "60")])).expect("starts");
+    run.advance_profile(0.05).expect("goes on");
+    let pulled = Inputs {
+        tension_setpoint: 300.0,
+        ..run.inputs()
+    };
+    let mut before = run.centreline();
+    while !run.outputs().defect_break {
+        before = run.centreline();
+        run.advance(pulled, 5e-5).expect("goes on");
+    }
+    assert!(before.tension.iter().all(|t| *t > 0.0));
+    for _ in 0..2 {
+        let (o, wire) = (*run.outputs(), run.centreline());
+        let laid = wire.arc.partition_point(|arc| *arc < o.break_position);
+        assert!(laid > wire.frozen && laid < wire.arc.len() - 2, "{laid}");
+        assert!(wire.tension[laid..].iter().all(|t| *t == 0.0));
+        // What lies on the core before that place stays as it was laid.
+        assert!(wire.tension[..wire.frozen].iter().all(|t| *t > 1.0));
+        run.advance(pulled, 1e-3).expect("goes on");
+        assert_eq!(run.outputs().wire_tension, 0.0);
+    }
+}
+
 /// A brake on the wheel pulls as the set tension does, and inputs read back as they were given.
 #[test]
 fn a_brake_pulls_by_its_torque_over_the_radius_of_its_wheel() {

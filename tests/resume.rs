@@ -215,6 +215,12 @@ fn what_goes_on_is_told_where_a_run_is_stopped() {
     let output = resume(&out).output().unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(said(&output).contains("going on"), "{}", said(&output));
+    let report = coilwind().arg("report").arg(&out).output().unwrap();
+    assert!(
+        said(&report).contains("the run is under way"),
+        "{}",
+        said(&report)
+    );
     let kill = Command::new("kill")
         .args(["-INT", &child.id().to_string()])
         .status();

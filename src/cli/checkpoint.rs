@@ -5,7 +5,7 @@
 
 use super::drive::{Motion, Place};
 use super::failure::Failure;
-use super::shell::{begin_again, quoted, resume_command};
+use super::shell::{begin_again, quoted};
 use coilwind::output::{Mark, write_whole_bytes};
 use coilwind::settings::SceneSettings;
 use serde::de::DeserializeOwned;
@@ -19,23 +19,6 @@ pub(super) const FILE: &str = "checkpoint.bin";
 const MAGIC: &[u8; 8] = b"coilwck2";
 /// Bytes before the state: [`MAGIC`] and a checksum of what follows.
 const HEAD: usize = MAGIC.len() + size_of::<u32>();
-
-/// An error where a folder holds a run that was killed before it wrote its results.
-pub(super) fn refuse_stopped(directory: &Path) -> Result<(), Failure> {
-    let has = |name: &str| directory.join(name).exists();
-    if has("summary.json") || !has("scene.toml") {
-        return Ok(());
-    }
-    let place = directory.display();
-    let next = match has(FILE) {
-        true => format!("go on with: {}", resume_command(&place)),
-        false => begin_again(directory),
-    };
-    Err(Failure::Resume {
-        directory: place.to_string(),
-        reason: format!("the run was stopped before it wrote its results; {next}"),
-    })
-}
 
 /// What does not change during a run.
 #[derive(Clone, Debug, Serialize, Deserialize)]

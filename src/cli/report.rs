@@ -3,7 +3,7 @@
 use super::checkpoint;
 use super::failure::Failure;
 use super::folder;
-use super::shell::begin_again;
+use super::shell::{begin_again, resume_command};
 use super::terminal::print;
 use clap::Args;
 use coilwind::output::{ReportError, missing_files, write_report};
@@ -31,7 +31,7 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
     let mut directories = vec![args.directory.as_path()];
     directories.extend(args.other.as_deref());
     for directory in &directories {
-        checkpoint::refuse_stopped(directory)?;
+        refuse_unfinished(directory)?;
         // Held meanwhile, so that a run that goes on keeps its files.
         if let Ok(_hold) = folder::hold(directory) {
             folder::clear_partial(directory);
@@ -47,6 +47,31 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
         }
     }
     print(&format!("report: {}\n", page.display()))
+}
+
+/// An error where a folder holds a run without results: one that is under way, or was killed before it wrote them.
+fn refuse_unfinished(directory: &Path) -> Result<(), Failure> {
+    let has = |name: &str| directory.join(name).exists();
+    let place = directory.display();
+    // A run that goes on has the results of its first part beside it.
+    let ended = has("summary.json") && !has(checkpoint::FILE);
+    if !ended && folder::hold(directory).is_err() {
+        return Err(Failure::Resume {
+            directory: place.to_string(),
+            reason: "the run is under way and has not written its results; wait for its end, or stop it first".to_owned(),
+        });
+    }
+    if has("summary.json") || !has("scene.toml") {
+        return Ok(());
+    }
+    let next = match has(checkpoint::FILE) {
+        true => format!("go on with: {}", resume_command(&place)),
+        false => begin_again(directory),
+    };
+    Err(Failure::Resume {
+        directory: place.to_string(),
+        reason: format!("the run was stopped before it wrote its results; {next}"),
+    })
 }
 
 /// What a folder without a run holds, if that has pages.

@@ -36,6 +36,23 @@ impl Winding {
         support.point += support.velocity * dt;
     }
 
+    /// The first live edge that nothing pulls any more, once winding has ended: from where the wire parted, or left the coil.
+    /// [`usize::MAX`] before.
+    pub(super) fn first_loose_edge(&self) -> usize {
+        if !self.run.over {
+            return usize::MAX;
+        }
+        let parted = self.run.outputs.break_position;
+        let arc0 = self.sys.state.arc0;
+        let mut before = 0.0;
+        let pulled = self.sys.state.rod.rest.iter().take_while(|rest| {
+            let pulled = parted == 0.0 || arc0 + before < parted;
+            before += **rest;
+            pulled
+        });
+        pulled.count().min(self.lift_off())
+    }
+
     /// Outputs of parted wire: it neither pulls nor moves on, and measures stay those of the moment it broke.
     pub(super) fn update_broken(&mut self) {
         self.raise_flags();

@@ -252,6 +252,7 @@ impl Winding {
         let at_rest = frozen.plastic_strain.iter().zip(&frozen.plastic_bend);
         line.plastic_strain
             .extend(at_rest.map(|(stretch, bend)| largest(*stretch, *bend)));
+        let loose = self.first_loose_edge();
         let mut arc = self.sys.state.arc0;
         for i in 0..rod.nodes() {
             let j = i.min(rod.edges() - 1);
@@ -261,7 +262,10 @@ impl Winding {
             line.plastic_stretch.push(rod.stretch[j].strain);
             line.plastic_strain
                 .push(largest(rod.stretch[j].strain, self.plastic_bend(i)));
-            line.tension.push(self.sys.state.load.tension[j]);
+            line.tension.push(match j < loose {
+                true => self.sys.state.load.tension[j],
+                false => 0.0,
+            });
             arc += rod.rest.get(i).copied().unwrap_or(0.0);
         }
         line

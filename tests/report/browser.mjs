@@ -2,6 +2,7 @@
 //
 //     node browser.mjs --modules DIR --page FILE [--shots DIR] [--frames] [--runs N]
 //     node browser.mjs --modules DIR --page FILE --changed       the same page with other numbers in it
+//     node browser.mjs --modules DIR --page FILE --pair alike    two runs of one wire side by side; unlike: of two wires
 //     node browser.mjs --modules DIR --page FILE --no-webgl      a browser without graphics
 //
 // Prints a line for each check; exit code 1 if one fails. tests/report/run.sh calls it.
@@ -14,7 +15,7 @@ import { parseArgs } from "node:util";
 const { values: given } = parseArgs({
   options: {
     modules: { type: "string" }, page: { type: "string" }, shots: { type: "string" }, chromium: { type: "string" },
-    frames: { type: "boolean" }, changed: { type: "boolean" }, "no-webgl": { type: "boolean" }, runs: { type: "string", default: "1" },
+    frames: { type: "boolean" }, changed: { type: "boolean" }, pair: { type: "string" }, "no-webgl": { type: "boolean" }, runs: { type: "string", default: "1" },
   },
 });
 const { chromium } = createRequire(join(resolve(given.modules), "x.js"))("playwright-core");
@@ -251,6 +252,14 @@ async function look(scheme) {
       mkdirSync(given.shots, { recursive: true });
       await page.screenshot({ path: join(given.shots, `defect-${scheme}.png`) });
     }
+    const chosen = () => run.locator(".defects tr.chosen").count();
+    const marked = [await chosen()];
+    await run.getByRole("button", { name: "Whole coil" }).click();
+    marked.push(await chosen());
+    await row.click();
+    await page.evaluate(() => runs[0].goTo(1));
+    marked.push(await chosen());
+    check(`${scheme}: a row is marked while the view shows its defect, and no longer`, marked.join() === "1,0,0", marked.join());
     await run.getByRole("button", { name: "Whole coil" }).click();
   }
   const map = run.locator(".map canvas.own").first();
@@ -280,8 +289,15 @@ async function look(scheme) {
   check(`${scheme}: the console is quiet`, complaints.length === 0, complaints.join(" | "));
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   check(`${scheme}: nothing sticks out sideways`, wide <= 0, `${wide} px`);
-  await page.setViewportSize({ width: 390, height: 800 });
-  await settle();
+  // Tables may be longer than their place, not wider.
+  const cutTables = () => page.evaluate(() => [...document.querySelectorAll(".scroll")].filter((box) => box.scrollWidth > box.clientWidth).length);
+  for (const width of [900, 390]) {
+    await page.setViewportSize({ width, height: 800 });
+    await settle();
+    check(`${scheme}: no table is cut in a window of ${width} px`, (await cutTables()) === 0);
+  }
+  const apart = await page.evaluate(() => document.querySelector(".view .legend").getBoundingClientRect().top - document.querySelector(".view canvas").getBoundingClientRect().bottom);
+  check(`${scheme}: the legend does not cover a narrow view`, apart >= 0, `${apart} px`);
   const over = await page.evaluate(() => document.documentElement.scrollWidth - 390);
   check(`${scheme}: nor in a window of 390 px`, over <= 0, `${over} px`);
   if (given.shots) {
@@ -332,6 +348,8 @@ async function lookChanged(scheme) {
   const floats = (name) => new Float32Array(Uint8Array.from(Buffer.from(name.slice(4), "base64")).buffer);
   const packed = (array) => `f32:${Buffer.from(array.buffer).toString("base64")}`;
   run.wire.plastic_strain = packed(floats(run.wire.plastic_strain).fill(0));
+  // One place that stands out, above a hundredth of places that share the least.
+  run.wire.tension = packed(floats(run.wire.tension).map((_, k, all) => (k === 3 ? 999 : k < 0.1 * all.length ? 10 : 10 + k / all.length)));
   run.stations.gap = packed(floats(run.stations.gap).map((_, k) => 4e-6 * Math.sin(k)));
   const ys = floats(run.core.points).filter((_, k) => k % 3 === 1);
   const [low, high] = [ys.reduce((a, b) => Math.min(a, b)), ys.reduce((a, b) => Math.max(a, b))];
@@ -362,6 +380,8 @@ async function lookChanged(scheme) {
     await page.locator("select.colour").selectOption(key);
     return (await legend()).replaceAll("\n", " ");
   };
+  const clipped = await colour("tension");
+  check(`${scheme}: colours that end before the values say so`, /\d N ≥ [\d.]+ N/.test(clipped) && !clipped.includes("≤") && /values reach from [\d.]+ N to 999\.\d* N/.test(clipped), clipped);
   const constant = await colour("plastic_strain");
   check(`${scheme}: a constant field has one number and no range`, /(^| )0 %/.test(constant) && !constant.includes("50") && !(await page.locator(".view .ramp").count()), constant);
   const kinds = await colour("defect");
@@ -398,9 +418,36 @@ async function lookChanged(scheme) {
   rmSync(path);
 }
 
+/** Two runs side by side: what differs is told, and scales are shared by runs of one wire only. */
+async function lookPair(alike) {
+  const page = await (await browser.newContext({ viewport: { width: 1280, height: 900 }, reducedMotion: "reduce", offline: true })).newPage();
+  await page.goto(pathToFileURL(resolve(given.page)).href);
+  await page.waitForFunction(() => document.body.dataset.whole);
+  const told = (await page.locator(".differences").innerText()).replaceAll(/\s+/g, " ");
+  check("pair: what differs between the scenes is told, with units", alike ? /traverse\.per_turn 0\.95 mm 0\.7 mm/.test(told) && !told.includes("wire.diameter") : /wire\.diameter 0\.7 mm 0\.5 mm/.test(told), told);
+  check("pair: and whether scales are shared", told.includes(alike ? "both runs share their scales" : "each run has its own scales"));
+  for (const key of ["tension", "gap"]) {
+    for (const select of await page.locator("select.colour").all()) await select.selectOption(key);
+    const [one, other] = await page.locator(".view .legend").allInnerTexts();
+    const alone = [one, other].filter((text) => text.includes("this run alone")).length;
+    const ends = [one, other].map((text) => text.match(/-?[\d.]+ (N|mm)/g).slice(0, 2).join());
+    check(`pair: scale of ${key}`, alike ? ends[0] === ends[1] && alone === 0 : ends[0] !== ends[1] && alone === 2, ends.join(" and "));
+  }
+  const d = await page.locator(".meta").allInnerTexts();
+  check("pair: d is told for each run", d[0].includes("0.700 mm") && d[1].includes(alike ? "0.700 mm" : "0.500 mm"), d.join(" | "));
+  const least = await page.locator(".map .legend").allInnerTexts();
+  const floors = least.map((text) => /at least ([\d.]+) mm \(0\.15 d\)/.exec(text)?.[1]);
+  check("pair: 0.15 d goes with the wire of the run", floors.every((floor, k) => floor === undefined || floor === (alike || k === 0 ? "0.105" : "0.075")), floors.join());
+  if (given.shots) {
+    mkdirSync(given.shots, { recursive: true });
+    await page.screenshot({ path: join(given.shots, `pair-${given.pair}.png`), fullPage: true });
+  }
+}
+
 try {
   check("the page is below 10 MB", statSync(given.page).size < MOST_BYTES, `${(statSync(given.page).size / 1e6).toFixed(2)} MB`);
   if (given["no-webgl"]) await lookWithout();
+  else if (given.pair) await lookPair(given.pair === "alike");
   else for (const scheme of ["light", "dark"]) await (given.changed ? lookChanged(scheme) : look(scheme));
 } finally {
   await browser.close();

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Opens reports in headless Chromium, light and dark: one run with frames and a defect, the same with other numbers and
-# in a browser without WebGL, and two side by side.
+# in a browser without WebGL, and two side by side, of one wire and of two.
 #
 #     tests/report/run.sh [--shots DIR | --hundred]
 #
@@ -35,9 +35,13 @@ fi
 "$command" run fig8_gap --set spindle.speed=500 --set spindle.turns=2.6 --set traverse.per_turn_mm=0.95 \
     --frames 6 --quiet --out "$out/gap"
 "$command" run fig8 --set spindle.speed=100 --set spindle.turns=1.6 --quiet --out "$out/aligned"
+"$command" run fig8 --set wire.material=copper --set wire.diameter_mm=0.5 --set spindle.speed=100 --set spindle.turns=1.6 --quiet --out "$out/thin"
 "$command" report "$out/gap" "$out/aligned"
+"$command" report "$out/gap" "$out/thin" --out "$out/unlike.html"
 look --page "$out/gap/report.html" --frames ${shots:+--shots "$shots/gap"}
 look --page "$out/gap/report.html" --changed ${shots:+--shots "$shots/changed"}
 look --page "$out/gap/report.html" --no-webgl ${shots:+--shots "$shots/no-webgl"}
 look --page "$out/aligned/report.html" ${shots:+--shots "$shots/aligned"}
 look --page "$out/gap/compare.html" --runs 2 ${shots:+--shots "$shots/compare"}
+look --page "$out/gap/compare.html" --pair alike ${shots:+--shots "$shots/pair"}
+look --page "$out/unlike.html" --pair unlike ${shots:+--shots "$shots/pair"}

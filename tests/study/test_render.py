@@ -153,3 +153,43 @@ def test_a_run_that_was_killed_is_told_to_go_on(checkpoint, complaint, script, t
     code, said = script("scripts/render.py", tmp_path, python=RENDER)
     assert code == 2 and len(said.splitlines()) == 1, said
     assert f"the run was stopped before it wrote its results; {complaint.format(folder=tmp_path)}" in said
+
+
+def test_a_run_that_goes_on_is_told_to_be_under_way(script, tmp_path):
+    fcntl = pytest.importorskip("fcntl")
+    (tmp_path / "scene.toml").write_text("preset = 'fig8'\n", encoding="utf-8")
+    with open(tmp_path / "history.csv", "w", encoding="utf-8") as history:
+        fcntl.flock(history, fcntl.LOCK_EX)
+        code, said = script("scripts/render.py", tmp_path, python=RENDER)
+    assert code == 2 and len(said.splitlines()) == 1 and "the run is under way" in said, said
+
+
+@pytest.mark.parametrize("rate", ["0", "-3", "nan", "1e4"])
+def test_a_film_without_a_rate_is_refused(rate, run, script, tmp_path):
+    code, said = script("scripts/render.py", run, "--film", tmp_path / "x.gif", f"--rate={rate}", python=RENDER)
+    assert code == 2 and "from 0.5 to 120" in said and len(said.splitlines()) == 1, said
+    assert not (tmp_path / "x.gif").exists()
+
+
+@pytest.mark.parametrize(("size", "view"), [("1280x960", "corner"), ("400x800", "corner"), ("640x480", "axis"), ("320x240", "z")])
+def test_the_whole_core_and_all_windings_stand_clear_of_the_colours(size, view, run, root):
+    said = render_python(f"""
+import sys; sys.path.insert(0, r"{root / 'scripts'}")
+import pyvista as pv, render
+from pathlib import Path
+from types import SimpleNamespace
+args = SimpleNamespace(run=Path(r"{run}"), size="{size}", colour="tension", no_core=False, flanges=False, view="{view}")
+coil = render.Coil(args)
+plotter = coil.stage()
+core = pv.read(args.run / "core.vtp")
+assert plotter.renderer.bounds[2:4] == core.bounds[2:4], "a core without flanges is not cut"
+plotter.render()
+width, height = coil.size
+for point in coil.end.points[coil.rest]:
+    plotter.renderer.SetWorldPoint(*point, 1.0)
+    plotter.renderer.WorldToDisplay()
+    x, y, _ = plotter.renderer.GetDisplayPoint()
+    assert 0 <= x <= (1.0 - coil.bar_share()) * width and 0 <= y <= height, (x, y)
+print("clear")
+""")
+    assert said == "clear\n"

@@ -4,12 +4,14 @@
 //! `page/`, other people's code with its licences in `vendor/`, made by `scripts/report/bundle.sh`.
 
 mod array;
+mod differences;
 mod error;
 mod folder;
 mod missing;
 mod read_vtp;
 
 use super::{OutputError, write_whole_bytes};
+use differences::{Difference, differences};
 pub use error::ReportError;
 use folder::Run;
 pub use missing::missing_files;
@@ -39,6 +41,8 @@ struct Data {
     /// of this program
     version: &'static str,
     runs: Vec<Run>,
+    /// of the scenes of two runs, if both have left theirs
+    differences: Option<Vec<Difference>>,
 }
 
 /// Makes the page `path` about one run, or about several side by side, from the folders that they left.
@@ -53,6 +57,10 @@ pub fn write_report(directories: &[&Path], path: &Path) -> Result<(), ReportErro
     let data = Data {
         version: env!("CARGO_PKG_VERSION"),
         runs: runs?,
+        differences: match directories {
+            [one, other] => differences(one, other),
+            _ => None,
+        },
     };
     let json = serde_json::to_string(&data).map_err(|source| OutputError::Json {
         path: path.to_owned(),

@@ -70,6 +70,13 @@ function lowerBound(values, x) {
 
 /** Differences of a value below this share of it are those of numbers with four bytes. */
 const SAME = 1e-6;
+/** Least and largest of the finite values, or null without any. */
+function extremes(values) {
+  let [least, most] = [Infinity, -Infinity];
+  for (const value of values) if (Number.isFinite(value)) [least, most] = [Math.min(least, value), Math.max(most, value)];
+  return least <= most ? [least, most] : null;
+}
+
 /** Least and largest of the finite values, without the outermost hundredth at either end; the same number twice where
  * all are equal. */
 function span(values) {

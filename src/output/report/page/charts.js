@@ -22,7 +22,7 @@ function charts(run) {
   const words = [lying, happened.length ? `${happened.join(", ")}, at the instant of it` : null].filter(Boolean);
   const note = words.length ? `Dashed: ${words.join("; ")}.` : null;
   const torque = plain(history.torque, 1e3);
-  // Runs side by side are compared by eye, which takes one scale.
+  // Runs of one wire side by side are compared by eye, which takes one scale.
   const over = (scale, ...names) => {
     if (run.all.length < 2) return null;
     let [low, high] = [Infinity, -Infinity];
@@ -34,14 +34,16 @@ function charts(run) {
     const room = 0.05 * (high - low) || 1;
     return [low - room, high + room];
   };
+  const alone = apart(run.all) ? "Scale of this run alone: the wires differ." : null;
+  const told = (...parts) => parts.filter(Boolean).join(" ") || null;
   return [
     chart("Tension at the nozzle", axis, x, "N", [
       { label: "mean", values: plain(history.tension), width: 1.4 },
       { label: "least", values: plain(history.tension_min), band: true },
       { label: "largest", values: plain(history.tension_max), band: true },
-    ], marks, go, note, over(1, "tension", "tension_min", "tension_max")),
+    ], marks, go, told(note, alone), over(1, "tension", "tension_min", "tension_max")),
     chart("Torque of the wire on the core", axis, x, "mN m", [{ label: "torque", values: torque, width: 1.4 }], marks, go,
-      "Negative where the wire resists the spindle.", over(1e3, "torque")),
+      told("Negative where the wire resists the spindle.", alone), over(1e3, "torque")),
   ];
 }
 

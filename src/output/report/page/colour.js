@@ -50,6 +50,9 @@ const defectOf = (name) => DEFECTS.find((kind) => kind.name === name) ?? { name,
 const pageColour = (name) => `var(--kind-${name}, ${defectOf(name).colour})`;
 const lineColour = (name) => css(`--kind-${name}`) || defectOf(name).colour;
 
+/** The name of a kind of defect as it is read; tables on disk have it with underscores. */
+const plainName = (kind) => kind.replaceAll("_", " ");
+
 /** Kinds of the defects with a place, the mildest first, and whether they are drawn along the wire or as balls. */
 function kindsOf(runs) {
   const places = runs.flatMap((run) => run.defects.filter((defect) => defect.place_m).map((defect) => defect.kind));
@@ -71,7 +74,8 @@ function floorOf(key, runs) {
   }
   if (key === "bulge") {
     const least = most((run) => run.summary.bulge_judged?.limit_m ?? 0.5 * run.diameter);
-    return { least, words: `${mm(least)}, the limit of a bulge` };
+    const alike = runs.every((run) => run.summary.bulge_judged?.limit_m === runs[0].summary.bulge_judged?.limit_m);
+    return { least, words: `${mm(least)}, the ${alike ? "" : "larger "}limit of a bulge` };
   }
   return null;
 }
@@ -103,26 +107,33 @@ function cached(make) {
   };
 }
 
-/** The legend of a colouring as an element's children. */
+/** The legend of a colouring of these values as an element's children; `runs` share its scale. */
 function legend(key, colours, values, runs) {
   const { label, unit, scale } = QUANTITIES[key];
+  const alone = colours.range && apart(runs) ? el("div", { class: "soft" }, "Scale of this run alone: the wires differ.") : null;
   if (colours.range && !values.some(Number.isFinite)) return [el("div", {}, label), keys([["not measured", UNKNOWN]])];
   const lacks = values.some((value) => !Number.isFinite(value));
   if (colours.range && colours.range[0] === colours.range[1]) {
     const one = `rgb(${colours.of(colours.range[0]).map(Math.round).join(" ")})`;
     const named = [[`${digits(scale * colours.range[0])} ${unit} everywhere`, one], ...(lacks ? [["not measured", UNKNOWN]] : [])];
-    return [el("div", {}, label), keys(named)];
+    return [el("div", {}, label), keys(named), alone].filter(Boolean);
   }
   if (colours.range) {
     const stops = RAMP.join(", ");
     const across = scale * (colours.range[1] - colours.range[0]);
     const count = Math.max(0, Math.min(6, 2 - Math.floor(Math.log10(across))));
-    const ends = colours.range.map((value) => `${fixed(scale * value, count)} ${unit}`);
+    const name = (value) => `${fixed(scale * value, count)} ${unit}`;
+    const reach = extremes(values);
+    // Values that lie beyond an end have its colour. Those that read the same as the end are not worth a word.
+    const beyond = [reach[0] < colours.range[0], reach[1] > colours.range[1]].map((lies, end) => lies && name(reach[end]) !== name(colours.range[end]));
+    const ends = colours.range.map((value, end) => `${beyond[end] ? ["≤ ", "≥ "][end] : ""}${name(value)}`);
     return [
       el("div", {}, label),
       el("div", { class: "ramp", style: `background: linear-gradient(90deg, ${stops})` }),
       el("div", { class: "ends" }, ...ends.map((text) => el("span", {}, text))),
+      beyond.includes(true) ? el("div", { class: "soft" }, `Colours end there; values reach from ${name(reach[0])} to ${name(reach[1])}.`) : null,
       colours.raised ? el("div", { class: "soft" }, `The scale spans at least ${colours.raised.words}.`) : null,
+      alone,
       lacks ? keys([["not measured", UNKNOWN]]) : null,
     ].filter(Boolean);
   }
@@ -131,7 +142,7 @@ function legend(key, colours, values, runs) {
     const named = present.map((layer) => [layer === 0 ? "not at rest" : `${layer}`, layerColour(layer)]);
     return [el("div", {}, label), keys(named)];
   }
-  const found = kindsOf(runs).map((kind) => [kind.ball ? `${kind.name} (ball)` : kind.name, kind.ball ? pageColour(kind.name) : kind.colour]);
+  const found = kindsOf(runs).map((kind) => [kind.ball ? `${plainName(kind.name)} (ball)` : plainName(kind.name), kind.ball ? pageColour(kind.name) : kind.colour]);
   return [el("div", {}, label), keys([["none", PLAIN], ...found])];
 }
 

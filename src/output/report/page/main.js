@@ -5,13 +5,14 @@ const GOOD = ["aligned", "single"];
 const ENDS = new Set(["break", "collision", "runaway"]);
 const BAD = DEFECTS.map((kind) => kind.name);
 
-/** What the parts of the page need of a run. */
+/** What the parts of the page need of a run: `beside` are all on the page, `all` those that share its scales. */
 class Run {
   constructor(data) {
     this.name = data.name;
     this.summary = data.summary;
     this.defects = data.summary.defects ?? [];
     this.diameter = data.summary.product.enamelled_diameter_m ?? data.summary.product.wire_diameter_m;
+    this.enamelled = this.diameter > data.summary.product.wire_diameter_m;
     this.faces = data.summary.product.window?.faces_m ?? null;
     this.history = decodeAll(data.history);
     this.stations = decodeAll(data.stations);
@@ -74,6 +75,7 @@ class Run {
 
   /** Moves the view to a place of the wire, in turns from the clamp. */
   goTo(turn) {
+    this.choose(null);
     if (!this.view?.renderer) return;
     const k = Math.min(lowerBound(this.turnOf, turn), this.laid - 1);
     const { points, tension, gap, bulge, layer } = this.wire;
@@ -86,8 +88,13 @@ class Run {
 
   goToDefect(defect) {
     const size = defect.size_m == null ? "" : `  ·  ${sizeOf(defect)}`;
-    this.view?.renderer && this.view.goTo(defect.place_m, `${defect.kind}  ·  turn ${defect.turn}, ${Math.round(defect.angle_deg)}°${size}`, defect.turn - 1 + defect.angle_deg / STATIONS);
-    const rows = document.querySelectorAll(".defects tbody tr");
+    this.view?.renderer && this.view.goTo(defect.place_m, `${plainName(defect.kind)}  ·  turn ${defect.turn}, ${Math.round(defect.angle_deg)}°${size}`, defect.turn - 1 + defect.angle_deg / STATIONS);
+    this.choose(defect);
+  }
+
+  /** Marks the row of the defect that the view shows; no defect marks none. */
+  choose(defect) {
+    const rows = this.rows?.querySelectorAll("tr") ?? [];
     rows.forEach((row) => row.classList.toggle("chosen", row.defect === defect));
   }
 }
@@ -96,12 +103,12 @@ function head(run) {
   const s = run.summary;
   const kind = GOOD.includes(s.verdict) ? "good" : s.verdict === "marginal" ? "fair" : BAD.includes(s.verdict) ? "bad" : "";
   const end = run.defects.find((defect) => ENDS.has(defect.kind));
-  const status = { done: end ? `winding ended with a ${end.kind}` : "wound to its end", interrupted: "interrupted", failed: s.reasons ? "failed before its planned end" : `failed: ${s.reason}` }[s.status] ?? s.status;
+  const status = { done: end ? `winding ended with a ${plainName(end.kind)}` : "wound to its end", interrupted: "interrupted", failed: s.reasons ? "failed before its planned end" : `failed: ${s.reason}` }[s.status] ?? s.status;
   const rpm = (s.speed_rad_per_s * 30) / Math.PI;
   const meta = [status, `${fixed(s.turns_wound, 2)} turns wound, ${fixed(s.turns_settled, 2)} at rest`,
-    `${duration(s.simulated_s)} simulated`, `${digits(s.speed_rad_per_s)} rad/s (${Math.round(rpm)} rpm) at the end`, `folder ${run.name}`];
+    `${duration(s.simulated_s)} simulated`, `d is the diameter of the wire${run.enamelled ? " over its enamel" : ""}, ${digits(1e3 * run.diameter)} mm`, `${digits(s.speed_rad_per_s)} rad/s (${Math.round(rpm)} rpm) at the end`, `folder ${run.name}`];
   return el("header", {},
-    el("h1", {}, s.scene || run.name, el("span", { class: `pill ${kind}` }, s.verdict)),
+    el("h1", {}, s.scene || run.name, el("span", { class: `pill ${kind}` }, plainName(s.verdict))),
     el("ul", { class: "reasons" }, ...(s.reasons ?? []).map((reason) => el("li", {}, `${reason}.`))),
     el("p", { class: "meta" }, meta.join("  ·  ")));
 }
@@ -119,8 +126,8 @@ function product(run) {
     ["Turns at rest", fixed(p.turns, 2), ""], ["Layers", p.layers, ""], ["Wire length", digits(p.wire_length_m, 4), "m"],
     ["Resistance at 20 °C", ...ohm], ...fill(p), ["Wire diameter", digits(1e3 * p.wire_diameter_m), "mm"],
   ];
-  if (p.enamelled_diameter_m > p.wire_diameter_m) figures.push(["Over the enamel", digits(1e3 * p.enamelled_diameter_m), "mm"]);
-  if (p.clearance_m != null) figures.push(["Clearance", digits(1e3 * p.clearance_m), "mm"]);
+  if (run.enamelled) figures.push(["Over the enamel", digits(1e3 * p.enamelled_diameter_m), "mm"]);
+  if (p.clearance_m != null) figures.push(["Clearance in window", digits(1e3 * p.clearance_m), "mm"]);
   return el("dl", { class: "product" }, ...figures.map(([name, value, unit]) =>
     el("div", {}, el("dt", {}, name), el("dd", {}, `${value} `, el("small", {}, unit)))));
 }
@@ -136,9 +143,9 @@ function sizeOf(defect) {
 function defects(run) {
   const table = el("table", { class: "defects" },
     el("thead", {}, el("tr", {}, ...["Defect", "Turn", "Layer", "Angle", "Time", "Size"].map((name) => el("th", {}, name)))),
-    el("tbody", {}, ...run.defects.slice(0, 500).map((defect) => {
+    run.rows = el("tbody", {}, ...run.defects.slice(0, 500).map((defect) => {
       const size = sizeOf(defect) ?? "–";
-      const kind = el("span", { class: "kind" }, dot(pageColour(defect.kind)), defect.kind);
+      const kind = el("span", { class: "kind" }, dot(pageColour(defect.kind)), plainName(defect.kind));
       const cells = [kind, defect.turn, defect.layer, `${Math.round(defect.angle_deg)}°`, duration(defect.time_s), size];
       const go = () => run.goToDefect(defect);
       const row = el("tr", { tabindex: 0, onclick: go, onkeydown: (event) => event.key === "Enter" && go() }, ...cells.map((cell) => el("td", {}, cell)));
@@ -182,11 +189,35 @@ function layOut(run) {
     crossSection(run) ?? nothing("Cross-section", noWire));
 }
 
+/** Whether two runs wound the same wire, so that lengths and pulls of the one say something of the other. */
+function sameWire(one, other) {
+  const [a, b] = [one, other].map(({ summary: { product: p } }) => [p.material, p.wire_diameter_m, p.enamelled_diameter_m]);
+  return a.every((value, k) => value === b[k]);
+}
+/** Whether other runs on the page have scales of their own. */
+const apart = (sharing) => sharing.length < sharing[0].beside.length;
+
+/** What differs between the scenes of two runs, and what that means for the scales of the page. */
+function comparison() {
+  const [differences, names] = [data.differences, runs.map((run, k) => `${["First", "Second"][k]}: ${run.name}`)];
+  const scales = apart(runs[0].all) ? "The wires differ, so each run has its own scales of colours and curves."
+    : "The wire is the same, so both runs share their scales of colours, tension and torque.";
+  const what = differences == null ? "The scene of a run is missing (scene.toml), so what differs is not known."
+    : differences.length === 0 ? "The scenes are the same." : null;
+  const table = what ? null : el("div", { class: "scroll" }, el("table", { class: "words" },
+    el("thead", {}, el("tr", {}, ...["In the scene", ...names].map((name) => el("th", {}, name)))),
+    el("tbody", {}, ...differences.map(({ name, meaning, values }) =>
+      el("tr", {}, el("td", {}, meaning, " ", el("code", {}, name)), ...values.map((value) => el("td", {}, value || "–")))))));
+  return el("section", { class: "card differences" }, el("div", { class: "bar" }, el("h2", {}, "What differs")),
+    table, el("p", { class: "note" }, [what, scales].filter(Boolean).join(" ")));
+}
+
 const data = JSON.parse(document.getElementById("data").textContent);
 const page = document.getElementById("page");
 page.classList.toggle("pair", data.runs.length > 1);
 const runs = data.runs.map((one) => new Run(one));
-runs.forEach((run) => (run.all = runs));
+for (const run of runs) [run.beside, run.all] = [runs, runs.every((other) => sameWire(run, other)) ? runs : [run]];
+if (runs.length > 1) page.append(comparison());
 page.append(...runs.map(layOut));
 runs.forEach((run) => run.view?.resize());
 requestAnimationFrame(() => requestAnimationFrame(() => {

@@ -6,7 +6,8 @@ function defectMap(run) {
   if (!stations || stations.arc.length === 0) return null;
   // (a defect may lie in wire that has not come to rest)
   const turns = Math.max(Math.ceil(stations.arc.length / STATIONS), ...run.defects.map((defect) => defect.turn));
-  const left = 44, bottom = 40, top = 6, right = 14;
+  // (the axis title, then the longest number)
+  const left = 30 + 8 * `${turns}`.length, bottom = 40, top = 6, right = 14;
   const row = Math.min(30, Math.max(3, 420 / turns));
   const measure = (key, of = stations) => {
     if (key === "layer") return of.layer;
@@ -15,7 +16,7 @@ function defectMap(run) {
   let key = "gap";
   let values, colours, picture;
   const kinds = [...new Set(run.defects.map((defect) => defect.kind))];
-  const rings = kinds.length ? [keys(kinds.map((kind) => [kind, pageColour(kind)]), "rings")] : [];
+  const rings = kinds.length ? [keys(kinds.map((kind) => [plainName(kind), pageColour(kind)]), "rings")] : [];
   const legendBox = el("div", { class: "keys-of-map" });
   const choose = (chosen) => {
     key = chosen;

@@ -137,7 +137,7 @@ function axes(pen, width, height, pad, frame) {
   pen.strokeStyle = css("--line");
   pen.lineWidth = 1;
   pen.strokeRect(pad.left, pad.top, frame.across, frame.high);
-  const wish = 70 / frame.scale;
+  const wish = 50 / frame.scale;
   const power = 10 ** Math.floor(Math.log10(wish));
   const step = [1, 2, 5, 10].map((k) => k * power).find((value) => value >= wish);
   const count = Math.max(0, -Math.floor(Math.log10(1e3 * step) + 1e-9));

@@ -9,7 +9,7 @@ const stands = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
 class View {
   constructor(run) {
     this.run = run;
-    this.key = run.all.some((one) => one.defects.some((d) => d.place_m)) ? "defect" : "tension";
+    this.key = run.beside.some((one) => one.defects.some((d) => d.place_m)) ? "defect" : "tension";
     this.frame = null;
     this.legend = el("div", { class: "legend" });
     this.place = el("div", { class: "place" });
@@ -98,13 +98,13 @@ class View {
     this.draw();
   }
 
-  /** Colours the wire; the range is that of the coils of all runs at their ends, so that frames and runs can be compared. */
+  /** Colours the wire; the range is that of the coils of all runs of this wire at their ends, so that frames and runs can be compared. */
   colour(key) {
     this.key = key;
     const coil = this.run.all.flatMap((run) => (run.wire ? Array.from(run.wire[key].subarray(0, Math.max(1, run.laid))) : []));
     const colours = colouring(key, coil, this.run.all);
     this.tube.paint(this.shown[key], colours);
-    this.legend.replaceChildren(...legend(key, colours, coil, this.run.all));
+    this.legend.replaceChildren(...legend(key, colours, [...coil, ...this.shown[key]], this.run.all));
     this.showBalls();
     this.draw();
   }
@@ -143,7 +143,8 @@ class View {
 
   resize() {
     if (!this.renderer) return;
-    const [width, height] = [this.box.clientWidth, this.box.clientHeight];
+    // (in a narrow window the legend stands below the picture)
+    const { clientWidth: width, clientHeight: height } = this.renderer.domElement;
     if (!width || !height || (width === this.wide && height === this.high)) return;
     [this.wide, this.high] = [width, height];
     this.renderer.setSize(width, height, false);
@@ -163,6 +164,7 @@ class View {
     this.move(target, new Vendor.Vector3(x, y, z).normalize().multiplyScalar(distance).add(target), !this.sized);
     this.mark.visible = false;
     this.place.textContent = "";
+    this.run.choose(null);
     this.peel(null);
   }
 
