@@ -112,12 +112,12 @@ pub(super) enum Failure {
         /// what is wrong, and what would do
         reason: String,
     },
-    /// `--find-max` came to a value that says nothing.
+    /// `--find-max` has no answer.
     #[error("sweep: {reason}")]
-    SweepOpen {
-        /// which value, why, and what would do
+    NoMaximum {
+        /// why, and what would do
         reason: String,
-        /// the solver gave up there
+        /// the solver gave up on the way
         failed: bool,
     },
     /// Ctrl-C during `sweep`.
@@ -206,13 +206,10 @@ impl Failure {
         Self::Sweep { reason }
     }
 
-    /// 1 defect, wrong number or no answer, 2 bad input, 3 solver or a full disk on the way, or a run in doubt, 130 interrupted (128 + SIGINT, as shells have it).
+    /// 1 defect or wrong number, 2 bad input, 3 solver or a full disk on the way, or a run in doubt, 4 no answer, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
-            Self::Defect { .. }
-            | Self::Verify
-            | Self::Invariant { .. }
-            | Self::SweepOpen { failed: false, .. } => 1,
+            Self::Defect { .. } | Self::Verify | Self::Invariant { .. } => 1,
             Self::Scene(_)
             | Self::Start { .. }
             | Self::Cells { .. }
@@ -231,7 +228,8 @@ impl Failure {
             | Self::Stuck { .. }
             | Self::MemberFailed { .. }
             | Self::BenchStopped { .. }
-            | Self::SweepOpen { failed: true, .. } => 3,
+            | Self::NoMaximum { failed: true, .. } => 3,
+            Self::NoMaximum { failed: false, .. } => 4,
             Self::Interrupted { .. }
             | Self::SweepInterrupted { .. }
             | Self::EnsembleInterrupted { .. }
