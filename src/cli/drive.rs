@@ -1,6 +1,7 @@
 //! What moves the machine in a run: the scene's own motion, or sampled inputs on a communication grid.
 
 use super::failure::Failure;
+use super::shell::quoted;
 use super::signals::{Grid, Signals};
 use coilwind::scene::Scene;
 use coilwind::settings::{NozzleFollows, SceneSettings};
@@ -25,6 +26,21 @@ impl Motion {
             Some(_) => settings.nozzle_follows(),
             None => NozzleFollows::Law,
         }
+    }
+}
+
+impl Motion {
+    /// The options that ask for it, a blank before each, as a shell in any folder takes them.
+    pub(super) fn options(&self) -> String {
+        let mut words = String::new();
+        if let Some((file, step)) = &self.inputs {
+            let file = std::path::absolute(file).unwrap_or_else(|_| file.clone());
+            words += &format!(" --inputs {} --step {step}", quoted(file.display()));
+        }
+        if let Some(time) = self.stop_time {
+            words += &format!(" --stop-time {time}");
+        }
+        words
     }
 }
 

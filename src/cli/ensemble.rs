@@ -198,6 +198,7 @@ fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failur
             done: ended.iter().filter(|one| !goes_on(one)).count(),
             all: count,
             directory: directory.display().to_string(),
+            told: args.told_with(),
         });
     }
     let ended: Vec<Result<Judged, Failure>> = ended.into_iter().flatten().collect();
@@ -219,7 +220,11 @@ fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failur
         // All members go on together, and not the one that met the full disk.
         Failure::Stuck { failure, .. } => Failure::Stuck {
             failure,
-            next: format!("make room, then go on with: {}", resume_command(place)),
+            next: format!(
+                "make room, then go on with: {}{}",
+                resume_command(place),
+                args.told_with()
+            ),
         },
         other => other,
     })?;
