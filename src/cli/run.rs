@@ -314,8 +314,11 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     };
     let follows = motion.nozzle_follows(&settings);
     let drive = Drive::new(&motion, &scene, follows)?;
-    if let Some(text) = drive.beyond_inputs().filter(|_| !args.quiet) {
-        eprintln!("warning: {text}");
+    if !args.quiet {
+        drive
+            .warnings()
+            .iter()
+            .for_each(|w| eprintln!("warning: {w}"));
     }
     let simulation = match (&drive, follows) {
         (Drive::MotionProfile { .. }, _) => Simulation::new(&scene),
