@@ -126,6 +126,37 @@ fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
     let map: serde_json::Value = serde_json::from_str(data).unwrap();
     let cells = map["cells"].as_array().unwrap();
     assert_eq!(cells.len(), 4);
+    // A page that is handed on says what it is of.
+    let facts: BTreeMap<String, String> = serde_json::from_value(
+        map["facts"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|f| (f[0].as_str().unwrap().to_owned(), f[1].clone()))
+            .collect::<serde_json::Map<_, _>>()
+            .into(),
+    )
+    .unwrap();
+    for (name, words) in [
+        ("scene", "fig8"),
+        ("core", "rounded-box, 12 mm x 30 mm"),
+        ("wire", "table1, 0.7 mm"),
+        ("ensemble", "2 runs a point"),
+        ("solver.tolerance", "1e-5 m"),
+        ("version", env!("CARGO_PKG_VERSION")),
+    ] {
+        assert!(facts[name].contains(words), "{name}: {facts:?}");
+    }
+    let settings = map["settings"].as_array().unwrap();
+    let has = |name: &str, value: &str, by: &str| {
+        let is = |s: &serde_json::Value| s[0] == name && s[1] == value && s[3] == by;
+        settings.iter().any(is)
+    };
+    assert!(has("spindle.turns", "0.3", "--set"), "{settings:?}");
+    assert!(has("core.width_x", "0.012", "scene"), "{settings:?}");
+    for swept in ["spindle.speed", "tensioner.tension"] {
+        assert!(settings.iter().all(|s| s[0] != swept), "{settings:?}");
+    }
     for (cell, runs) in cells.iter().zip(found.chunks(2)) {
         let (x, y) = (&map["x"]["values"], &map["y"]["values"]);
         let value = |axis: &serde_json::Value, key: &str| {
