@@ -13,6 +13,8 @@ FMU = Path(os.environ.get("COILWIND_FMU") or TARGET / "fmu/CoilWinding.fmu")
 # What builds them.
 COMMAND_BUILD, FMU_BUILD = "cargo build --release", "scripts/build_fmu.sh"
 
+# Options of a run that are no part of its scene, at the head of its file.
+WITH = "# wound with:"
 CHECKPOINT = "checkpoint.bin"
 # By what a folder is known, and which files belong to it; those of runs and sweeps as in src/cli/folder.rs.
 SIGNS = {
@@ -22,7 +24,7 @@ SIGNS = {
 }
 RESULTS = [
     "turns.csv", "stations.csv", "defects.csv", "coil.vtp", "coil.png", "core.vtp", "report.html", "compare.html", "frames.pvd",
-    "ensemble.csv", "map.svg", "map.html",
+    "ensemble.csv", "map.svg", "map.html", "find_max.json",
 ]
 
 
@@ -98,5 +100,17 @@ def wind_again(folder, *words):
         return f"go on with: {shlex.join(['coilwind', 'run', '--resume', str(folder)])}"
     if not has(folder, "scene.toml"):
         return "wind the scene again"
-    line = ["coilwind", "run", str(folder / "scene.toml"), "--out", str(folder), *words, "--force"]
+    line = ["coilwind", "run", str(folder / "scene.toml"), "--out", str(folder), *wound_with(folder, words), *words, "--force"]
     return f"begin again with: {shlex.join(line)}"
+
+
+def wound_with(folder, other):
+    """The options at the head of a run's scene, but for those that `other` words give and for those that leave out what they ask for."""
+    first = (folder / "scene.toml").read_text(encoding="utf-8").partition("\n")[0]
+    if not first.startswith(WITH):
+        return []
+    words = shlex.split(first.removeprefix(WITH))
+    if "--frames" in words and "--frames" in other:
+        place = words.index("--frames")
+        del words[place : place + 2]
+    return [word for word in words if word != "--no-geometry"]

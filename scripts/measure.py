@@ -11,7 +11,7 @@ import csv
 from pathlib import Path
 
 import numpy as np
-from calibrate import UNITS, columns
+from calibration_curves import UNITS, columns
 
 WHERE = {
     "tension": ("history.csv", "spindle_angle", "wire_tension"),

@@ -397,7 +397,7 @@ def main():
     parser.add_argument("--wait", type=float, default=60.0, metavar="S", help="give up after so long without a worker, s (default: 60)")
     parser.add_argument("--workers", type=int, default=os.cpu_count(), metavar="N", help="without --scheduler (default: all cores)")
     parser.add_argument("--fmu", type=Path, default=folders.FMU)
-    parser.add_argument("--quiet", action="store_true")
+    parser.add_argument("--quiet", action="store_true", help="no progress and no closing words; only errors, and that workers are missing")
     parser.add_argument("--command", type=Path, default=folders.COMMAND, help=argparse.SUPPRESS)
     args = parser.parse_args()
     with told(parser.prog):
@@ -421,6 +421,8 @@ def run(args):
     began, reports = time.monotonic(), []
     if fresh:
         reports = wind_fresh(args, fmu, fresh, ledger, Progress(len(tasks), len(ledger.rows), args.quiet))
+    if args.quiet:
+        return
     took = time.monotonic() - began
     defects, done = ledger.count("defect", "true"), ledger.count("outcome", "done")
     workers = most_at_once(reports)

@@ -93,3 +93,35 @@ fn inputs_that_end_before_the_stop_time_are_told() {
     assert!(!run(&["--stop-time", "6e-4", "--quiet"]).contains(told));
     assert!(!run(&[]).contains("--stop-time"));
 }
+
+/// A record that begins later wound from 0 on with its first row, and one that begins before lost its rows, without a word.
+#[test]
+fn inputs_whose_first_time_is_not_0_are_told_with_what_holds() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let inputs = path("inputs.csv");
+    let run = |rows: &str, more: &[&str]| {
+        let table = format!("time,spindle_speed,tension_setpoint\n{rows}");
+        std::fs::write(&inputs, table).unwrap();
+        let (out, own) = (path("out"), ["run", "fig8", "--no-geometry", "--no-report"]);
+        let by = [
+            "--force", "--inputs", &inputs, "--step", "1e-4", "--out", &out,
+        ];
+        finished(&[&own[..], &by, more].concat(), 0)
+    };
+    let late = "2e-4,5,12\n3e-4,5,12\n";
+    let told = format!(
+        "warning: {inputs}: the first time is 0.0002 s, and the run begins at 0 s; until then its first row holds: \
+         spindle_speed = 5 rad/s, tension_setpoint = 12 N; if the record begins there, take 0.0002 s off all times"
+    );
+    assert!(run(late, &[]).contains(&told), "{}", run(late, &[]));
+    assert!(!run(late, &["--quiet"]).contains("first time"));
+    let ensemble = run(late, &["--ensemble", "2"]);
+    assert!(ensemble.contains(&told), "{ensemble}");
+    let early = run("-2e-4,5,12\n3e-4,5,12\n", &[]);
+    assert!(
+        early.contains("the first time is -0.0002 s") && early.contains("add 0.0002 s to all"),
+        "{early}"
+    );
+    assert!(!run("0,5,12\n3e-4,5,12\n", &[]).contains("first time"));
+}

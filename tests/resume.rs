@@ -206,7 +206,7 @@ fn what_goes_on_is_told_where_a_run_is_stopped() {
     let out = folder.path().join("out");
     let mut command = short(&out);
     command
-        .args(["--set", "spindle.turns=50"])
+        .args(["--set", "spindle.turns=50", "--fail-on-defect"])
         .stderr(Stdio::piped());
     let child = command.spawn().unwrap();
     wait_for_checkpoint(&out);
@@ -227,7 +227,10 @@ fn what_goes_on_is_told_where_a_run_is_stopped() {
     assert!(kill.unwrap().success());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130));
-    let line = format!("go on with: coilwind run --resume {}", out.display());
+    let line = format!(
+        "go on with: coilwind run --resume {} --fail-on-defect --quiet",
+        out.display()
+    );
     assert!(said(&output).contains(&line), "{}", said(&output));
 }
 
@@ -478,4 +481,45 @@ fn a_damaged_run_that_has_ended_is_to_begin_again() {
     );
     assert!(said(&output).contains(&command), "{}", said(&output));
     assert!(!said(&output).contains("--resume"), "{}", said(&output));
+}
+
+/// The command that was told wound the scene's own motion, to its end and without frames.
+#[test]
+fn a_run_that_begins_again_takes_its_inputs_its_end_and_its_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("it's here");
+    std::fs::create_dir(&place).unwrap();
+    let inputs = "time,spindle_speed\n0,0\n0.004,90\n0.03,90\n";
+    std::fs::write(place.join("in puts.csv"), inputs).unwrap();
+    let out = place.join("out");
+    let mut run = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    run.current_dir(&place)
+        .args(["run", "fig8", "--quiet", "--out", "out"])
+        .args(["--inputs", "in puts.csv", "--step", "0.002"])
+        .args(["--stop-time", "0.01", "--frames", "3"]);
+    let output = run.output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    // The summary has the name of the scene's file.
+    let results = || {
+        let mut files = files(&out);
+        files.retain(|(name, _)| name != "summary.json");
+        files
+    };
+    let wound = results();
+    assert!(out.join("frames.pvd").is_file());
+
+    std::fs::write(out.join("history.csv"), "time\nzero\n").unwrap();
+    let output = coilwind().arg("report").arg(&out).output().unwrap();
+    assert_eq!(output.status.code(), Some(2), "{}", said(&output));
+    let said_all = said(&output);
+    let (_, command) = said_all.split_once("begin again with: coilwind ").unwrap();
+    let line = format!("{} {command}", env!("CARGO_BIN_EXE_coilwind"));
+    // In another folder, and in a shell.
+    let again = Command::new("sh")
+        .current_dir("/")
+        .args(["-c", &line])
+        .output()
+        .unwrap();
+    assert!(again.status.success(), "{line}: {}", said(&again));
+    assert!(results() == wound);
 }

@@ -1,46 +1,12 @@
 //! `coilwind sweep` and `coilwind run --ensemble` through their front door.
 
+#[path = "common/command.rs"]
+mod command;
+
+use command::{SHORT, coilwind, complaint, finished, rows};
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::{Command, Output};
-
-/// A sweep of `fig8` of 0.3 turns on coarse wire: enough to judge, over in a moment.
-const SHORT: [&str; 10] = [
-    "fig8",
-    "--quiet",
-    "--set",
-    "spindle.turns=0.3",
-    "--set",
-    "spindle.ramp_turns=0.1",
-    "--set",
-    "solver.spacing_near_mm=1",
-    "--set",
-    "solver.tolerance=1e-5",
-];
-
-fn coilwind(command: &str, out: &Path, more: &[&str]) -> Command {
-    let mut process = Command::new(env!("CARGO_BIN_EXE_coilwind"));
-    process.arg(command).args(SHORT).arg("--out").arg(out);
-    process.args(more);
-    process
-}
-
-fn finished(mut command: Command, code: i32) -> Output {
-    let output = command.output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(code), "{said}");
-    output
-}
-
-fn complaint(command: Command, code: i32) -> String {
-    String::from_utf8(finished(command, code).stderr).unwrap()
-}
-
-/// The rows of a table by column.
-fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    reader.deserialize().map(Result::unwrap).collect()
-}
+use std::process::Command;
 
 /// A table without its last column, which is a clock.
 fn without_clock(path: &Path) -> Vec<String> {
@@ -160,6 +126,37 @@ fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
     let map: serde_json::Value = serde_json::from_str(data).unwrap();
     let cells = map["cells"].as_array().unwrap();
     assert_eq!(cells.len(), 4);
+    // A page that is handed on says what it is of.
+    let facts: BTreeMap<String, String> = serde_json::from_value(
+        map["facts"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|f| (f[0].as_str().unwrap().to_owned(), f[1].clone()))
+            .collect::<serde_json::Map<_, _>>()
+            .into(),
+    )
+    .unwrap();
+    for (name, words) in [
+        ("scene", "fig8"),
+        ("core", "rounded-box, 12 mm x 30 mm"),
+        ("wire", "table1, 0.7 mm"),
+        ("ensemble", "2 runs a point"),
+        ("solver.tolerance", "1e-5 m"),
+        ("version", env!("CARGO_PKG_VERSION")),
+    ] {
+        assert!(facts[name].contains(words), "{name}: {facts:?}");
+    }
+    let settings = map["settings"].as_array().unwrap();
+    let has = |name: &str, value: &str, by: &str| {
+        let is = |s: &serde_json::Value| s[0] == name && s[1] == value && s[3] == by;
+        settings.iter().any(is)
+    };
+    assert!(has("spindle.turns", "0.3", "--set"), "{settings:?}");
+    assert!(has("core.width_x", "0.012", "scene"), "{settings:?}");
+    for swept in ["spindle.speed", "tensioner.tension"] {
+        assert!(settings.iter().all(|s| s[0] != swept), "{settings:?}");
+    }
     for (cell, runs) in cells.iter().zip(found.chunks(2)) {
         let (x, y) = (&map["x"]["values"], &map["y"]["values"]);
         let value = |axis: &serde_json::Value, key: &str| {
@@ -363,95 +360,6 @@ fn what_no_sweep_can_do_is_told_before_anything_is_wound() {
     assert!(!out.exists());
 }
 
-/// The highest tension below that which draws wire too long, found by bisection and by winding all.
-#[test]
-fn the_maximum_is_that_of_a_sweep_through_everything() {
-    let folder = tempfile::tempdir().unwrap();
-    let (all, some) = (folder.path().join("all"), folder.path().join("some"));
-    let wound = |out: &Path, more: &[&str]| {
-        // Long enough for turns at rest beside each other, without which nothing is judged.
-        let set = ["--set", "spindle.speed=300", "--set", "spindle.turns=2.6"];
-        let ensemble = ["--ensemble", "2"];
-        finished(
-            coilwind("sweep", out, &[&set[..], &ensemble, more].concat()),
-            0,
-        );
-        rows(&out.join("sweep.csv"))
-    };
-    let name = "tensioner.tension";
-    let every = wound(&all, &["--over", "tensioner.tension=33:68:8"]);
-    let looked = wound(
-        &some,
-        &["--over", "tensioner.tension=33:68:7", "--find-max", name],
-    );
-    let highest = |rows: &[BTreeMap<String, String>]| {
-        let value = |row: &BTreeMap<String, String>| row[name].parse::<f64>().unwrap();
-        let bad = rows
-            .iter()
-            .filter(|row| row["defect"] == "true" || row["outcome"] == "failed");
-        let least_bad = bad.map(value).fold(f64::INFINITY, f64::min);
-        let good = rows.iter().map(value).filter(|v| *v < least_bad);
-        (good.fold(0.0, f64::max), least_bad)
-    };
-    assert_eq!(highest(&every), highest(&looked));
-    let (free, not_free) = highest(&every);
-    assert!(33.0 < free && not_free == free + 5.0, "{free} {not_free}");
-    // three looks of the bisection, and one at the lowest value
-    assert_eq!((every.len(), looked.len()), (16, 8));
-}
-
-/// Runs that nothing was known of counted as free of defects, and runs that failed as defective: both were told as an answer.
-#[test]
-fn a_maximum_among_values_that_are_not_judged_or_failed_is_no_answer() {
-    let folder = tempfile::tempdir().unwrap();
-    let find_max = |out: &str, over: &str, sets: &[&str], code: i32| {
-        let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
-        sweep.args(["sweep", "fig8", "--find-max", "spindle.speed"]);
-        sweep.args(["--over", over, "--out"]);
-        sweep.arg(folder.path().join(out));
-        sets.iter().for_each(|set| {
-            sweep.args(["--set", set]);
-        });
-        let output = finished(sweep, code);
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        let (told, said) = (text(output.stdout), text(output.stderr));
-        for answer in ["is free of defects", "try a", "highest value without"] {
-            assert!(!told.contains(answer), "{told}");
-        }
-        (told, said)
-    };
-    let (told, said) = find_max(
-        "unjudged",
-        "spindle.speed=300:302:2",
-        &["spindle.turns=0.5"],
-        1,
-    );
-    assert!(told.contains("unsettled 1"), "{told}");
-    for part in [
-        "no highest value of spindle.speed was found: 302 is not judged",
-        "--set spindle.turns=N; nothing is known of other values",
-    ] {
-        assert!(said.contains(part), "{part}: {said}");
-    }
-    // A turn and a bit: that turn lies beside none, and was told as free of gaps.
-    let (told, said) = find_max(
-        "single",
-        "spindle.speed=100:102:2",
-        &["spindle.turns=1.3"],
-        1,
-    );
-    assert!(told.contains("single 1"), "{told}");
-    assert!(
-        said.contains("in 1 of 1 runs no turn came to rest beside another"),
-        "{said}"
-    );
-    let sets = ["solver.step_us=400", "spindle.turns=1.2"];
-    let (told, said) = find_max("failed", "spindle.speed=300:400:2", &sets, 3);
-    assert!(told.contains("failed 1"), "{told}");
-    assert!(said.contains("failed: the solver gave up 1 of 1"), "{said}");
-    assert_eq!(rows(&folder.path().join("failed/sweep.csv")).len(), 1);
-}
-
 #[cfg(unix)]
 #[test]
 fn an_interrupted_sweep_keeps_its_rows_and_says_how_to_go_on() {
@@ -565,23 +473,4 @@ fn runs_and_sweeps_do_not_share_a_folder() {
         0,
     );
     assert_eq!(files(&run), of_sweep);
-}
-
-/// The two values that bisection winds were free of defects, and the whole bracket was told to be; the lowest is not.
-#[test]
-fn free_values_above_a_defect_are_told_to_be_a_band() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
-    sweep.args(["sweep", "fig8", "--find-max", "traverse.per_turn_mm"]);
-    sweep.args(["--over", "traverse.per_turn_mm=0.1:0.7:3"]);
-    sweep.args(["--set", "spindle.turns=3.2", "--set", "spindle.speed=60"]);
-    sweep.arg("--out").arg(folder.path());
-    let told = String::from_utf8(finished(sweep, 0).stdout).unwrap();
-    for part in [
-        "= 0.7 is free of defects and 0.1, the lowest, is not",
-        "are a band",
-    ] {
-        assert!(told.contains(part), "{told}");
-    }
-    assert!(!told.contains("bracket"), "{told}");
 }

@@ -1,6 +1,7 @@
 //! What moves the machine in a run: the scene's own motion, or sampled inputs on a communication grid.
 
 use super::failure::Failure;
+use super::shell::quoted;
 use super::signals::{Grid, Signals};
 use coilwind::scene::Scene;
 use coilwind::settings::{NozzleFollows, SceneSettings};
@@ -28,6 +29,21 @@ impl Motion {
     }
 }
 
+impl Motion {
+    /// The options that ask for it, a blank before each, as a shell in any folder takes them.
+    pub(super) fn options(&self) -> String {
+        let mut words = String::new();
+        if let Some((file, step)) = &self.inputs {
+            let file = std::path::absolute(file).unwrap_or_else(|_| file.clone());
+            words += &format!(" --inputs {} --step {step}", quoted(file.display()));
+        }
+        if let Some(time) = self.stop_time {
+            words += &format!(" --stop-time {time}");
+        }
+        words
+    }
+}
+
 /// How far a drive is.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) enum Place {
@@ -52,6 +68,8 @@ pub(super) enum Drive {
     /// sampled inputs on a communication grid
     Signals {
         signals: Signals,
+        /// as it was given
+        file: String,
         /// start values; inputs without samples stay there
         held: Inputs,
         grid: Grid,
@@ -89,19 +107,40 @@ impl Drive {
             held,
             grid: Grid::new(*step, end),
             signals,
+            file: path.display().to_string(),
             end,
         })
     }
 
-    /// What becomes of the inputs where the run goes on beyond them, in words.
-    pub(super) fn beyond_inputs(&self) -> Option<String> {
-        match self {
-            Self::Signals { signals, end, .. } if *end > signals.end() => Some(format!(
-                "the inputs end at {} s; until --stop-time {end} s speed and tension stay as in the last row, and the nozzle stands",
-                signals.end()
-            )),
-            _ => None,
+    /// What holds where the run begins before the inputs or goes on beyond them, in words.
+    pub(super) fn warnings(&self) -> Vec<String> {
+        let Self::Signals {
+            signals, end, file, ..
+        } = self
+        else {
+            return Vec::new();
+        };
+        let (first, last) = (signals.begin(), signals.end());
+        let mut told = Vec::new();
+        if first > 0.0 {
+            let held = signals.first();
+            told.push(format!(
+                "{file}: the first time is {first} s, and the run begins at 0 s; until then its first row holds: {held}; \
+                 if the record begins there, take {first} s off all times"
+            ));
+        } else if first < 0.0 {
+            told.push(format!(
+                "{file}: the first time is {first} s, and the run begins at 0 s; rows before that are left out; \
+                 if the record begins there, add {} s to all times",
+                -first
+            ));
         }
+        if *end > last {
+            told.push(format!(
+                "the inputs end at {last} s; until --stop-time {end} s speed and tension stay as in the last row, and the nozzle stands"
+            ));
+        }
+        told
     }
 
     /// Simulated time at the end, s.

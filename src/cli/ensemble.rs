@@ -1,6 +1,7 @@
 //! `coilwind run --ensemble K`: K members side by side, a folder each, and how often each verdict was given.
 
 use super::checkpoint::{self, Plan};
+use super::drive::Drive;
 use super::failure::Failure;
 use super::folder;
 use super::members;
@@ -48,9 +49,14 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     let name = args.scene.as_deref().unwrap_or_default();
     let motion = args.motion();
     let follows = |settings: &SceneSettings| motion.nozzle_follows(settings);
-    let (settings, _, warnings) = SceneSettings::load_and_build(name, &args.set, follows)?;
+    let (settings, scene, warnings) = SceneSettings::load_and_build(name, &args.set, follows)?;
+    let drive = Drive::new(&motion, &scene, follows(&settings))?;
     if !args.quiet {
         warnings.iter().for_each(|w| eprintln!("warning: {w}"));
+        drive
+            .warnings()
+            .iter()
+            .for_each(|w| eprintln!("warning: {w}"));
     }
     let directory = args.directory(&settings);
     folder::refuse_occupied(&directory, args.force)?;
@@ -198,6 +204,7 @@ fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failur
             done: ended.iter().filter(|one| !goes_on(one)).count(),
             all: count,
             directory: directory.display().to_string(),
+            told: args.told_with(),
         });
     }
     let ended: Vec<Result<Judged, Failure>> = ended.into_iter().flatten().collect();
@@ -219,7 +226,11 @@ fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failur
         // All members go on together, and not the one that met the full disk.
         Failure::Stuck { failure, .. } => Failure::Stuck {
             failure,
-            next: format!("make room, then go on with: {}", resume_command(place)),
+            next: format!(
+                "make room, then go on with: {}{}",
+                resume_command(place),
+                args.told_with()
+            ),
         },
         other => other,
     })?;

@@ -88,7 +88,7 @@ pub(super) enum Failure {
     #[error(
         "interrupted at t = {} s; what was computed so far is in {directory}; {}",
         seconds(*time),
-        goes_on(*time, *kept, directory)
+        goes_on(*time, *kept, directory, told)
     )]
     Interrupted {
         /// simulated time, s
@@ -97,6 +97,8 @@ pub(super) enum Failure {
         kept: Option<f64>,
         /// where the results are
         directory: String,
+        /// options that the command which goes on takes too
+        told: String,
     },
     /// A file could not be written while a run was going on: the disk is full.
     #[error("{failure}; {next}")]
@@ -112,12 +114,12 @@ pub(super) enum Failure {
         /// what is wrong, and what would do
         reason: String,
     },
-    /// `--find-max` came to a value that says nothing.
+    /// `--find-max` has no answer.
     #[error("sweep: {reason}")]
-    SweepOpen {
-        /// which value, why, and what would do
+    NoMaximum {
+        /// why, and what would do
         reason: String,
-        /// the solver gave up there
+        /// the solver gave up on the way
         failed: bool,
     },
     /// Ctrl-C during `sweep`.
@@ -130,7 +132,7 @@ pub(super) enum Failure {
     },
     /// Ctrl-C during a run of an ensemble.
     #[error(
-        "interrupted; {done} of {all} members are done; go on with: {}",
+        "interrupted; {done} of {all} members are done; go on with: {}{told}",
         resume_command(directory)
     )]
     EnsembleInterrupted {
@@ -140,6 +142,8 @@ pub(super) enum Failure {
         all: usize,
         /// where their folders are
         directory: String,
+        /// options that the command which goes on takes too
+        told: String,
     },
     /// A member of an ensemble that goes on has failed before.
     #[error("{reason}; what was computed so far is in {directory}")]
@@ -206,13 +210,10 @@ impl Failure {
         Self::Sweep { reason }
     }
 
-    /// 1 defect, wrong number or no answer, 2 bad input, 3 solver or a full disk on the way, or a run in doubt, 130 interrupted (128 + SIGINT, as shells have it).
+    /// 1 defect or wrong number, 2 bad input, 3 solver or a full disk on the way, or a run in doubt, 4 no answer, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
-            Self::Defect { .. }
-            | Self::Verify
-            | Self::Invariant { .. }
-            | Self::SweepOpen { failed: false, .. } => 1,
+            Self::Defect { .. } | Self::Verify | Self::Invariant { .. } => 1,
             Self::Scene(_)
             | Self::Start { .. }
             | Self::Cells { .. }
@@ -231,7 +232,8 @@ impl Failure {
             | Self::Stuck { .. }
             | Self::MemberFailed { .. }
             | Self::BenchStopped { .. }
-            | Self::SweepOpen { failed: true, .. } => 3,
+            | Self::NoMaximum { failed: true, .. } => 3,
+            Self::NoMaximum { failed: false, .. } => 4,
             Self::Interrupted { .. }
             | Self::SweepInterrupted { .. }
             | Self::EnsembleInterrupted { .. }
@@ -252,10 +254,10 @@ fn seconds(time: f64) -> String {
 }
 
 /// Where a run that was stopped at `time` goes on, and how.
-fn goes_on(time: f64, kept: Option<f64>, directory: &str) -> String {
-    let next = || format!("go on with: {}", resume_command(directory));
+fn goes_on(time: f64, kept: Option<f64>, directory: &str, told: &str) -> String {
+    let next = || format!("go on with: {}{told}", resume_command(directory));
     match kept.map(seconds) {
-        None => begin_again(Path::new(directory)),
+        None => begin_again(Path::new(directory)) + told,
         Some(kept) if kept == seconds(time) => next(),
         Some(kept) => format!(
             "its last checkpoint is of t = {kept} s, and what came after it is computed again; {}",
@@ -294,11 +296,12 @@ mod tests {
                 time: 0.183_000_000_1,
                 kept,
                 directory: "my runs/a".to_owned(),
+                told: " --quiet".to_owned(),
             };
             assert_eq!(failure.code(), 130);
             failure.to_string()
         };
-        let command = "; go on with: coilwind run --resume 'my runs/a'";
+        let command = "; go on with: coilwind run --resume 'my runs/a' --quiet";
         let begins = "interrupted at t = 0.183 s; what was computed so far is in my runs/a; ";
         let again = told(Some(0.0));
         assert!(
@@ -316,7 +319,7 @@ mod tests {
         );
         let none = told(None);
         assert!(
-            none.contains("begin again with: coilwind run 'my runs/a/scene.toml'"),
+            none.ends_with("; begin again with: coilwind run 'my runs/a/scene.toml' --out 'my runs/a' --force --quiet"),
             "{none}"
         );
     }

@@ -3,6 +3,7 @@
 use super::checkpoint;
 use super::failure::Failure;
 use super::frames;
+use super::shell::SCENE;
 use super::sweep_files;
 use coilwind::output::PARTIAL;
 use coilwind::settings::SceneSettings;
@@ -10,12 +11,7 @@ use std::fs;
 use std::path::Path;
 
 /// Files by which a folder is known to hold a run.
-const SIGNS: [&str; 4] = [
-    "summary.json",
-    "history.csv",
-    "scene.toml",
-    checkpoint::FILE,
-];
+const SIGNS: [&str; 4] = ["summary.json", "history.csv", SCENE, checkpoint::FILE];
 
 /// Files that a run leaves when it ends. Those of an earlier run would mix with a later one that is stopped.
 const RESULTS: [&str; 11] = [
@@ -67,13 +63,15 @@ fn has(directory: &Path, name: &str) -> bool {
     data.is_ok_and(|data| data.is_file() && data.len() > 0)
 }
 
-/// Removes what an earlier run or sweep left, and leaves the scene as it is about to be run. The history must be open by then:
+/// Removes what an earlier run or sweep left, and leaves the scene as it is about to be run,
+/// below a `note` of how. The history must be open by then:
 /// it is what tells that no other run writes here.
-pub(super) fn begin(directory: &Path, settings: &SceneSettings) -> Result<(), Failure> {
+pub(super) fn begin(directory: &Path, settings: &SceneSettings, note: &str) -> Result<(), Failure> {
     clear(directory)?;
     remove(directory, &sweep_files::ALL)?;
-    let path = directory.join("scene.toml");
-    fs::write(&path, settings.to_toml_for_elsewhere()).map_err(|e| Failure::write(&path, e))
+    let path = directory.join(SCENE);
+    let text = format!("{note}{}", settings.to_toml_for_elsewhere());
+    fs::write(&path, text).map_err(|e| Failure::write(&path, e))
 }
 
 /// Removes the results of a run, but for its history and its scene.

@@ -19,6 +19,7 @@ mod shell;
 mod signals;
 mod stress;
 mod sweep;
+mod sweep_answer;
 mod sweep_files;
 mod sweep_find_max;
 mod sweep_grid;
@@ -40,7 +41,8 @@ use std::process::ExitCode;
 /// Simulation of wire winding: an elastic-plastic rod on a turning core.
 ///
 /// Exit codes: 0 done, 1 a defect or check failed where asked for, 2 bad input, 3 the solver gave
-/// up or the disk is full (what was computed is on disk), 130 interrupted (likewise).
+/// up or the disk is full (what was computed is on disk), 4 `sweep --find-max` has no answer,
+/// 130 interrupted (what was computed is on disk).
 #[derive(Debug, Parser)]
 #[command(name = "coilwind", version)]
 struct Cli {

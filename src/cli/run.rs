@@ -6,7 +6,7 @@ use super::failure::Failure;
 use super::folder;
 use super::frames::Frames;
 use super::progress::Progress;
-use super::shell::{begin_again, resume_command};
+use super::shell::{begin_again, note, resume_command};
 use super::terminal::{print, stop_flag};
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
@@ -22,6 +22,8 @@ use std::time::{Duration, Instant};
 
 /// Folder of the results where neither `--out` nor the scene names one.
 const DEFAULT_OUT: &str = "coilwind-out";
+/// Wall time between two checkpoints where none is given, s.
+const CHECKPOINT_EVERY: f64 = 5.0;
 /// Checkpoints take at most one in so many parts of the time.
 const CHECKPOINT_SHARE: u32 = 20;
 
@@ -52,7 +54,7 @@ pub(super) struct RunArgs {
     )]
     pub(super) resume: Option<PathBuf>,
     /// Wall time between two checkpoints from which a stopped run could go on, s
-    #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = positive)]
+    #[arg(long, value_name = "S", default_value_t = CHECKPOINT_EVERY, value_parser = positive)]
     checkpoint_every: f64,
     /// Keep this many frames of the wire on the way, in DIR/frames; ParaView opens them as DIR/frames.pvd
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -94,6 +96,37 @@ impl RunArgs {
             inputs: self.inputs.clone().zip(self.step),
             stop_time: self.stop_time,
         }
+    }
+
+    /// The options that shape the files of the run and are no part of its scene, a blank before each.
+    fn wound_with(&self) -> String {
+        let mut words = self.motion().options();
+        if self.frames > 0 {
+            words += &format!(" --frames {}", self.frames);
+        }
+        words += if self.no_geometry {
+            " --no-geometry"
+        } else {
+            ""
+        };
+        words
+    }
+
+    /// The options that change none of its numbers, which `--resume` takes too.
+    pub(super) fn told_with(&self) -> String {
+        let mut words = String::new();
+        if self.checkpoint_every != CHECKPOINT_EVERY {
+            words += &format!(" --checkpoint-every {}", self.checkpoint_every);
+        }
+        for (given, word) in [
+            (self.no_report, " --no-report"),
+            (self.fail_on_defect, " --fail-on-defect"),
+            (self.quiet, " --quiet"),
+            (self.verbose, " --verbose"),
+        ] {
+            words += if given { word } else { "" };
+        }
+        words
     }
 
     /// Folder of the results of a new run of these settings.
@@ -210,7 +243,7 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
     });
     let place = directory.display().to_string();
     // The checkpoint stays where a file could not be written: with room on the disk the run goes on.
-    let stuck = |failure| stuck(failure, &directory);
+    let stuck = |failure| stuck(failure, &directory, &args.told_with());
     match ended {
         Err(Stop::Files(failure)) => return Err(stuck(failure)),
         Err(Stop::Solver(reason)) => {
@@ -230,6 +263,7 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
                 time: simulation.time(),
                 kept: record.checkpoints.kept,
                 directory: place,
+                told: args.told_with(),
             });
         }
         Ok(_) => written.map_err(stuck)?,
@@ -242,13 +276,13 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
 }
 
 /// The failure of a run that could not write a file, with what to do then.
-fn stuck(failure: Failure, directory: &Path) -> Failure {
+fn stuck(failure: Failure, directory: &Path, told: &str) -> Failure {
     let next = match directory.join(checkpoint::FILE).is_file() {
         true => format!(
-            "make room, then go on with: {}",
+            "make room, then go on with: {}{told}",
             resume_command(directory.display())
         ),
-        false => format!("make room, then {}", begin_again(directory)),
+        false => format!("make room, then {}{told}", begin_again(directory)),
     };
     Failure::Stuck {
         failure: Box::new(failure),
@@ -280,8 +314,11 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     };
     let follows = motion.nozzle_follows(&settings);
     let drive = Drive::new(&motion, &scene, follows)?;
-    if let Some(text) = drive.beyond_inputs().filter(|_| !args.quiet) {
-        eprintln!("warning: {text}");
+    if !args.quiet {
+        drive
+            .warnings()
+            .iter()
+            .for_each(|w| eprintln!("warning: {w}"));
     }
     let simulation = match (&drive, follows) {
         (Drive::MotionProfile { .. }, _) => Simulation::new(&scene),
@@ -298,7 +335,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
     folder::prepare(&directory, args.force)?;
     let history = History::create(&directory.join("history.csv"))?;
-    folder::begin(&directory, &settings)?;
+    folder::begin(&directory, &settings, &note(&args.wound_with()))?;
     Ok(Start {
         frames: Frames::new(&directory, args.frames, drive.end())?,
         directory,

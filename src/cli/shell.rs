@@ -18,9 +18,31 @@ pub(super) fn resume_command(directory: impl Display) -> String {
     format!("coilwind run --resume {}", quoted(directory))
 }
 
-/// What winds the scene of a folder again, from its start.
+/// What winds the scene of a folder again, from its start, with the options that it was wound with.
 pub(super) fn begin_again(directory: &Path) -> String {
-    let scene = quoted(directory.join("scene.toml").display());
+    let scene = quoted(directory.join(SCENE).display());
     let place = quoted(directory.display());
-    format!("begin again with: coilwind run {scene} --out {place} --force")
+    let with = wound_with(directory);
+    format!("begin again with: coilwind run {scene} --out {place}{with} --force")
+}
+
+/// The scene of a run in its folder.
+pub(super) const SCENE: &str = "scene.toml";
+/// Begins a comment at the head of that file with the options of the run that are no part of the scene.
+const WITH: &str = "# wound with:";
+
+/// That comment with these options, a blank before each, and its end of line; empty where there are none.
+pub(super) fn note(options: &str) -> String {
+    // A name of two lines would end the comment in its middle.
+    match options.is_empty() || options.contains(char::is_control) {
+        true => String::new(),
+        false => format!("{WITH}{options}\n"),
+    }
+}
+
+/// The options in the comment of a folder's scene, with a blank before each.
+fn wound_with(directory: &Path) -> String {
+    let text = std::fs::read_to_string(directory.join(SCENE)).unwrap_or_default();
+    let first = text.lines().next().unwrap_or_default();
+    first.strip_prefix(WITH).unwrap_or_default().to_owned()
 }

@@ -6,7 +6,7 @@
 
 use super::failure::Failure;
 use coilwind::signals::Inputs;
-use coilwind::variables::{Access, Causality, Value, Variable, table};
+use coilwind::variables::{Access, Causality, Value, Variable, by_name, table};
 use std::path::Path;
 
 /// A column of samples.
@@ -53,12 +53,15 @@ impl Signals {
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
         let header = reader.headers().map_err(|e| whole(e.to_string()))?.clone();
+        if let Some(reason) = foreign(&header) {
+            return Err(whole(reason));
+        }
         let rows = columns(&header, file)?;
 
         let mut samples = vec![Vec::new(); header.len()];
         let mut wrong = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(|e| whole(e.to_string()))?;
+            let record = record.map_err(|e| whole(unequal(&e)))?;
             let line = record.position().map_or(0, csv::Position::line);
             for (column, cell) in record.iter().enumerate() {
                 let allowed =
@@ -113,6 +116,21 @@ impl Signals {
     /// Whether there are samples of an input.
     pub(super) fn has(&self, input: &str) -> bool {
         self.columns.iter().any(|column| column.name == input)
+    }
+
+    /// Time of the first sample, s.
+    pub(super) fn begin(&self) -> f64 {
+        self.time.first().copied().unwrap_or(0.0)
+    }
+
+    /// The inputs of the first sample in words.
+    pub(super) fn first(&self) -> String {
+        let tell = |column: &Column| {
+            let unit = by_name(column.name).map_or("", |variable| variable.unit);
+            format!("{} = {} {unit}", column.name, column.values[0])
+        };
+        let all: Vec<String> = self.columns.iter().map(tell).collect();
+        all.join(", ")
     }
 
     /// Time of the last sample, s.
@@ -170,6 +188,31 @@ impl Signals {
             .map(|pair| pair[0])
             .find(|&jump| jump > time && !is_close(jump, time))
             .unwrap_or(f64::INFINITY)
+    }
+}
+
+/// Where the header is not one of columns with commas between them: what it is, and what would do.
+fn foreign(header: &csv::StringRecord) -> Option<String> {
+    let first = header.get(0)?;
+    let marks = [(';', "semicolons"), ('\t', "tabs")];
+    let (_, name) = marks.into_iter().find(|(mark, _)| first.contains(*mark))?;
+    Some(format!(
+        "{name} stand between its columns; {REMEDY}, such as time,spindle_speed and 0.5,30"
+    ))
+}
+
+/// What helps a table from another country.
+const REMEDY: &str = "save it with commas between columns and points in numbers";
+
+/// What is wrong with a row that is not as long as the header.
+fn unequal(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } if len > expected_len => {
+            format!("{error}; if its numbers have decimal commas, {REMEDY}")
+        }
+        _ => error.to_string(),
     }
 }
 
@@ -400,6 +443,15 @@ mod tests {
                 &["in.csv:3", "backwards", "at least 1 s"],
             ),
             ("time,spindle_speed\n0,1\n1\n", &["in.csv", "line: 3"]),
+            (
+                "time;spindle_speed\n0;1,5\n",
+                &["in.csv: semicolons", "save it with commas", "0.5,30"],
+            ),
+            ("time\tspindle_speed\n0\t1\n", &["in.csv: tabs stand"]),
+            (
+                "time,spindle_speed\n0,5,30,2\n",
+                &["in.csv", "decimal commas, save it with"],
+            ),
         ] {
             let message = error(text);
             for part in parts {

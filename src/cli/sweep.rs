@@ -4,8 +4,9 @@ use super::failure::Failure;
 use super::folder;
 use super::scene::SceneArgs;
 use super::shell::quoted;
+use super::sweep_answer::{Answer, Seen};
 use super::sweep_files as files;
-use super::sweep_find_max::{Known, Look, open_question};
+use super::sweep_find_max::Look;
 use super::sweep_grid::Grid;
 use super::sweep_ledger::Ledger;
 use super::sweep_range::{Range, variable_of};
@@ -40,7 +41,8 @@ pub(super) struct SweepArgs {
     /// Folder of the tables; a sweep that was stopped goes on there
     #[arg(long, value_name = "DIR", default_value = "coilwind-sweep")]
     out: PathBuf,
-    /// Find the highest value of this variable at which no run has a defect, by bisection between A and B of its range
+    /// Find the highest value of this variable at which no run has a defect, by bisection among the N values of its range;
+    /// for the spindle's speed also among values between them, at most 5 rad/s apart
     #[arg(long, value_name = "NAME")]
     find_max: Option<String>,
     /// Overwrite the sweep that the folder holds
@@ -49,7 +51,7 @@ pub(super) struct SweepArgs {
     /// Runs at a time; 0: one a core. Results do not depend on it
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
-    /// No progress, no closing words; errors only
+    /// No progress, no closing words; errors and the answer of --find-max only
     #[arg(long)]
     quiet: bool,
 }
@@ -79,7 +81,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         .map_err(|e| Failure::sweep(format!("--threads {}: {e}", args.threads)))?;
     let mut work = Work {
         before: ledger.count(),
-        open: None,
+        answer: None,
         ledger,
         bar: bar(args.quiet),
         stop: stop_flag(),
@@ -100,9 +102,14 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             command: again(),
         });
     }
-    let open = work.open.take().map_or(Ok(()), Err);
+    let answer = work.answer.take();
+    if let Some(answer) = &answer {
+        answer.write(&args.out).map_err(stuck)?;
+    }
+    let answer = answer.as_ref().map(Answer::words).transpose();
     if args.quiet {
-        return open;
+        // A result is no progress.
+        return answer?.map_or(Ok(()), |words| print(&format!("{words}\n")));
     }
     let total = work.ledger.count();
     let failed = work
@@ -123,6 +130,10 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             "warning: in {unjudged} of {total} runs no turn came to rest beside another, so nothing could be compared; wind more turns with --set spindle.turns=N"
         );
     }
+    let found = match &answer {
+        Ok(Some(words)) => format!("{words}\n{ON_TRUST}"),
+        _ => String::new(),
+    };
     let map = match mapped {
         true => format!(
             "map: {}, {}\n",
@@ -132,12 +143,12 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         false => String::new(),
     };
     print(&format!(
-        "{told}{total} runs, {} of them new; {defects} with a defect, {failed} that the solver gave up\ntables: {} (a row a run), {} (a row a point)\n{map}",
+        "{told}{found}{total} runs, {} of them new; {defects} with a defect, {failed} that the solver gave up\ntables: {} (a row a run), {} (a row a point)\n{map}",
         total - work.before,
         args.out.join(files::ROWS).display(),
         args.out.join(files::STATISTICS).display(),
     ))?;
-    open
+    answer.map(drop)
 }
 
 /// A failure on the way, with what to do where a file could not be written.
@@ -176,8 +187,8 @@ struct Work {
     stop: Arc<AtomicBool>,
     /// runs that were there
     before: usize,
-    /// why `--find-max` has no answer
-    open: Option<Failure>,
+    /// of `--find-max`, at its end
+    answer: Option<Answer>,
 }
 
 impl Work {
@@ -194,63 +205,31 @@ impl Work {
         Ok(told)
     }
 
-    /// Looks for the highest value without a defect; tells it with what was looked at.
+    /// Looks for the highest value without a defect; tells what was looked at.
     fn find_max(&mut self) -> Result<String, Failure> {
         let points = self.grid.points();
         // those of the bisection, and one at the lowest value
         let looks = (points + 1).next_power_of_two().ilog2() + 1;
         self.bar
             .set_length(u64::from(looks) * u64::from(self.grid.members));
-        let mut told = String::new();
-        let limit = find_max::bisect(points, |point| self.look(point, &mut told))?;
+        let (mut told, mut seen) = (String::new(), Vec::new());
+        let limit = find_max::bisect(points, |point| self.look(point, &mut told, &mut seen))?;
         let lowest = match (limit.free, limit.unknown) {
-            (2.., None) => self.look(0, &mut told)?,
+            (2.., None) => self.look(0, &mut told, &mut seen)?,
             _ => Look::Free,
         };
         let range = &self.grid.ranges[0];
-        let (name, value) = (&range.name, |index: usize| range.value(index as u32));
-        if let Some((index, look)) = limit.unknown {
-            let known = Known {
-                free: limit.free.checked_sub(1).map(value),
-                defect: (limit.end < points).then(|| value(limit.end)),
-            };
-            self.open = open_question(name, value(index), look, &known);
-            return Ok(told);
-        }
-        if let Look::Unknown { .. } = lowest {
-            let known = Known {
-                free: Some(value(limit.free - 1)),
-                defect: (limit.end < points).then(|| value(limit.end)),
-            };
-            self.open = open_question(name, value(0), lowest, &known);
-            return Ok(told);
-        }
-        told += &match limit.free {
-            n if lowest == Look::Defect => format!(
-                "{name} = {} is free of defects and {}, the lowest, is not: those without a defect are a band; a sweep without --find-max shows where it begins and ends\n",
-                value(n - 1),
-                value(0)
-            ),
-            0 => format!(
-                "no value of {name} is free of defects: {} is not; try a lower bracket\n",
-                value(0)
-            ),
-            n if n == points => format!(
-                "{name} = {} and {}, the ends of the bracket, are free of defects; try a higher one\n{ON_TRUST}",
-                value(n - 1),
-                value(0)
-            ),
-            n => format!(
-                "{name} = {} is the highest value without a defect; {} is not free of them\n{ON_TRUST}",
-                value(n - 1),
-                value(n)
-            ),
-        };
+        self.answer = Some(Answer::new(range, &limit, lowest, seen));
         Ok(told)
     }
 
-    /// Winds the runs of a point, adds its line to what is `told`, and says what they show.
-    fn look(&mut self, point: usize, told: &mut String) -> Result<Look, Failure> {
+    /// Winds the runs of a point, adds its line to what is `told` and its look to what is `seen`, and says what they show.
+    fn look(
+        &mut self,
+        point: usize,
+        told: &mut String,
+        seen: &mut Vec<Seen>,
+    ) -> Result<Look, Failure> {
         let runs = self.grid.runs_at(point);
         self.wind(runs.clone())?;
         *told += &self.line(point).unwrap_or_default();
@@ -259,14 +238,17 @@ impl Work {
             .filter_map(|run| self.ledger.row(run))
             .collect();
         // An interrupted look says nothing, and the sweep tells of its stop.
-        Ok(match rows.len() < runs.len() {
+        let look = match rows.len() < runs.len() {
             true => Look::Unknown {
                 unjudged: 0,
                 failed: 0,
                 of: runs.len(),
             },
             false => Look::at(&rows),
-        })
+        };
+        let value = self.grid.ranges[0].value(point as u32);
+        seen.push(Seen::new(value, runs.len(), look));
+        Ok(look)
     }
 
     /// Winds those of these runs that are not there, as many at a time as there are threads.

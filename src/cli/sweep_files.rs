@@ -11,7 +11,10 @@ pub(super) const MAP: &str = "map.svg";
 /// The process map as a page.
 pub(super) const PAGE: &str = "map.html";
 
+/// What `--find-max` found, or why it found nothing.
+pub(super) const ANSWER: &str = "find_max.json";
+
 /// Those by which a folder is known to hold a sweep.
 pub(super) const SIGNS: [&str; 2] = [PLAN, ROWS];
 /// All of them.
-pub(super) const ALL: [&str; 5] = [PLAN, ROWS, STATISTICS, MAP, PAGE];
+pub(super) const ALL: [&str; 6] = [PLAN, ROWS, STATISTICS, MAP, PAGE, ANSWER];

@@ -3,14 +3,15 @@
 use super::failure::Failure;
 use super::sweep_range::Range;
 use super::sweep_row::Row;
+use serde::Serialize;
 
-/// Steps in which values of these variables are told: the spindle's is what a drive can be set to.
+/// The drive of a spindle is set in steps of about 5 rad/s: bisection chooses among values at most so far apart.
 const STEPS: [(&str, f64); 2] = [
     ("spindle.speed", 5.0),
     ("spindle.speed_rpm", 5.0 * 30.0 / std::f64::consts::PI),
 ];
 
-/// The values that bisection chooses from: A to B in steps of 5 rad/s for the spindle's speed, else in N parts.
+/// The values that bisection chooses from: those of the range, and for the spindle's speed more between them.
 ///
 /// # Errors
 /// Where there is not exactly one range, of this variable and with a length.
@@ -30,12 +31,12 @@ pub(super) fn candidates(name: &str, ranges: &[Range]) -> Result<Range, Failure>
         return Err(refuse("the bracket is a single value"));
     }
     let step = STEPS.iter().find(|(known, _)| *known == name);
-    let step = step.map_or((range.to - range.from) / f64::from(range.count), |s| s.1);
-    Ok(range.in_steps_of(step))
+    Ok(step.map_or_else(|| range.clone(), |(_, step)| range.refined_to(*step)))
 }
 
 /// What a look at a value says.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "look", rename_all = "snake_case")]
 pub(super) enum Look {
     /// every run ended, was judged, and has no defect
     Free,
@@ -99,45 +100,6 @@ pub(super) fn bisect<E>(
     Ok(Limit { free, end, unknown })
 }
 
-/// Values of which bisection knows something.
-pub(super) struct Known {
-    /// the highest that is free of defects
-    pub(super) free: Option<f64>,
-    /// the lowest with a defect
-    pub(super) defect: Option<f64>,
-}
-
-/// Why there is no highest value, and what to do; `None` where the look says enough.
-pub(super) fn open_question(name: &str, value: f64, look: Look, known: &Known) -> Option<Failure> {
-    let Look::Unknown {
-        unjudged,
-        failed,
-        of,
-    } = look
-    else {
-        return None;
-    };
-    let what = match failed {
-        0 => format!(
-            "is not judged: in {unjudged} of {of} runs no turn came to rest beside another; wind more turns with --set spindle.turns=N"
-        ),
-        _ => format!(
-            "failed: the solver gave up {failed} of {of} runs, and column reason of sweep.csv says why; leave the value out with another bracket, or wind with a smaller solver.tolerance"
-        ),
-    };
-    let up_to = known.free.map(|free| format!("{free} is free of defects"));
-    let from = known.defect.map(|defect| format!("{defect} has some"));
-    let known: Vec<String> = up_to.into_iter().chain(from).collect();
-    let known = match known.is_empty() {
-        true => "nothing is known of other values".to_owned(),
-        false => known.join(" and "),
-    };
-    Some(Failure::SweepOpen {
-        reason: format!("no highest value of {name} was found: {value} {what}; {known}"),
-        failed: failed > 0,
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -190,12 +152,13 @@ mod tests {
     }
 
     #[test]
-    fn the_speed_is_told_to_5_rad_per_s_and_others_to_a_part() {
+    fn the_values_are_those_of_a_sweep_and_those_of_the_speed_lie_5_rad_per_s_apart() {
         let range = |text| vec![Range::parse(text).unwrap()];
         let speeds = candidates("spindle.speed", &range("spindle.speed=100:500:2")).unwrap();
         assert_eq!((speeds.count, speeds.value(1)), (81, 105.0));
-        let tensions = range("tensioner.tension=5:25:10");
+        let tensions = range("tensioner.tension=5:25:11");
         let tensions = candidates("tensioner.tension", &tensions).unwrap();
+        // as many as a sweep takes
         assert_eq!((tensions.count, tensions.value(1)), (11, 7.0));
         let refused = candidates("spindle.speed", &range("tensioner.tension=5:25:10"));
         let told = refused.unwrap_err().to_string();

@@ -2,7 +2,7 @@
 
 use super::failure::Failure;
 use super::folder;
-use super::sweep_files::{MAP, PAGE, PLAN, ROWS, STATISTICS};
+use super::sweep_files::{ALL, PLAN, ROWS, STATISTICS};
 use super::sweep_grid::Grid;
 use super::sweep_row::{COLUMNS, Row, Rows};
 use super::sweep_statistics as statistics;
@@ -60,7 +60,7 @@ impl Ledger {
         }
         let hold = hold(directory, &path)?;
         if !goes_on {
-            for name in [ROWS, STATISTICS, MAP, PAGE] {
+            for name in ALL.into_iter().filter(|name| *name != PLAN) {
                 let path = directory.join(name);
                 if path.is_file() {
                     fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;

@@ -1,11 +1,14 @@
 //! `map.html`: the process map of a sweep over two variables as a page, with the runs behind every cell.
 
 use super::failure::Failure;
+use super::members::rounded;
 use super::sweep_files;
 use super::sweep_grid::Grid;
 use super::sweep_row::{Row, Rows};
 use super::sweep_statistics as statistics;
 use coilwind::output::write_whole_bytes;
+use coilwind::settings::Origin;
+use coilwind::variables::{Access, Variable, table};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -52,7 +55,79 @@ fn data(grid: &Grid, rows: &Rows) -> Value {
             "runs": runs,
         }))
     });
-    json!({ "x": axis(x), "y": axis(y), "cells": cells.collect::<Vec<_>>() })
+    let cells = cells.collect::<Vec<_>>();
+    json!({ "x": axis(x), "y": axis(y), "cells": cells, "facts": facts(grid), "settings": settings(grid) })
+}
+
+/// What was wound, in pairs of name and words.
+fn facts(grid: &Grid) -> Vec<[String; 2]> {
+    let base = grid.base();
+    let mm = |length: f64| format!("{} mm", rounded(1e3 * length, 9));
+    let core = match base.core.shape.as_str() {
+        "cylinder" => format!("cylinder, radius {}", mm(base.core.radius)),
+        "mesh" => format!("mesh, {}", base.core.file),
+        shape => format!(
+            "{shape}, {} x {}, corner radius {}",
+            mm(base.core.width_x),
+            mm(base.core.height_z),
+            mm(base.core.corner_radius)
+        ),
+    };
+    // A base value of what is swept would be taken for that of every cell.
+    let swept = |room: &str| -> String {
+        let names = grid.ranges.iter().map(|range| range.variable());
+        let names = names.filter(|name| name.starts_with(room));
+        names.map(|name| format!("; {name} is swept")).collect()
+    };
+    let ensemble = match grid.members {
+        1 => "1 run a point".to_owned(),
+        n => format!("{n} runs a point, the nozzle up to half a wire nearer and farther"),
+    };
+    [
+        ("scene", base.name.clone()),
+        ("core", core + &swept("core.")),
+        (
+            "wire",
+            format!(
+                "{}, {}{}",
+                base.wire.material,
+                mm(base.wire.diameter),
+                swept("wire.")
+            ),
+        ),
+        ("ensemble", ensemble),
+        (
+            "solver.tolerance",
+            format!("{:e} m{}", base.solver.tolerance, swept("solver.tolerance")),
+        ),
+        ("version", format!("coilwind {}", env!("CARGO_PKG_VERSION"))),
+    ]
+    .map(|(name, words)| [name.to_owned(), words])
+    .into()
+}
+
+/// Every setting that the scene or `--set` gives and the sweep does not: name, value, unit, and which of the two gave it.
+fn settings(grid: &Grid) -> Vec<[String; 4]> {
+    let base = grid.base();
+    let swept = |name: &str| grid.ranges.iter().any(|range| range.variable() == name);
+    let row = |variable: &Variable| {
+        let Access::Parameter { get, .. } = variable.access else {
+            return None;
+        };
+        let by = match base.origin(variable.name) {
+            Origin::Set => "--set",
+            Origin::File { .. } => "scene",
+            Origin::Default | Origin::LeftOut { .. } => return None,
+        };
+        let unit = if variable.unit == "1" {
+            ""
+        } else {
+            variable.unit
+        };
+        let words = [variable.name, &get(base).to_string(), unit, by];
+        (!swept(variable.name)).then(|| words.map(str::to_owned))
+    };
+    table().iter().filter_map(row).collect()
 }
 
 /// A row without its processor time: the page does not depend on the machine.

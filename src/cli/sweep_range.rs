@@ -74,21 +74,28 @@ impl Range {
         variable_of(&self.name)
     }
 
+    /// The unit of its values; empty where the name carries it.
+    pub(super) fn unit(&self) -> &'static str {
+        by_name(&self.name).map_or("", |variable| variable.unit)
+    }
+
     /// What its axis is called: the name, with the unit where the name does not carry it.
     pub(super) fn title(&self) -> String {
-        let unit = by_name(&self.name).map_or("1", |variable| variable.unit);
-        match unit {
+        match self.unit() {
             "" | "1" => self.name.clone(),
             unit => format!("{} [{unit}]", self.name),
         }
     }
 
-    /// The same range in steps of `step` or a little less.
-    pub(super) fn in_steps_of(&self, step: f64) -> Self {
-        // A range of whole steps keeps their number in spite of rounding.
-        let steps = ((self.to - self.from) / step - 1e-9).ceil();
+    /// The same range with more values between its own, so that neighbours lie at most `step` apart.
+    pub(super) fn refined_to(&self, step: f64) -> Self {
+        let parts = self.count.saturating_sub(1).max(1);
+        let length = (self.to - self.from) / f64::from(parts);
+        // A part of whole steps keeps their number in spite of rounding.
+        let steps = (length / step - 1e-9).ceil().max(1.0);
+        let most = f64::from((MOST - 1) / parts).max(1.0);
         Self {
-            count: steps.clamp(1.0, f64::from(MOST - 1)) as u32 + 1,
+            count: parts * steps.min(most) as u32 + 1,
             ..self.clone()
         }
     }
@@ -148,11 +155,24 @@ mod tests {
     }
 
     #[test]
-    fn steps_are_at_most_as_long_as_asked_for() {
-        let range = Range::parse("x=100:500:2").unwrap();
-        assert_eq!(range.in_steps_of(5.0).count, 81);
-        assert_eq!(range.in_steps_of(300.0).count, 3);
-        assert_eq!(range.in_steps_of(1e9).count, 2);
+    fn a_refined_range_keeps_its_values_and_has_no_longer_steps_than_asked_for() {
+        let range = |text| Range::parse(text).unwrap();
+        for (text, step, count) in [
+            ("x=100:500:2", 5.0, 81),
+            ("x=100:500:2", 300.0, 3),
+            ("x=100:500:2", 1e9, 2),
+            ("x=100:500:401", 5.0, 401),
+            ("x=100:112:3", 5.0, 5),
+            ("x=0:1e9:2", 1e-3, 100_000),
+        ] {
+            let (asked, refined) = (range(text), range(text).refined_to(step));
+            assert_eq!(refined.count, count, "{text} in steps of {step}");
+            let values: Vec<f64> = (0..refined.count).map(|k| refined.value(k)).collect();
+            assert!(
+                (0..asked.count).all(|k| values.contains(&asked.value(k))),
+                "{text}"
+            );
+        }
     }
 
     #[test]

@@ -115,14 +115,15 @@ def test_a_setting_far_off_is_no_fit(calibrate, short, tmp_path):
 
 def test_a_solution_that_is_its_start_and_leaves_everything_is_no_fit(root, monkeypatch):
     monkeypatch.syspath_prepend(root / "scripts")
-    import calibrate
+    import calibration_curves as curves
+    import calibration_fit as fits
     import numpy as np
 
     angle = np.linspace(0.0, 6.0, 60)
-    curve = calibrate.Curve("measured.csv", "tension_N", "tension", 1.0, angle, 15.0 + np.sin(angle))
+    curve = curves.Curve("measured.csv", "tension_N", "tension", 1.0, angle, 15.0 + np.sin(angle))
 
     def nothing(computed, gain):
-        return calibrate.explains_nothing(calibrate.Answer(None, None, None, 58, [computed], gain), [curve])
+        return fits.explains_nothing(fits.Answer(None, None, None, 58, [computed], 1.0, gain), [curve])
 
     assert "no better than its start" in nothing(15.0 - np.sin(angle), 1.0)
     # It came closer and is far off.
@@ -204,6 +205,7 @@ def test_a_fit_that_ends_at_an_end_of_its_range_is_none(calibrate, measured, tmp
         ("time,tension_N\n0.3,1\n0.4,1\n", [], "has 0 columns of the angle; give one, named angle_deg, angle_rad, turns"),
         ("turns,tension_N\n0.3,15\n0.4\n", [], ":3 has 1 cells, the header has 2"),
         ("turns,tension_N\n0.3,15\n0.4,much\n", [], ":3: tension_N is 'much', which is not a number"),
+        ("turns;tension_N\n0,3;15\n0,4;15\n", [], "has semicolons between columns; save it with commas between columns and points in numbers"),
         ("turns,tension_N\n0.4,15\n0.3,15\n", [], "turns has to rise from row to row"),
         ("turns,tension_N\n", [], "holds no measurement"),
         ("turns,tension_N\n0.3,15\n", [], "1 measured values are too few for 1 parameters"),

@@ -118,7 +118,7 @@ def spoilt(run, tmp_path):
 @pytest.mark.parametrize(
     ("name", "size", "words", "complaint"),
     [
-        ("coil.vtp", 20_000, [], "coil.vtp is not whole (it ends too early); begin again with: coilwind run {folder}/scene.toml --out {folder} --force"),
+        ("coil.vtp", 20_000, [], "coil.vtp is not whole (it ends too early); begin again with: coilwind run {folder}/scene.toml --out {folder} --frames 3 --force"),
         ("core.vtp", 0, [], "core.vtp is not whole (it ends too early); begin again with"),
         (
             "frames/frame_0002.vtp", 2000, ["--film", "{folder}/film.gif"],
@@ -132,6 +132,15 @@ def test_a_file_that_is_cut_short_is_told_in_a_line(name, size, words, complaint
     code, said = script("scripts/render.py", folder, *(word.format(folder=folder) for word in words), python=RENDER)
     assert code == 2 and complaint.format(folder=folder) in said and len(said.splitlines()) == 1, said
     assert not (folder / "film.gif").exists()
+
+
+def test_the_command_that_begins_again_has_the_options_of_the_run(script, tmp_path):
+    folder = tmp_path / "two words"
+    folder.mkdir()
+    options = "--inputs '/data/in puts.csv' --step 0.0005 --frames 7"
+    (folder / "scene.toml").write_text(f"# wound with: {options}\npreset = 'fig8'\n", encoding="utf-8")
+    code, said = script("scripts/render.py", folder, python=RENDER)
+    assert code == 2 and said.endswith(f"begin again with: coilwind run '{folder}/scene.toml' --out '{folder}' {options} --force\n"), said
 
 
 def test_a_frame_with_damage_inside_is_told_in_a_line(spoilt, script):

@@ -1,0 +1,118 @@
+"""Measured curves for scripts/calibrate.py: how they are read, and what is wrong with them."""
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from failure import Mistake
+
+TURN = 2.0 * np.pi
+ANGLES = {"angle_deg": np.radians(1.0), "angle_rad": 1.0, "turns": TURN}
+# Between columns, where tables are not exported as CSV with commas.
+SEPARATORS = {";": "semicolons", "\t": "tabs"}
+LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6}
+UNITS = {
+    "tension": {"N": 1.0, "mN": 1e-3, "cN": 1e-2},
+    "coil_width": LENGTHS,
+    "height": LENGTHS,
+    "resistance": {"ohm": 1.0, "mohm": 1e-3},
+}
+# Measured and computed levels that differ by more than this factor are of other units.
+FOREIGN = 8.0
+# Measured values that each parameter takes, so that noise can be told from a fit.
+LEAST = 5
+
+
+@dataclass
+class Curve:
+    """A measured quantity over the angle of the spindle (rad), in SI units."""
+
+    source: Path
+    column: str
+    quantity: str
+    unit: float
+    angle: np.ndarray
+    values: np.ndarray
+    # standard deviation of the noise
+    sigma: float = 1.0
+    # of the turns of the run
+    share: float = 1.0
+
+
+def read_curves(path):
+    try:
+        with open(path, newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.reader(line for line in file if not line.startswith("#")))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise Mistake(f"{path} cannot be read: {error}") from None
+    if len(rows) < 2:
+        raise Mistake(f"{path} holds no measurement: give a header and a row for each angle")
+    header = [name.strip() for name in rows[0]]
+    if (foreign := next((name for mark, name in SEPARATORS.items() if mark in rows[0][0]), None)) is not None:
+        raise Mistake(f"{path} has {foreign} between columns; save it with commas between columns and points in numbers")
+    angles = [name for name in header if name in ANGLES]
+    if len(angles) != 1:
+        raise Mistake(f"{path} has {len(angles)} columns of the angle; give one, named {', '.join(ANGLES)}")
+    numbers = {name: [] for name in header}
+    for line, row in enumerate(rows[1:], 2):
+        if len(row) != len(header):
+            raise Mistake(f"{path}:{line} has {len(row)} cells, the header has {len(header)}")
+        for name, cell in zip(header, row):
+            try:
+                numbers[name].append(float(cell) if cell.strip() else np.nan)
+            except ValueError:
+                raise Mistake(f"{path}:{line}: {name} is {cell!r}, which is not a number") from None
+    angle = ANGLES[angles[0]] * np.array(numbers.pop(angles[0]))
+    if not np.all(np.diff(angle) > 0.0):
+        raise Mistake(f"{path}: {angles[0]} has to rise from row to row")
+    curves = []
+    for column, values in numbers.items():
+        quantity, _, unit = column.rpartition("_")
+        if quantity not in UNITS:
+            known = ", ".join(f"{name}_{next(iter(units))}" for name, units in UNITS.items())
+            raise Mistake(f"{path}: column {column} is none of {known}")
+        if unit not in UNITS[quantity]:
+            raise Mistake(f"{path}: column {column} has the unit {unit}; {quantity} takes {', '.join(UNITS[quantity])}")
+        factor, values = UNITS[quantity][unit], np.array(values)
+        there = np.isfinite(values)
+        curves.append(Curve(path, column, quantity, factor, angle[there], factor * values[there]))
+    if not curves or any(curve.angle.size == 0 for curve in curves):
+        raise Mistake(f"{path} has a column without a measurement")
+    return curves
+
+
+def columns(path, *names):
+    with open(path, newline="", encoding="utf-8") as file:
+        reader = csv.reader(file)
+        header = next(reader)
+        places = [header.index(name) for name in names]
+        rows = [[float(row[place]) for place in places] for row in reader]
+    return np.array(rows).reshape(-1, len(names)).T
+
+
+def too_few(points, parameters):
+    return Mistake(f"{points} measured values are too few for {parameters} parameters; measure at {LEAST * parameters} angles or more")
+
+
+def check_levels(curves, computed):
+    """A mistake where a measured curve is so far from the first run that its unit must be another."""
+    for curve, values in zip(curves, computed):
+        measured, expected = np.median(np.abs(curve.values)), np.nanmedian(np.abs(values))
+        if expected > 0.0 and not 1.0 / FOREIGN < measured / expected < FOREIGN:
+            raise Mistake(
+                f"{curve.source}: {curve.column} is {measured / expected:.3g} times what the scene gives ({expected / curve.unit:.3g}); "
+                "is its unit the one in its name? If so, give starts nearer to the machine with --fit NAME=VALUE or --set"
+            )
+
+
+def rms(residual):
+    return float(np.sqrt(np.nanmean(residual**2)))
+
+
+def autocorrelation(residual):
+    residual = residual[np.isfinite(residual)]
+    residual = residual - np.mean(residual)
+    power = np.sum(residual**2)
+    return float(np.sum(residual[1:] * residual[:-1]) / power) if power > 0.0 else 0.0

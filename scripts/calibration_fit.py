@@ -1,0 +1,230 @@
+"""Least squares over the parameters of a scene, for scripts/calibrate.py."""
+
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+import response_surface as surfaces
+from calibration_curves import LEAST, autocorrelation, check_levels, rms, too_few
+from failure import Mistake
+
+# Differences of the logarithm of a parameter, both ways: large against what a run's adaptive steps scatter by.
+DIFFERENCE = 0.03
+# How far around a solution is looked for a better one, in the logarithms, and how often.
+LOOKS = (0.01, 0.03, 0.06)
+ROUNDS = 4
+# How often the axes of a response surface are halved where the scene refuses their ends.
+HALVINGS = 4
+# A parameter may go as far from its start, as a factor.
+REACH = 10.0
+# Of the way there, in the logarithm: from here on it is at the end of its range.
+NEAR = 0.99
+# Share of the run's turns: a curve over less is told of.
+SHORT = 0.25
+# Of 1: above it, residuals are not noise, or two parameters cannot be told apart.
+CORRELATED, AUTOCORRELATED = 0.95, 0.5
+# Of the sum of squares: less than this is no gain over the start.
+GAIN = 0.01
+# Rest over variation of a curve from which on a solution is none; one that hardly varies counts as varying by this share of its level.
+FAR_MORE, LEVEL = 3.0, 0.1
+
+
+class Fit:
+    """Least squares over the logarithms of the parameters, relative to where they start."""
+
+    def __init__(self, model, starts, threads):
+        self.model, self.starts = model, np.array(starts)
+        self.pool = ThreadPoolExecutor(threads)
+        self.seen = {}
+
+    def computed(self, points):
+        """Curves at several points at once."""
+        keys = [tuple(point) for point in points]
+        fresh = [key for key in dict.fromkeys(keys) if key not in self.seen]
+        # Kept as they come, so that a fit that is stopped has them.
+        for key in self.pool.map(self.look, fresh):
+            assert key in self.seen
+        return [self.seen[key] for key in keys]
+
+    def look(self, key):
+        self.seen[key] = self.model.wind(self.starts * np.exp(key))
+        return key
+
+    def stop(self):
+        """Ends the runs that go on, and waits for their end."""
+        self.model.stop()
+        self.pool.shutdown(cancel_futures=True)
+
+    def best(self):
+        """The best point so far and its curves; `None` before the first run has ended."""
+        return min(self.seen.items(), key=lambda item: np.sum(self.weighed(item[1]) ** 2), default=None)
+
+    def weighed(self, computed, missing=0.0):
+        """Residuals by their noise; `missing` where a curve has no settled wire to compare with."""
+        pieces = [np.nan_to_num((values - curve.values) / curve.sigma, nan=missing) for curve, values in zip(self.model.curves, computed)]
+        return np.concatenate(pieces)
+
+    def residuals(self, point):
+        return self.weighed(self.computed([point])[0])
+
+    def jacobian(self, point):
+        steps = DIFFERENCE * np.eye(len(point))
+        points = [point + sign * step for step in steps for sign in (1, -1)]
+        found = [self.weighed(computed) for computed in self.computed(points)]
+        return np.column_stack([(found[2 * k] - found[2 * k + 1]) / (2 * DIFFERENCE) for k in range(len(point))])
+
+    def surface(self, centre, axes):
+        """The response surface round a point, along axes that are shortened where the range or the scene ends."""
+        room = np.log(REACH) - np.abs(centre)
+        with np.errstate(divide="ignore"):
+            axes = axes * np.minimum(1.0, np.min(room[:, None] / np.abs(axes), axis=0))
+        for attempt in range(HALVINGS + 1):
+            try:
+                return surfaces.surface(lambda points: [self.weighed(computed, np.nan) for computed in self.computed(points)], centre, axes)
+            except Mistake:
+                if self.model.stopped or attempt == HALVINGS:
+                    raise
+                axes = axes / 2.0
+
+    def solve(self, point):
+        from scipy import optimize
+
+        reach = np.log(REACH)
+        return optimize.least_squares(
+            self.residuals, point, self.jacobian, bounds=(-reach, reach), xtol=2e-3, ftol=1e-5, gtol=1e-10, max_nfev=25
+        )
+
+    def settle(self, found):
+        """Looks past the dips that ringing and adaptive steps leave in the sum of squares: along the axes of the valley."""
+        for _ in range(ROUNDS):
+            _, axes = np.linalg.eigh(found.jac.T @ found.jac)
+            points = [found.x + reach * sign * axis for axis in axes.T for reach in LOOKS for sign in (1, -1)]
+            points = [np.clip(point, -np.log(REACH), np.log(REACH)) for point in points]
+            costs = [0.5 * np.sum(self.weighed(computed) ** 2) for computed in self.computed(points)]
+            best = int(np.argmin(costs))
+            if costs[best] > (1.0 - 1e-3) * found.cost:
+                break
+            found = self.solve(points[best])
+        return found
+
+
+@dataclass
+class Solution:
+    """Where a response surface is lowest: the logarithms, which of them are at an end, and whether the search before it converged."""
+
+    x: np.ndarray
+    active_mask: np.ndarray
+    success: bool
+
+
+@dataclass
+class Answer:
+    """What a fit says: the solution, and standard deviations and correlations of the logarithms."""
+
+    found: object
+    deviation: np.ndarray
+    correlation: np.ndarray
+    freedom: int
+    computed: list
+    # sum of squares of the weighed residuals
+    square: float
+    # that at the start over that at the solution
+    gain: float = 1.0
+
+
+def calibrate(fit):
+    model, parameters = fit.model, len(fit.starts)
+    start = fit.computed([np.zeros(parameters)])[0]
+    check_levels(model.curves, start)
+    if (points := sum(curve.angle.size for curve in model.curves)) < LEAST * parameters:
+        raise too_few(points, parameters)
+    for curve in model.curves:
+        curve.sigma = np.std(curve.values) or 1.0
+    found = fit.settle(fit.solve(np.zeros(parameters)))
+    if len(model.curves) > 1:
+        # Each curve counts by its own noise, which is known once it has been fitted.
+        for curve, values in zip(model.curves, fit.computed([found.x])[0]):
+            curve.sigma = max(rms(values - curve.values), 1e-9 * curve.sigma)
+        found = fit.settle(fit.solve(found.x))
+    # At an end of the range there is no minimum to look at.
+    answer = at_point(fit, found) if ends_of(fit.starts, found) else smooth(fit, found)
+    answer.gain = np.sum(fit.weighed(start) ** 2) / answer.square if answer.square > 0.0 else np.inf
+    return answer
+
+
+def sizes_of(fit):
+    return [curve.angle.size for curve in fit.model.curves]
+
+
+def at_point(fit, found):
+    """What the runs round the solution say."""
+    freedom = np.count_nonzero(found.fun) - found.x.size
+    deviation, correlation = surfaces.spread(fit.jacobian(found.x), found.fun, sizes_of(fit), freedom)
+    return Answer(found, deviation, correlation, freedom, fit.computed([found.x])[0], np.sum(found.fun**2))
+
+
+def smooth(fit, found):
+    """The minimum of response surfaces that begin at the solution and go as far as the interval does."""
+    centre, residual, jacobian = found.x, found.fun, fit.jacobian(found.x)
+    deviation = np.inf
+    for _ in range(surfaces.SURFACES):
+        freedom = np.count_nonzero(residual) - centre.size
+        axes, along = surfaces.valley(jacobian, np.sum(residual**2) / freedom)
+        reach = np.clip(surfaces.WIDE * along, surfaces.LEAST, surfaces.MOST)
+        surface = fit.surface(centre, axes * reach)
+        place = surface.lowest()
+        residual, jacobian = surface.residual(place), surface.jacobian(place) @ np.linalg.inv(surface.axes)
+        move, before = surface.axes @ place, deviation
+        freedom = np.count_nonzero(residual) - centre.size
+        deviation, correlation = surfaces.spread(jacobian, residual, sizes_of(fit), freedom)
+        centre = np.clip(centre + move, -np.log(REACH), np.log(REACH))
+        with np.errstate(invalid="ignore", divide="ignore"):
+            if np.all(np.abs(move) < surfaces.CLOSE * deviation) and np.all(np.abs(np.log(deviation / before)) < surfaces.CLOSE):
+                break
+    solution = Solution(centre, np.zeros(centre.size, int), found.success)
+    return Answer(solution, deviation, correlation, freedom, fit.computed([centre])[0], np.sum(residual**2))
+
+
+def intervals(starts, answer, confidence):
+    """Values of the parameters, and by which share of them the ends of their intervals lie off, as a logarithm."""
+    from scipy import stats
+
+    return np.array(starts) * np.exp(answer.found.x), stats.t.ppf(0.5 + 0.5 * confidence, answer.freedom) * answer.deviation
+
+
+def ends_of(names, found):
+    """The parameters that ended at an end of their range, and which end: there is no minimum within the range."""
+    reach = np.log(REACH)
+    at = {name: x for name, x, active in zip(names, found.x, found.active_mask) if active or abs(x) > NEAR * reach}
+    return {name: "lower" if x < 0.0 else "upper" for name, x in at.items()}
+
+
+def explains_nothing(answer, curves):
+    """Why the solution is no fit: it leaves as much as was measured, which is no noise, and is no better than its start or leaves far more."""
+    left = [curve.values - values for curve, values in zip(curves, answer.computed)]
+    if not all(autocorrelation(rest) > AUTOCORRELATED for rest in left):
+        return None
+    varies = [np.std(curve.values) for curve in curves]
+    if all(rms(rest) > FAR_MORE * max(by, LEVEL * rms(curve.values)) for curve, rest, by in zip(curves, left, varies)):
+        return "what the solution leaves is far more than what was measured varies by"
+    if all(rms(rest) >= by for rest, by in zip(left, varies)) and answer.gain < 1.0 + GAIN:
+        return "the solution is no better than its start, and what it leaves is as large as what was measured"
+    return None
+
+
+def warnings_of(names, answer, curves):
+    found, deviation, correlation, computed = answer.found, answer.deviation, answer.correlation, answer.computed
+    for k, name in enumerate(names):
+        if not deviation[k] < 0.5:
+            yield f"{name} hardly shows in what was measured: measure something else, or leave it out"
+        for other in range(k):
+            if abs(correlation[k, other]) > CORRELATED:
+                yield f"{names[other]} and {name} cannot be told apart (correlation {correlation[k, other]:.2f}): fit one of them"
+    for curve, values in zip(curves, computed):
+        if (along := autocorrelation(curve.values - values)) > AUTOCORRELATED:
+            yield f"what is left of {curve.column} is no noise (autocorrelation {along:.2f}): the scene differs from the machine in something else, and the intervals may be too narrow"
+        if curve.share < SHORT:
+            yield f"{curve.column} is measured over {curve.share:.0%} of the turns of the run: see that the angle is in the unit of its column"
+    if not found.success:
+        yield "the search ended before it converged; start again from these values"

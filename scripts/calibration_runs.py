@@ -1,0 +1,105 @@
+"""Runs of a scene as a measurement would see them, for scripts/calibrate.py."""
+
+import json
+import subprocess
+import tempfile
+import threading
+import tomllib
+from pathlib import Path
+
+import numpy as np
+
+from calibration_curves import TURN, columns
+from failure import Mistake
+
+# Share of measured heights that has to lie on settled wire.
+SETTLED = 0.8
+# Share of the run's turns: a curve over less has another unit of the angle (1/57).
+FOREIGN_ANGLE = 0.04
+
+
+class Model:
+    """Runs of the scene, as measured."""
+
+    def __init__(self, command, scene, sets, names, curves, folder):
+        self.command, self.scene, self.sets = command, scene, sets
+        self.names, self.curves, self.folder = names, curves, Path(folder)
+        self.runs = 0
+        self.going, self.stopped, self.lock = set(), False, threading.Lock()
+        listed = subprocess.run([command, "variables", "--json"], capture_output=True, text=True, check=True).stdout
+        self.table = {row["name"]: row for row in json.loads(listed)}
+
+    def wind(self, values):
+        """Computed curves with these values of the parameters."""
+        out = self.run(values)
+        return [self.compare(curve, out) for curve in self.curves]
+
+    def settings(self):
+        """The scene with its settings, as a run leaves it."""
+        return tomllib.loads((self.run([]) / "scene.toml").read_text(encoding="utf-8"))
+
+    def run(self, values):
+        """The folder of a run."""
+        out = Path(tempfile.mkdtemp(dir=self.folder))
+        words = [f"{name}={value!r}" for name, value in zip(self.names, map(float, values))]
+        words = [word for setting in [*self.sets, *words] for word in ("--set", setting)]
+        files = ["--no-geometry", "--no-report", "--quiet", "--force", "--out", out]
+        code, said = self.start([self.command, "run", self.scene, *words, *files])
+        self.runs += 1
+        if code:
+            reason = (said.strip().splitlines() or ["the run failed"])[0]
+            raise Mistake(f"with {', '.join(words[1::2]) or self.scene}: {reason}")
+        return out
+
+    def start(self, line):
+        """Exit code of a command and what it said. `stop` ends it."""
+        with self.lock:
+            if self.stopped:
+                raise Mistake("stopped")
+            # In a session of its own: Ctrl-C on a terminal would have it write its results, which nobody reads.
+            child = subprocess.Popen(line, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True)
+            self.going.add(child)
+        try:
+            said = child.communicate()[1]
+        except BaseException:
+            child.kill()
+            raise
+        with self.lock:
+            self.going.remove(child)
+        return child.returncode, said
+
+    def stop(self):
+        """Ends the runs that go on; none begins after it."""
+        with self.lock:
+            self.stopped = True
+            for child in self.going:
+                child.kill()
+
+    def compare(self, curve, out):
+        if curve.quantity == "height":
+            angle, values = columns(out / "stations.csv", "angle", "height")
+        else:
+            column = {"tension": "wire_tension", "coil_width": "coil_width", "resistance": "wire_length"}[curve.quantity]
+            angle, values = columns(out / "history.csv", "spindle_angle", column)
+            if curve.quantity == "resistance":
+                product = json.loads((out / "summary.json").read_text(encoding="utf-8"))["product"]
+                if not product["wire_length_m"]:
+                    raise Mistake("no wire has settled; wind more turns to compare resistances")
+                values = values * product["resistance_ohm"] / product["wire_length_m"]
+        angle = np.abs(angle)
+        covered = (curve.angle >= angle[0] - 1e-6) & (curve.angle <= angle[-1] + 1e-6) if angle.size > 1 else np.zeros(1, bool)
+        # How much wire settles depends on the parameters a little; what has not counts for nothing.
+        if np.mean(covered) < (SETTLED if curve.quantity == "height" else 1.0):
+            low, high = (angle[0], angle[-1]) if angle.size else (0.0, 0.0)
+            raise Mistake(
+                f"{curve.source}: {curve.column} is measured from {curve.angle[0] / TURN:.2f} to {curve.angle[-1] / TURN:.2f} turns, "
+                f"{'settled wire of the run goes' if curve.quantity == 'height' else 'the run goes'} from {low / TURN:.2f} to "
+                f"{high / TURN:.2f}; wind more with --set spindle.turns=N, or cut the file"
+            )
+        curve.share = np.ptp(curve.angle) / np.ptp(angle)
+        if curve.share < FOREIGN_ANGLE:
+            raise Mistake(
+                f"{curve.source}: {curve.column} is measured over {np.ptp(curve.angle) / TURN:.3g} of the {np.ptp(angle) / TURN:.3g} turns of the run; "
+                "is the angle in the unit of its column (angle_deg, angle_rad, turns)? If so, wind less with --set spindle.turns=N"
+            )
+        return np.where(covered, np.interp(curve.angle, angle, values), np.nan)
