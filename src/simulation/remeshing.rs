@@ -7,7 +7,8 @@ use crate::math::turn_about_y;
 use crate::math::{polar_angle, wrap_to_pi};
 use crate::measure::DefectKind;
 use crate::scene::LiveContact;
-use std::f64::consts::{PI, TAU};
+use crate::system::HALF_TURN;
+use std::f64::consts::TAU;
 
 /// The live wire never gets shorter than this many nodes: clamp, nozzle and two between.
 const FEWEST_NODES: usize = 4;
@@ -30,9 +31,6 @@ const WELL_BENT: f64 = 4.0 * BENT;
 /// turn back.
 const WHOLE: f64 = 0.85;
 
-/// Turning angle of a node from which on its direction is not to be trusted, rad.
-const HALF_TURN: f64 = 0.9 * PI;
-
 /// Wire that has passed the nozzle over what core and way can have taken up at most, from which on it runs away.
 const RUNAWAY: f64 = 2.0;
 
@@ -41,6 +39,7 @@ impl Winding {
         let look = self.stepper.is_implicit() || self.run.steps.is_multiple_of(REMESH_STEPS);
         if look {
             self.check_health()?;
+            self.sys.turn_folded_clamp();
         }
         if self.stepper.is_implicit() {
             self.follow_returning_wire();
