@@ -119,7 +119,8 @@ pub struct Feed {
 impl Feed {
     /// At rest with the line loaded to `tension`.
     pub fn at_rest(spec: &FeedSpec, tension: f64) -> Self {
-        let paid = if spec.line_stiffness.is_finite() {
+        // (without a spring the tensioner lets go what passes the nozzle)
+        let paid = if spec.has_spring() {
             -tension / spec.line_stiffness
         } else {
             0.0

@@ -43,12 +43,17 @@ impl System {
         }
     }
 
-    /// Unstretched length that came into the edge at the nozzle, m, where the edge is `length` (m) long, pulls by `tension`
-    /// (N), and as elastic wire would have grown by `grown`, m.
+    /// Unstretched length that came into the edge at the nozzle, m, where the edge is `length` (m) long. Elastic wire would have
+    /// grown by `grown`, m, and pull by `tension`, N, which rises by `slope`, N/m, with wire that came.
     ///
     /// Wire that yields to a tension is longer under it, so less of it came. A step takes the edge as elastic; taken over
     /// as it is, the edge would yield at its present length and pull less than the step has found.
-    pub(crate) fn grown_with_yield(&self, length: f64, grown: f64, tension: f64) -> f64 {
+    pub(crate) fn grown_with_yield(
+        &self,
+        length: f64,
+        grown: f64,
+        (tension, slope): (f64, f64),
+    ) -> f64 {
         let rod = &self.state.rod;
         let last = rod.edges() - 1;
         let (rest, own) = (rod.rest[last], rod.stretch[last]);
@@ -59,12 +64,16 @@ impl System {
         // (what came is a small part of the edge: its share is right to many digits at the second look)
         for _ in 0..3 {
             let edge = mixed(own, rest, coming, found);
-            let over = tension - law.limit - edge.rise;
+            let pull = tension + slope * (found - grown);
+            let over = pull - law.limit - edge.rise;
             if over <= 0.0 || law.hardening <= 0.0 {
                 return found;
             }
-            let strain = edge.strain + over / law.hardening + tension / law.modulus;
-            found = length / (1.0 + strain) - rest;
+            let stretch = 1.0 + edge.strain + over / law.hardening + pull / law.modulus;
+            // Newton's method: less wire has to pull less, which a tensioner's mass makes steep in short steps
+            let off = rest + found - length / stretch;
+            let softer = 1.0 / law.hardening + 1.0 / law.modulus;
+            found -= off / (1.0 + slope * softer * length / (stretch * stretch));
         }
         found
     }

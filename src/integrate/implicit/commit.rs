@@ -160,9 +160,13 @@ fn feed(
     };
     let last = sys.state.rod.edges() - 1;
     let length = (q[last + 1] - q[last]).norm();
-    let grown = nozzle.rest(length) - sys.state.rod.rest[last];
-    let grown = sys.grown_with_yield(length, grown, nozzle.stretched(length).tension);
-    let line = nozzle.line(length);
+    let elastic = nozzle.rest(length) - sys.state.rod.rest[last];
+    let [line, slope] = nozzle.line(length);
+    let pull = nozzle.stretched(length).tension;
+    // (friction at the exit is a factor of both)
+    let steep = if line > 0.0 { slope * pull / line } else { 0.0 };
+    let grown = sys.grown_with_yield(length, elastic, (pull, steep));
+    let line = line + slope * (grown - elastic);
     let set = sys.set_tension_after(step.share * step.h);
     let passed = (grown, line, set);
     let next = advance(spec, feed, &sys.state.past, step, passed, &sys.line_yield());

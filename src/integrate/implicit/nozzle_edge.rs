@@ -130,11 +130,14 @@ impl NozzleEdge {
         }
     }
 
-    /// The line's tension when the edge is `length` long, N.
-    pub(super) fn line(&self, length: f64) -> f64 {
+    /// The line's tension when the edge is `length` long, N, and its rise with wire that passes, N/m (0: friction lets none pass).
+    pub(super) fn line(&self, length: f64) -> [f64; 2] {
         match self.way(length) {
-            Way::Held => self.line_at_start(),
-            way @ (Way::Out(grip) | Way::Back(grip)) => self.free(length, way).tension / grip,
+            Way::Held => [self.line_at_start(), 0.0],
+            way @ (Way::Out(grip) | Way::Back(grip)) => [
+                self.free(length, way).tension / grip,
+                self.pieces[self.balanced(length, way).1].b,
+            ],
         }
     }
 
@@ -293,8 +296,7 @@ fn pieces_of(chain: &Chain, ahead: f64) -> ([Piece; MOST_CORNERS], usize) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::scheme::Scheme;
-    use super::super::tensioner::advance;
+    use super::super::{scheme::Scheme, tensioner::advance};
     use super::*;
 
     fn setting() -> (FeedSpec, Feed, Past, StepFormula) {
@@ -367,7 +369,7 @@ mod tests {
         let s = edge.stretched(length);
         assert!((s.tension - ea * (length / y - 1.0 - 1e-4)).abs() < 1e-6);
         // the line's own law, step by step
-        let line = edge.line(length);
+        let [line, _] = edge.line(length);
         assert!((s.tension / line - 1.1).abs() < 1e-12);
         let next = advance(
             &spec,
@@ -429,12 +431,12 @@ mod tests {
         for share in [1.0 / grip + 1e-6, 1.0, grip - 1e-6] {
             assert_eq!(edge.rest(at(share * line)), 3e-3);
             assert!((edge.stretched(at(share * line)).tension - share * line).abs() < 1e-9);
-            assert_eq!(edge.line(at(share * line)), line);
+            assert_eq!(edge.line(at(share * line))[0], line);
         }
         assert!(edge.rest(at(2.0 * grip * line)) > 3e-3);
         assert!(edge.rest(at(0.2 * line)) < 3e-3);
         let out = at(3.0 * line);
-        assert!((edge.stretched(out).tension / edge.line(out) - grip).abs() < 1e-12);
+        assert!((edge.stretched(out).tension / edge.line(out)[0] - grip).abs() < 1e-12);
         let mut before = edge.stretched(at(-line)).tension;
         let h = 1e-10;
         for k in 0..400 {
@@ -558,7 +560,7 @@ mod tests {
             if s.tension == 0.0 {
                 continue;
             }
-            let (rest, line) = (edge.rest(length), edge.line(length));
+            let (rest, line) = (edge.rest(length), edge.line(length)[0]);
             seen[edge.balanced(length, edge.way(length)).1] += 1;
             let passed = (rest - 3e-3, line, 15.0);
             let next = advance(&spec, &feed, &past, &step, passed, &yields);
