@@ -3,7 +3,7 @@
 mod common;
 
 use coilwind::measure::Verdict;
-use coilwind::signals::Inputs;
+use coilwind::signals::{Inputs, Outputs};
 use coilwind::simulation::Simulation;
 use common::fig8;
 
@@ -268,7 +268,7 @@ fn a_break_is_within_the_extremes_of_its_step() {
         run.step_beyond(true);
         run.advance_profile(0.03).expect("goes on");
         let pulled = Inputs {
-            tension_setpoint: 300.0,
+            tension_setpoint: 100.0,
             ..run.inputs()
         };
         while !run.outputs().defect_break {
@@ -306,7 +306,7 @@ fn wire_that_parted_carries_no_tension_from_there_on() {
     let mut run = Simulation::new(&fig8(&[("spindle.speed", "60")])).expect("starts");
     run.advance_profile(0.05).expect("goes on");
     let pulled = Inputs {
-        tension_setpoint: 300.0,
+        tension_setpoint: 200.0,
         ..run.inputs()
     };
     let mut before = run.centreline();
@@ -324,6 +324,11 @@ fn wire_that_parted_carries_no_tension_from_there_on() {
         assert!(wire.tension[..wire.frozen].iter().all(|t| *t > 1.0));
         run.advance(pulled, 1e-3).expect("goes on");
         assert_eq!(run.outputs().wire_tension, 0.0);
+        // the place of the last lay-on goes round with the core
+        let (one, other) = (&o, run.outputs());
+        let turned = |o: &Outputs| o.layon_x.atan2(o.layon_z) - o.spindle_angle;
+        assert!((turned(one) - turned(other)).abs() < 1e-9);
+        assert!(other.spindle_angle > one.spindle_angle + 0.05);
     }
 }
 

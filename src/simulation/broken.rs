@@ -1,7 +1,7 @@
 //! Wire that has parted: the machine goes on, the wire stays as it was.
 
 use super::Winding;
-use crate::math::{Spin, turn_about_y};
+use crate::math::{Spin, V3, turn_about_y};
 use crate::system::Drive;
 
 impl Winding {
@@ -58,7 +58,12 @@ impl Winding {
         self.raise_flags();
         let torque = -self.torque_of_inertia();
         let o = &mut self.run.outputs;
-        o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
+        let angle = self.sys.state.spindle.angle - self.run.angle0;
+        // (the place where wire was last laid goes round with the core)
+        let turned = Spin::new(angle - o.spindle_angle);
+        let layon = turned.to_lab(V3::new(o.layon_x, 0.0, o.layon_z));
+        (o.layon_x, o.layon_z) = (layon.x, layon.z);
+        o.spindle_angle = angle;
         (o.wire_tension, o.spindle_torque, o.feed_speed) = (0.0, 0.0, 0.0);
         o.meet_tension(0.0);
         o.tensioner_speed = 0.0;
