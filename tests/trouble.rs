@@ -438,6 +438,8 @@ fn broken_wire_is_told_once_and_the_spindle_turns_on() {
     let still = Outputs {
         spindle_angle: then.spindle_angle,
         nozzle_y: then.nozzle_y,
+        layon_x: then.layon_x,
+        layon_z: then.layon_z,
         ..now
     };
     assert_eq!(still, then, "all else stays");
