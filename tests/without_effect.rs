@@ -123,12 +123,43 @@ fn keys_of_what_a_scene_has_are_not_told() {
     }
 }
 
-/// A run keeps a scene with every key.
+/// A scene file of that text, with further keys set by name.
+fn from_file(text: &str, changes: &[(&str, &str)]) -> SceneSettings {
+    let none = std::path::Path::new("");
+    let mut settings = SceneSettings::from_toml_str(text, "kept", none).expect("a scene");
+    for (name, value) in changes {
+        settings.set_text(name, value).expect("a setting");
+    }
+    settings
+}
+
+/// A run keeps a scene with every key of its version, and later versions read it: it was told of about 25 defaults there.
 #[test]
 fn a_scene_that_was_kept_is_told_nothing_of_its_defaults() {
     let kept = settings(&[("wire.elastic", "true")]).to_toml();
-    let kept = SceneSettings::from_toml_str(&kept, "kept", std::path::Path::new("")).expect("one");
-    assert_eq!(told(&kept), [""; 0]);
+    assert_eq!(told(&from_file(&kept, &[])), [""; 0]);
+    let newer = ["insulation", "crossover_delay", "pulley_place", "trail"];
+    let is_old = |line: &&str| !newer.iter().any(|key| line.starts_with(key));
+    let older: Vec<&str> = kept.lines().filter(is_old).collect();
+    assert!(older.len() < kept.lines().count());
+    let older = older.join("\n");
+    assert_eq!(told(&from_file(&older, &[])), [""; 0]);
+
+    // what is set on purpose is told, also to the default
+    for value in ["0.01", "0.02"] {
+        let told = told(&from_file(&older, &[("core.radius", value)]));
+        assert_eq!(told, ["core.radius"], "{value}");
+    }
+    let changed = older.replace("dwell_turns = 0.5", "dwell_turns = 0.25");
+    assert_ne!(changed, older);
+    assert_eq!(told(&from_file(&changed, &[])), ["traverse.dwell_turns"]);
+}
+
+/// A scene that a person wrote names what it is about.
+#[test]
+fn a_default_in_a_short_scene_is_told() {
+    let scene = "[core]\nradius = 0.01\n[wire]\nelastic = true\nN_y = 0\n";
+    assert_eq!(told(&from_file(scene, &[])), ["core.radius", "wire.N_y"]);
 }
 
 /// What a run of some steps says, to the bit.

@@ -3,6 +3,7 @@
 use super::error::Warning;
 use super::{Integrator, Window};
 use crate::settings::{NozzleFollows, Origin, SceneSettings};
+use std::collections::BTreeSet;
 
 /// What decides which keys a run reads.
 pub(super) struct Reader<'a> {
@@ -199,18 +200,30 @@ impl Reader<'_> {
         self.settings.core.flange.inner_distance > 0.0
     }
 
-    /// Keys that were given although nothing reads them. The scene that a run keeps has all keys; there the default says
-    /// nothing.
+    /// The settings come from a scene that a run kept, so that a default among them says nothing. Such a scene has all keys of its
+    /// version, and later versions add some. Half of them tells it apart: choices exclude each other, and nobody writes both sides.
+    fn is_kept(&self) -> bool {
+        let keys: BTreeSet<&str> = all_keys().collect();
+        let of_file = keys.iter().filter(|key| {
+            let origin = self.settings.origins.get(*key);
+            matches!(origin, Some(Origin::File { .. }))
+        });
+        2 * of_file.count() >= keys.len()
+    }
+
+    /// Keys that were given although nothing reads them.
     pub(super) fn warnings(&self) -> Vec<Warning> {
         let settings = self.settings;
         let by_law = self.follows == NozzleFollows::Law;
         let usual = SceneSettings::default();
-        let has_all = all_keys().all(|key| settings.origins.contains_key(key));
+        let is_kept = self.is_kept();
         let mut warnings: Vec<Warning> = Vec::new();
         let mut warn = |key: &'static str, why: &str| {
             let (origin, value) = (settings.told_origin(key), settings.shown(key));
-            let is_given =
-                settings.origins.contains_key(key) && !(has_all && value == usual.shown(key));
+            let is_given = match settings.origins.get(key) {
+                Some(Origin::File { .. }) => !(is_kept && value == usual.shown(key)),
+                given => given.is_some(),
+            };
             if is_given && !warnings.iter().any(|w| w.key == key) {
                 warnings.push(Warning {
                     origin,
