@@ -256,7 +256,9 @@ def test_a_sweep_that_is_stopped_goes_on_to_the_same_bytes(stop, stopped, uninte
     runs = kept.count(b"\n") - 1
     assert code == 130 and f"interrupted; {runs} runs are kept; go on with: " in said, said
     assert 1 <= runs < 4 and uninterrupted.startswith(kept)
-    again = subprocess.run(said.partition("go on with: ")[2], shell=True, capture_output=True, text=True, check=False)
+    line = said.partition("go on with: ")[2]
+    assert " --quiet" in line
+    again = subprocess.run(line.replace(" --quiet", ""), shell=True, capture_output=True, text=True, check=False)
     assert again.returncode == 0 and f"4 runs, {4 - runs} of them new" in again.stdout, again.stderr
     assert (out / "sweep.csv").read_bytes() == uninterrupted
     assert not list(out.glob("*.partial"))
