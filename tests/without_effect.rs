@@ -155,6 +155,24 @@ fn a_scene_that_was_kept_is_told_nothing_of_its_defaults() {
     assert_eq!(told(&from_file(&changed, &[])), ["traverse.dwell_turns"]);
 }
 
+/// Importers write every start value.
+#[test]
+fn defaults_that_an_importer_writes_are_not_told() {
+    let usual = SceneSettings::default();
+    let mut settings = usual.clone();
+    for variable in coilwind::variables::table() {
+        if let coilwind::variables::Access::Parameter { get, .. } = variable.access
+            && variable.name != "scene.file"
+        {
+            let value = get(&usual).to_string();
+            settings
+                .set_text(variable.name, &value)
+                .expect(variable.name);
+        }
+    }
+    assert_eq!(told(&settings), [""; 0]);
+}
+
 /// A scene that a person wrote names what it is about.
 #[test]
 fn a_default_in_a_short_scene_is_told() {

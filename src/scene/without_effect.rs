@@ -217,13 +217,17 @@ impl Reader<'_> {
         let by_law = self.follows == NozzleFollows::Law;
         let usual = SceneSettings::default();
         let is_kept = self.is_kept();
+        // (an importer writes every start value)
+        let has_all = all_keys().all(|key| settings.origins.contains_key(key));
         let mut warnings: Vec<Warning> = Vec::new();
         let mut warn = |key: &'static str, why: &str| {
             let (origin, value) = (settings.told_origin(key), settings.shown(key));
-            let is_given = match settings.origins.get(key) {
-                Some(Origin::File { .. }) => !(is_kept && value == usual.shown(key)),
-                given => given.is_some(),
+            let says_nothing = match settings.origins.get(key) {
+                Some(Origin::File { .. }) => is_kept,
+                _ => has_all,
             };
+            let is_given =
+                settings.origins.contains_key(key) && !(says_nothing && value == usual.shown(key));
             if is_given && !warnings.iter().any(|w| w.key == key) {
                 warnings.push(Warning {
                     origin,
