@@ -40,9 +40,9 @@ use std::process::ExitCode;
 
 /// Simulation of wire winding: an elastic-plastic rod on a turning core.
 ///
-/// Exit codes: 0 done, 1 a defect or check failed where asked for, 2 bad input, 3 the solver gave
-/// up or the disk is full (what was computed is on disk), 4 `sweep --find-max` has no answer,
-/// 130 interrupted (what was computed is on disk).
+/// Exit codes: 0 done, 1 a defect or check failed where asked for, 2 bad input.
+/// With what was computed on disk: 3 the solver gave up or the disk is full, 130 interrupted.
+/// 4: `sweep --find-max` has no answer.
 #[derive(Debug, Parser)]
 #[command(name = "coilwind", version)]
 struct Cli {

@@ -3,7 +3,7 @@
 use super::checkpoint;
 use super::failure::Failure;
 use super::folder;
-use super::shell::{begin_again, resume_command};
+use super::shell::{SCENE, begin_again, resume_command};
 use super::terminal::print;
 use clap::Args;
 use coilwind::output::{ReportError, missing_files, write_report};
@@ -61,7 +61,7 @@ fn refuse_unfinished(directory: &Path) -> Result<(), Failure> {
             reason: "the run is under way and has not written its results; wait for its end, or stop it first".to_owned(),
         });
     }
-    if has("summary.json") || !has("scene.toml") {
+    if has("summary.json") || !has(SCENE) {
         return Ok(());
     }
     let next = match has(checkpoint::FILE) {
