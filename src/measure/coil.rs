@@ -7,7 +7,7 @@ use super::passes::Passes;
 use super::profile::Profile;
 use super::row::{Row, RowPlace};
 use super::runs::{Run, SHORT_RUN, stations_for};
-use super::station::{NEIGHBOUR_WINDOW, Neighbour, Signs, Station, closest_point_segment};
+use super::station::{Signs, Station};
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::PersistentVec;
 use crate::math::V3;
@@ -483,6 +483,7 @@ impl Coil {
             before.is_some_and(|before| self.is_double(before))
         };
         let neighbour = neighbour.filter(|_| !after_double());
+        let crosses = self.is_in_crossover(last_crossing) && !self.is_hole(neighbour);
         // The nozzle turns here or the flange is near, and the wire leaves its row.
         let lifts = (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
             && bulge > self.spec.limits.overlap_height * self.spec.diameter;
@@ -507,10 +508,15 @@ impl Coil {
             }),
             layer,
             pass: number,
-            crosses: self.is_in_crossover(last_crossing),
+            crosses,
+            out_of_groove: support.stands_on_wire && self.has_crossovers() && !crosses,
             measured: self.is_free_of_clamp(angle) && !steps_up,
         };
         station.overlap_depth = self.overlap_depth(&station);
+        let support = match lifts {
+            true => support.without_own_row(),
+            false => support,
+        };
         let signs = self.signs(
             &station,
             row,
@@ -556,45 +562,5 @@ impl Coil {
             },
             _ => (below, 0),
         }
-    }
-
-    /// Nearest centreline point of the same row one turn back, and where its search began.
-    ///
-    /// There is none where the wire one turn back belongs to another row, even where the beginning of this one is near.
-    fn neighbour(&self, angle: f64, p: V3, row: Row) -> (Option<Neighbour>, usize) {
-        let target = angle - TAU;
-        // The window only moves on; what is behind it need not be looked at again.
-        let mut first = self.records.last().map_or(0, |record| record.window);
-        if target < -1e-9 {
-            return (None, first);
-        }
-        while first + 1 < self.nodes.len()
-            && self.nodes[first + 1].reach < target - NEIGHBOUR_WINDOW
-        {
-            first += 1;
-        }
-        if target < row.from {
-            return (None, first);
-        }
-        let mut nearest: Option<(f64, V3)> = None;
-        for node in first + 1..self.nodes.len() {
-            let pair = [&self.nodes[node - 1], &self.nodes[node]];
-            if pair[0].reach > target + NEIGHBOUR_WINDOW {
-                break;
-            }
-            if pair[1].angle < row.from {
-                continue;
-            }
-            let q = closest_point_segment(p, pair[0].settled.position, pair[1].settled.position);
-            let distance2 = (p - q).norm_squared();
-            if nearest.is_none_or(|(least, _)| distance2 < least) {
-                nearest = Some((distance2, q));
-            }
-        }
-        let neighbour = nearest.map(|(distance2, q)| Neighbour {
-            gap: distance2.sqrt() - self.spec.diameter,
-            axial: row.sense * (p.y - q.y),
-        });
-        (neighbour, first)
     }
 }

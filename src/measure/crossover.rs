@@ -29,6 +29,12 @@ impl Crossover {
         STEEP * self.step / self.angle.min(LONGEST) * OVER as f64 * STATION_STEP
     }
 
+    /// Gap beside a turn above which it is a hole, m. A turn that crosses half a crossover before or after the one before it leaves
+    /// half a step between the two.
+    pub(crate) fn hole(&self) -> f64 {
+        0.5 * self.step.abs()
+    }
+
     /// Stations up to which wire is beside its crossover, before it; after it, twice as many.
     pub(crate) fn beside(&self) -> usize {
         (0.5 * self.angle.min(LONGEST) / STATION_STEP).ceil() as usize

@@ -43,6 +43,17 @@ impl Coil {
         near(last_crossing, index) || turn_before().is_some_and(|(last, from)| near(last, from))
     }
 
+    /// Whether the scene plans crossovers, with grooves between them.
+    pub(crate) fn has_crossovers(&self) -> bool {
+        self.spec.crossover.is_some()
+    }
+
+    /// Whether there is more room beside a turn than a crossover leaves.
+    pub(crate) fn is_hole(&self, neighbour: Option<Neighbour>) -> bool {
+        let crossover = self.spec.crossover.zip(neighbour);
+        crossover.is_some_and(|(crossover, neighbour)| neighbour.gap > crossover.hole())
+    }
+
     /// Whether the station at `index` is part of a double turn.
     pub(crate) fn is_double(&self, index: usize) -> bool {
         let kind = DefectKind::DoubleTurn;
@@ -129,7 +140,12 @@ impl Coil {
                 (1.0 - limits.overlap_axial) * d,
                 SHORT_RUN,
             ),
-            DefectKind::DoubleTurn => (measured(signs.rise), STANDS * d, limits.double_turn),
+            // Wire that climbs at the end of a pass, as meant, begins its own row before it stands on half a turn of this one.
+            DefectKind::DoubleTurn => (
+                signs.rise.filter(|_| self.is_free_of_clamp(station.angle)),
+                STANDS * d,
+                limits.double_turn,
+            ),
             DefectKind::SkippedGroove => (measured(signs.empty_groove), 0.0, limits.skipped_groove),
             DefectKind::EarlyJump => (signs.early, limits.jump, SHORT_RUN),
             DefectKind::LateJump => (signs.late, limits.jump, SHORT_RUN),

@@ -16,6 +16,7 @@ mod crossover;
 mod defect;
 mod judge;
 mod marks;
+mod neighbour;
 mod passes;
 mod profile;
 mod row;

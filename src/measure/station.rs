@@ -48,6 +48,9 @@ pub struct Station {
     pub pass: u32,
     /// true in a planned crossover, its own or that of the turn before, and beside it: its gap is no gap of the winding
     pub crosses: bool,
+    /// true where the wire stands on a wire of the layer below instead of in a groove, beside no crossover; false where no
+    /// crossovers are planned
+    pub out_of_groove: bool,
     /// false where the clamp still shapes this wire or its neighbour, and in the step to the next layer
     pub measured: bool,
 }

@@ -18,6 +18,10 @@ const CLIMBED: f64 = 0.5;
 /// groove of touching wires it is 0.866.
 const NEXT_LAYER: f64 = 0.5;
 
+/// Axial distance from a wire below up to which a wire stands on it and not in a groove, diameters. Chosen: halfway between
+/// the top of the wire and the groove of touching wires.
+const ON_WIRE: f64 = 0.25;
+
 /// Room between a turn and a flange from which on another turn has its place there, diameters. Chosen: halfway between the whole place
 /// of a last turn that has to squeeze in and the half place that every second layer in grooves leaves.
 const PLACE: f64 = 0.75;
@@ -29,6 +33,8 @@ pub(crate) struct Support {
     pub(crate) level: f64,
     /// it would rest on wire and not on the core
     pub(crate) is_wire: bool,
+    /// it would rest on the top of a wire and not in a groove
+    pub(crate) stands_on_wire: bool,
     /// one more than the layer of the wire below, 1 where there is none
     pub(crate) layer: u32,
     /// row of the wire that it would rest on
@@ -37,6 +43,16 @@ pub(crate) struct Support {
     pub(crate) own_row: Option<f64>,
     /// the same as `level` where wire of its own row carries it too, from below or wedged beside a flange, m
     pub(crate) highest: f64,
+}
+
+impl Support {
+    /// The same where wire leaves its row, and has not climbed on it to stay.
+    pub(crate) fn without_own_row(self) -> Self {
+        Self {
+            own_row: None,
+            ..self
+        }
+    }
 }
 
 impl Coil {
@@ -118,6 +134,7 @@ impl Coil {
         let mut support = Support {
             level: 0.0,
             is_wire: false,
+            stands_on_wire: false,
             layer: 1,
             row: None,
             own_row: None,
@@ -167,6 +184,7 @@ impl Coil {
                 if carries && level > support.level {
                     support.level = level;
                     support.is_wire = true;
+                    support.stands_on_wire = aside < ON_WIRE;
                     support.row = (of.number < row || climbing).then_some(of.number);
                 }
             }

@@ -14,6 +14,9 @@ const ALIGNED_GAP: f64 = 0.10;
 const ALIGNED_SHARE: f64 = 0.95;
 /// ... and its root mean square below this many diameters.
 const ALIGNED_RMS: f64 = 0.05;
+/// Share of a turn that may stand on wire of the layer below. Chosen: a sixth, as much again as a long crossover takes, for the wire
+/// before and after it.
+const OUT_OF_GROOVE: f64 = 1.0 / 6.0;
 
 /// Verdict on a turn, mildest first. A turn with several defects gets the worst.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -24,7 +27,8 @@ pub enum Verdict {
     Unsettled,
     /// no defect, and no neighbour to judge most of the turn by
     Single,
-    /// gap within 0.10 d at 95 % of the stations, root mean square below 0.05 d, no defect
+    /// gap within 0.10 d at 95 % of the stations, root mean square below 0.05 d, in its groove but for a sixth of the turn, no
+    /// defect
     Aligned,
     /// anything between
     Marginal,
@@ -152,8 +156,18 @@ pub struct TurnMeasures {
     pub overlap_max: f64,
     /// largest geometric layer
     pub layer_max: u32,
+    /// share of the turn that stands on a wire of the layer below and not in a groove, beside no crossover; 0 where no
+    /// crossovers are planned
+    pub out_of_groove: f64,
     /// verdict on the turn
     pub verdict: Verdict,
+}
+
+impl TurnMeasures {
+    /// Whether it lies in grooves of the layer below as far as it is meant to.
+    pub(super) fn is_in_groove(&self) -> bool {
+        self.out_of_groove <= OUT_OF_GROOVE
+    }
 }
 
 impl Coil {
@@ -202,6 +216,7 @@ impl Coil {
             ..TurnMeasures::default()
         };
         let mut gaps = GapSums::default();
+        let mut out_of_groove = 0;
         let mut runs = [Run::default(); MEASURED];
         let mut has = [false; MEASURED];
         for record in records {
@@ -233,7 +248,9 @@ impl Coil {
             };
             result.overlap_max = result.overlap_max.max(station.overlap_depth);
             result.layer_max = result.layer_max.max(station.layer);
+            out_of_groove += u32::from(station.out_of_groove);
         }
+        result.out_of_groove = f64::from(out_of_groove) / STATIONS_PER_TURN as f64;
         gaps.write(&mut result);
         result.verdict = gaps.verdict(&result, has, d);
         result
@@ -330,6 +347,8 @@ impl GapSums {
             worst
         } else if turn.stations == 0 {
             Verdict::Unsettled
+        } else if !turn.is_in_groove() {
+            Verdict::Marginal
         } else if 2 * self.beside < turn.stations || self.count == 0 {
             Verdict::Single
         } else if aligned {

@@ -60,9 +60,11 @@ pub fn reasons(
     diameter: f64,
 ) -> Vec<String> {
     let mut reasons = of_all_kinds(defects);
+    let off_grooves = out_of_grooves(turns);
     if reasons.is_empty() {
-        reasons.push(without_defect(verdict, turns, diameter));
+        reasons.extend(without_defect(verdict, turns, diameter, &off_grooves));
     }
+    reasons.extend(off_grooves);
     reasons.extend(about_bulges(judged, diameter));
     reasons
 }
@@ -77,6 +79,24 @@ pub fn left_out(wound: f64, settled: f64) -> Option<String> {
             "The last {rest:.2} turns had not come to rest when the run ended, and are not judged"
         )
     })
+}
+
+/// How many turns stand on wire of the layer below instead of in its grooves, and which does most.
+fn out_of_grooves(turns: &[TurnMeasures]) -> Option<String> {
+    let out = || turns.iter().filter(|turn| !turn.is_in_groove());
+    let most = out()
+        .rev()
+        .max_by(|a, b| a.out_of_groove.total_cmp(&b.out_of_groove))?;
+    let turns = match out().count() {
+        1 => "1 turn stands".to_owned(),
+        count => format!("{count} turns stand"),
+    };
+    Some(format!(
+        "{turns} on wire of the layer below instead of in its grooves; the longest: turn {} (layer {}), over {:.0} % of its angles, crossovers not counted",
+        most.turn,
+        most.layer,
+        100.0 * most.out_of_groove
+    ))
 }
 
 /// What a reader has to know of the limit by which bulges are judged, if anything.
@@ -149,9 +169,14 @@ fn of_kind(kind: DefectKind, defects: &[Defect]) -> Option<String> {
     Some(letters.next()?.to_uppercase().chain(letters).collect())
 }
 
-/// The reason for a verdict that no defect gave.
-fn without_defect(verdict: Verdict, turns: &[TurnMeasures], diameter: f64) -> String {
-    match verdict {
+/// The reason for a verdict that no defect gave; `None` where it is what is said of grooves.
+fn without_defect(
+    verdict: Verdict,
+    turns: &[TurnMeasures],
+    diameter: f64,
+    off_grooves: &Option<String>,
+) -> Option<String> {
+    Some(match verdict {
         Verdict::Unsettled => {
             "No wire has come to rest where it could be judged; wind more turns".to_owned()
         }
@@ -163,11 +188,12 @@ fn without_defect(verdict: Verdict, turns: &[TurnMeasures], diameter: f64) -> St
         _ => {
             let loosest = turns
                 .iter()
-                .filter(|turn| turn.verdict == verdict)
+                .filter(|turn| turn.verdict == verdict && turn.is_in_groove())
                 .filter_map(|turn| Some((turn, turn.gap_rms?)))
                 .max_by(|a, b| a.1.total_cmp(&b.1));
             let Some((turn, rms)) = loosest else {
-                return format!("The verdict is {verdict}, and no defect was found");
+                let other = format!("The verdict is {verdict}, and no defect was found");
+                return off_grooves.is_none().then_some(other);
             };
             format!(
                 "No defect, but wire lies less evenly than an aligned coil: the gap of turn {} is {:.3} mm rms ({:.2} d)",
@@ -176,7 +202,7 @@ fn without_defect(verdict: Verdict, turns: &[TurnMeasures], diameter: f64) -> St
                 rms / diameter
             )
         }
-    }
+    })
 }
 
 #[cfg(test)]
@@ -274,6 +300,30 @@ mod tests {
             "{said:?}"
         );
         assert!(said[1].contains("judged by 0.700 mm"), "{said:?}");
+    }
+
+    /// Turns that stood on those of the layer below were called aligned, and nobody was told.
+    #[test]
+    fn turns_out_of_their_grooves_are_told() {
+        let judged = BulgeLimit::Absolute { limit_m: 1e-3 };
+        let turn = |turn, out_of_groove, verdict| TurnMeasures {
+            turn,
+            layer: 2,
+            out_of_groove,
+            verdict,
+            ..TurnMeasures::default()
+        };
+        let turns = [
+            turn(17, 0.31, Verdict::Marginal),
+            turn(18, 0.02, Verdict::Aligned),
+            turn(19, 0.27, Verdict::Marginal),
+        ];
+        let words = "2 turns stand on wire of the layer below instead of in its grooves; the longest: turn 17 (layer 2), over \
+                     31 % of its angles, crossovers not counted";
+        let said = reasons(Verdict::Marginal, &[], &turns, judged, 0.7e-3);
+        assert_eq!(said, [words]);
+        let said = reasons(Verdict::Gap, &[gap(2, 0.2e-3)], &turns, judged, 0.7e-3);
+        assert_eq!(said[1], words);
     }
 
     /// Wire of 1 N stood 3.7 diameters off the core at rest, and its verdict said "No defect" and no more.

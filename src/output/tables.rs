@@ -29,6 +29,7 @@ struct TurnRow {
     bulge_face_nz: f64,
     overlap_max: f64,
     layer_max: u32,
+    out_of_groove: f64,
 }
 
 /// Writes `turns.csv`: one row per turn.
@@ -89,6 +90,7 @@ struct StationRow {
     pass: u32,
     measured: u8,
     crosses: u8,
+    out_of_groove: u8,
 }
 
 /// Writes `stations.csv`: one row per station, in the order of
@@ -131,6 +133,7 @@ impl From<&TurnMeasures> for TurnRow {
             bulge_face_nz: nz,
             overlap_max: turn.overlap_max,
             layer_max: turn.layer_max,
+            out_of_groove: turn.out_of_groove,
         }
     }
 }
@@ -160,6 +163,7 @@ impl From<(usize, &Station)> for StationRow {
             pass: station.pass,
             measured: station.measured.into(),
             crosses: station.crosses.into(),
+            out_of_groove: station.out_of_groove.into(),
         }
     }
 }
@@ -167,10 +171,10 @@ impl From<(usize, &Station)> for StationRow {
 /// Headers, for a table without rows; with rows they come from the fields (a test compares).
 const TURN_HEADER: &str = "turn,layer,turn_in_layer,verdict,settled,stations,gap_mean,gap_rms,gap_max,gap_over,\
     gap_run,flange_gap,axial_mean,bulge_max,bulge_excess_max,bulge_face_px,bulge_face_pz,bulge_face_nx,\
-    bulge_face_nz,overlap_max,layer_max";
+    bulge_face_nz,overlap_max,layer_max,out_of_groove";
 const DEFECT_HEADER: &str = "kind,turn,layer,angle_deg,time_s,size_m,size_d";
 const STATION_HEADER: &str = "turn,station,angle,polar,x,y,z,radius,arc,time,height,bulge,\
-    bulge_excess,gap,axial,flange_gap,overlap,layer,pass,measured,crosses";
+    bulge_excess,gap,axial,flange_gap,overlap,layer,pass,measured,crosses,out_of_groove";
 
 fn write_rows(
     path: &Path,
@@ -238,6 +242,7 @@ mod tests {
             pass: 1,
             measured: true,
             crosses: false,
+            out_of_groove: false,
         };
         let station = StationRow::from((0, &station));
         assert_eq!(

@@ -114,6 +114,33 @@ fn a_double_turn_in_a_wide_groove_lies_in_the_second_layer_all_round() {
     assert!(layers[..whole.start - 40].iter().all(|layer| *layer == 1));
 }
 
+/// The nozzle turned a turn late, and wire stood on its row for most of the turn. What comes before the end of a pass was not judged: a
+/// double turn was called an overlap, and the turn after it had a gap.
+#[test]
+fn a_double_turn_before_the_nozzle_turns_is_one() {
+    const LATE: [(f64, f64); 7] = [
+        (0.0, 0.0),
+        (1.0, 0.0),
+        (2.0, 0.0),
+        (1.5, 1.0),
+        (1.6, 1.0 + 1.0 / 0.866),
+        (0.5, 1.0),
+        (0.5, 1.0),
+    ];
+    let mut nodes = on_cylinder(6.0, 1.0, in_places(&LATE));
+    for node in &mut nodes {
+        let way = 2.6 * D - node.position.y;
+        node.flange = (way < 2.0 * D).then_some(way);
+    }
+    let mut coil = wound(spec(), &nodes);
+    coil.begin_pass(4.7 * TAU, -1.0);
+    let doubles: Vec<u32> = of(DefectKind::DoubleTurn, &coil)
+        .iter()
+        .map(|double| double.turn)
+        .collect();
+    assert_eq!(doubles, [5], "{:?}", coil.defects());
+}
+
 #[test]
 fn riding_up_for_less_than_half_a_turn_is_an_overlap_and_no_double_turn() {
     let place = |angle: f64| match angle / TAU {
