@@ -4,6 +4,7 @@ use super::buckets::Buckets;
 use super::crossover::Crossover;
 use super::defect::{BulgeLimit, DefectLimits, FALLBACK_BULGE, MEASURED};
 use super::passes::Passes;
+use super::plumb::Plumb;
 use super::profile::Profile;
 use super::row::{Row, RowPlace};
 use super::runs::{Run, SHORT_RUN, stations_for};
@@ -466,6 +467,12 @@ impl Coil {
             y: position.y,
             height,
             flange: end.settled.flange,
+            plumb: Plumb::at(
+                position,
+                end.settled.position - start.settled.position,
+                end.settled.height - start.settled.height,
+                self.spec.direction,
+            ),
         };
         let (row, support) = self.row_and_support(pass, &at);
         let bulge = height - support.level;

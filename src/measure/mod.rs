@@ -9,6 +9,7 @@
 //! the spindle reverses. Whatever it knows after a node is stored with that node, so giving nodes
 //! back is truncation and leaves exactly what was there before.
 
+mod below;
 mod buckets;
 mod coil;
 mod contour;
@@ -18,6 +19,7 @@ mod judge;
 mod marks;
 mod neighbour;
 mod passes;
+mod plumb;
 mod profile;
 mod row;
 mod runs;

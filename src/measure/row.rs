@@ -4,6 +4,7 @@
 //! or may have climbed already. A pass is what the nozzle did, a row is what the wire made of it.
 
 use super::passes::Pass;
+use super::plumb::Plumb;
 
 /// Way back along y by which wire has turned, diameters: more than jitter, less than the groove beside it.
 const CAME_BACK: f64 = 0.5;
@@ -87,6 +88,8 @@ pub(crate) struct RowPlace {
     pub(crate) height: f64,
     /// way along y to the face of the flange beside it, m
     pub(crate) flange: Option<f64>,
+    /// which way is down
+    pub(crate) plumb: Plumb,
 }
 
 impl RowPlace {

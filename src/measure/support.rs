@@ -1,10 +1,11 @@
 //! What a wire was laid over: the core, wire of earlier rows below it, or the climb to its own row.
 
 use super::STATIONS_PER_TURN;
+use super::below::Lower;
 use super::coil::{Coil, Record, STEP_UP};
 use super::passes::Pass;
+
 use super::row::{Row, RowPlace};
-use super::station::Station;
 
 /// Axial distance up to which wire of an earlier row lies below a wire, diameters: cos 30 degrees, the largest at
 /// which wire that rests on it stands half a diameter above it.
@@ -111,7 +112,7 @@ impl Coil {
         }
     }
 
-    /// What lies below wire at `y` (m) and `height` over the core (m) among the stations of one polar angle. Only
+    /// What lies below wire at `y` (m) and `height` over the core (m), on wire that passes the same polar angle beside it. Only
     /// rows before number `row` carry it, and the first part of this row where it climbed, which the turn after crosses. On other
     /// wire it has climbed.
     ///
@@ -123,11 +124,11 @@ impl Coil {
         } = *at;
         let d = self.spec.diameter;
         // where the wire would lie if it fell along the flange as far as other wire lets it
-        let wedged = |lower: &Station| {
+        let wedged = |lower: &Lower| {
             let way = at.flange?;
             let farthest = y + way - (0.5 * d).copysign(way);
-            let room = (farthest - lower.position.y) * way.signum() / d;
-            let between = (y - lower.position.y) * way > 0.0;
+            let room = (farthest - lower.y) * way.signum() / d;
+            let between = (y - lower.y) * way > 0.0;
             let holds = between && height > lower.height && (BELOW..1.0).contains(&room);
             holds.then(|| lower.height + d * (1.0 - room * room).sqrt())
         };
@@ -145,27 +146,25 @@ impl Coil {
         for bin in bucket.1 - 1..=bucket.1 + 1 {
             let mut next = self.buckets.get((bucket.0, bin));
             while let Some(index) = next {
+                next = self.records[index].beneath;
+                let lower = self.straight_below(&at.plumb, height, index);
                 let Record {
-                    station: lower,
-                    row: of,
-                    beneath,
-                    ..
-                } = &self.records[index];
-                next = *beneath;
-                let (aside, rise) = ((y - lower.position.y).abs() / d, height - lower.height);
+                    station, row: of, ..
+                } = lower.record;
+                let (aside, rise) = ((y - lower.y).abs() / d, height - lower.height);
                 let earlier = of.number < row;
                 let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
-                let climbing = of.number > 1 && lower.angle < of.from + STEP_UP;
+                let climbing = of.number > 1 && station.angle < of.from + STEP_UP;
                 let carries = earlier || (one_turn_back && climbing);
                 if !earlier && aside <= BELOW && rise > 0.0 {
                     support.own_row = Some(support.own_row.unwrap_or(0.0).max(rise));
                 }
                 let below = aside <= if earlier { BELOW } else { CLIMBED };
                 if below && rise >= NEXT_LAYER * d {
-                    support.layer = support.layer.max(lower.layer + 1);
+                    support.layer = support.layer.max(station.layer + 1);
                 } else if aside <= BELOW && rise >= NEXT_LAYER * d {
-                    let side = &mut groove[usize::from(lower.position.y > y)];
-                    *side = lower.layer.max(*side);
+                    let side = &mut groove[usize::from(lower.y > y)];
+                    *side = station.layer.max(*side);
                 }
                 // what a flange and another wire hold between them cannot drop, whichever row that is of
                 let (level, carries) = match aside <= BELOW {
@@ -173,7 +172,7 @@ impl Coil {
                         Some(lower.height + d * (1.0 - aside * aside).sqrt()),
                         carries,
                     ),
-                    false => (wedged(lower), true),
+                    false => (wedged(&lower), true),
                 };
                 let Some(level) = level else {
                     continue;

@@ -5,6 +5,7 @@ mod coils;
 mod crossovers;
 mod defects;
 mod layers;
+mod on_flats;
 mod pitch;
 mod product;
 mod shop_floor;
