@@ -122,6 +122,7 @@ fn coil(wire: &Centreline) -> Coil {
         profile: None,
         tension: 15.0,
         jumps: [].into(),
+        full: None,
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,

@@ -42,6 +42,8 @@ pub struct CoilSpec {
     /// winding angles between which wire is meant to climb to the next layer, rad, one pair a layer; none: not known, and
     /// no jump is early or late
     pub jumps: Arc<[[f64; 2]]>,
+    /// winding angle at which the last layer is meant to be full, rad; none: not known, and no wire climbs out of it early
+    pub full: Option<f64>,
     /// crossover of each turn; none: wire is not meant to cross in steps, or it is not known where
     pub crossover: Option<Crossover>,
     /// polar angle of the clamp, rad
@@ -493,6 +495,7 @@ impl Coil {
         let crosses = self.is_in_crossover(last_crossing) && !self.is_hole(neighbour);
         // The nozzle turns here or the flange is near, and the wire leaves its row.
         let lifts = (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
+            && self.may_climb(layer, angle)
             && bulge > self.spec.limits.overlap_height * self.spec.diameter;
         let steps_up = lifts || self.passes.ends_within(angle, STEP_UP);
         let mut station = Station {

@@ -16,6 +16,7 @@ mod contour;
 mod crossover;
 mod defect;
 mod judge;
+mod jumps;
 mod marks;
 mod neighbour;
 mod passes;

@@ -1,11 +1,10 @@
 //! What the settled wire shows of double turns, skipped grooves, jumps out of turn, loose and stretched wire.
 
 use super::STATIONS_PER_TURN;
-use super::coil::{Coil, STEP_UP};
+use super::coil::Coil;
 use super::row::Row;
 use super::station::{Signs, Station};
 use super::support::Support;
-use std::f64::consts::TAU;
 
 impl Coil {
     /// The signs of the next station.
@@ -24,14 +23,15 @@ impl Coil {
             Some(last) if last.station.layer != station.layer => station.angle,
             _ => before.layer_since,
         };
-        let (early, late) = self.out_of_turn(station, layer_since);
+        let above_since = self.above_since(station, support, &before, layer_since);
         let signs = Signs {
             rise: support.own_row,
             empty_groove: self.empty_groove(station, row, support, bucket),
-            early,
-            late,
+            early: above_since.and_then(|since| self.early(station.angle, since)),
+            late: self.late(station, layer_since),
             strain,
             layer_since,
+            above_since,
             untouched: before.untouched + u32::from(self.touches_nothing(station, support)),
             tension_sum: before.tension_sum + tension,
             loose: None,
@@ -74,34 +74,12 @@ impl Coil {
         (between >= 2).then_some(neighbour.gap)
     }
 
-    /// Turns by which the wire climbed early, and turns by which it is late, where jumps are planned.
-    ///
-    /// Whether a climb was a jump and no wire that rides up shows where the jump was meant to be: wire still lies in the
-    /// next layer.
-    fn out_of_turn(&self, station: &Station, layer_since: f64) -> (Option<f64>, Option<f64>) {
-        let angle = station.angle;
-        let jumps = &self.spec.jumps;
-        // the jump that wire is at or past
-        let due = jumps.partition_point(|[from, _]| from - STEP_UP <= angle);
-        let Some(number) = due.checked_sub(1) else {
-            return (None, None);
-        };
-        let [from, to] = jumps[number];
-        // from 1, the layer before the jump
-        let (before, layer) = (number as u32 + 1, station.layer);
-        let early =
-            (layer > before && angle < from + STEP_UP).then_some((from - layer_since) / TAU);
-        let late =
-            (layer <= before && layer_since < to && angle > to).then_some((angle - to) / TAU);
-        (early, late)
-    }
-
     /// Whether wire stands higher over what it was laid on than it would at rest; not known where that height is not.
     fn touches_nothing(&self, station: &Station, support: &Support) -> bool {
         let most = self.spec.limits.loose_height * self.spec.diameter;
-        let free = self.is_free_of_clamp(station.angle);
         // wire that rides on its own row touches that
-        free && station.height - support.highest > most
+        station.measured
+            && station.height - support.highest > most
             && station.bulge_excess.is_some_and(|excess| excess > most)
     }
 

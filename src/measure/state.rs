@@ -121,7 +121,10 @@ impl Coil {
     fn place_of(&self, kind: DefectKind, index: usize) -> usize {
         let signs = &self.records[index].signs;
         let back = match kind {
-            DefectKind::EarlyJump => self.records[index].station.angle - signs.layer_since,
+            DefectKind::EarlyJump => {
+                let angle = self.records[index].station.angle;
+                angle - signs.above_since.unwrap_or(angle)
+            }
             DefectKind::LateJump => TAU * signs.late.unwrap_or(0.0),
             DefectKind::LooseTurn => PI,
             _ => 0.0,
@@ -143,7 +146,8 @@ impl Coil {
             // for its tension alone a turn has no size
             DefectKind::LooseTurn => {
                 let start = &self.records[*turn().start()].signs;
-                let bulges = turn().map(|k| self.records[k].station.bulge);
+                let stations = turn().map(|k| &self.records[k].station);
+                let bulges = stations.filter(|s| s.measured).map(|s| s.bulge);
                 let by_place = self.looseness_by_place(start, signs) >= 1.0;
                 bulges.reduce(f64::max).filter(|_| by_place)
             }

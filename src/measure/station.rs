@@ -72,6 +72,8 @@ pub(crate) struct Signs {
     pub(crate) loose: Option<f64>,
     /// winding angle since which it lies in its layer, rad
     pub(crate) layer_since: f64,
+    /// winding angle since which it lies above the layer planned there, rad
+    pub(crate) above_since: Option<f64>,
     /// stations so far where the wire touches nothing
     pub(crate) untouched: u32,
     /// sum of the tensions so far, N

@@ -17,7 +17,7 @@ const CLIMBED: f64 = 0.5;
 
 /// Rise over a wire from which on another lies in the layer above it, diameters: half of a wire on a wire. In the
 /// groove of touching wires it is 0.866.
-const NEXT_LAYER: f64 = 0.5;
+pub(super) const NEXT_LAYER: f64 = 0.5;
 
 /// Axial distance from a wire below up to which a wire stands on it and not in a groove, diameters. Chosen: halfway between
 /// the top of the wire and the groove of touching wires.
@@ -157,7 +157,11 @@ impl Coil {
                 let climbing = of.number > 1 && station.angle < of.from + STEP_UP;
                 let carries = earlier || (one_turn_back && climbing);
                 if !earlier && aside <= BELOW && rise > 0.0 {
-                    support.own_row = Some(support.own_row.unwrap_or(0.0).max(rise));
+                    support.own_row = Some(match support.own_row {
+                        // it stands on the higher of two turns below it
+                        Some(other) if other.min(rise) >= NEXT_LAYER * d => other.min(rise),
+                        other => rise.max(other.unwrap_or(0.0)),
+                    });
                 }
                 let below = aside <= if earlier { BELOW } else { CLIMBED };
                 if below && rise >= NEXT_LAYER * d {

@@ -23,6 +23,8 @@ pub struct NozzleLaw {
     turns: f64,
     /// angles between which wire is meant to climb to the next layer, rad, one pair a layer
     jumps: Arc<[[f64; 2]]>,
+    /// angle at which the last layer is full, rad, where layers are planned
+    full: Option<f64>,
     /// way from turn to turn of a layer, m, where layers are planned
     pitch: Option<f64>,
     /// angle in which each turn steps to its next place, rad, where it does so in steps
@@ -41,6 +43,7 @@ impl NozzleLaw {
             pieces: Arc::new([piece]),
             turns,
             jumps: Arc::new([]),
+            full: None,
             pitch: None,
             crossover: None,
         }
@@ -68,6 +71,7 @@ impl NozzleLaw {
             pieces: pieces.into(),
             turns: last[0],
             jumps: Arc::new([]),
+            full: None,
             pitch: None,
             crossover: None,
         }
@@ -92,18 +96,23 @@ impl NozzleLaw {
             pieces: std::iter::once(start).chain(later).collect(),
             turns: self.turns,
             jumps: self.jumps,
+            full: self.full,
             pitch: self.pitch,
             crossover: self.crossover,
         }
     }
 
-    /// The same law, with the turns between which wire is meant to climb to each next layer.
-    pub(super) fn with_jumps(self, turns: &[[f64; 2]]) -> Self {
-        let jumps = turns
+    /// The same law, with the turns between which wire is meant to climb to each next layer, and those after which the last is full.
+    pub(super) fn with_layers(self, jumps: &[[f64; 2]], full: f64) -> Self {
+        let jumps = jumps
             .iter()
             .map(|pair| pair.map(|turn| turn * TAU))
             .collect();
-        Self { jumps, ..self }
+        Self {
+            jumps,
+            full: Some(full * TAU),
+            ..self
+        }
     }
 
     /// The same law, which lays the turns of a layer so far (m) from each other.
@@ -136,6 +145,11 @@ impl NozzleLaw {
     /// Angles between which wire is meant to climb to the next layer, rad; none where layers are not planned.
     pub fn jumps(&self) -> &[[f64; 2]] {
         &self.jumps
+    }
+
+    /// Angle at which the last layer is full, rad; none where layers are not planned.
+    pub fn full(&self) -> Option<f64> {
+        self.full
     }
 
     /// The piece at an angle turned, rad.

@@ -55,6 +55,11 @@ impl Layers {
         ends
     }
 
+    /// Turns of all layers.
+    fn turns(&self) -> f64 {
+        self.layers.iter().map(|layer| f64::from(layer.turns)).sum()
+    }
+
     /// How far a layer rises over the one below, m, for wire of this diameter: it lies in the grooves, or turn on turn.
     fn rise(&self, d: f64) -> f64 {
         let aside = match self.layers[..] {
@@ -138,7 +143,10 @@ impl SceneSettings {
                 let law = self.law_of_table(problems)?;
                 match self.winding.turns_per_layer {
                     0.0 => law,
-                    _ => law.with_jumps(&self.layers(diameter, extent, problems)?.jumps(0.0, 0.0)),
+                    _ => {
+                        let stacked = self.layers(diameter, extent, problems)?;
+                        law.with_layers(&stacked.jumps(0.0, 0.0), stacked.turns())
+                    }
                 }
             }
             "orthocyclic" => {
@@ -324,7 +332,7 @@ impl SceneSettings {
         }
         points.push([places.len() as f64, places[places.len() - 1].1]);
         NozzleLaw::through(&points)
-            .with_jumps(&stacked.jumps(step, delay))
+            .with_layers(&stacked.jumps(step, delay), stacked.turns() + delay)
             .with_crossovers(stacked.pitch, self.traverse.crossover)
     }
 
@@ -355,7 +363,7 @@ impl SceneSettings {
         }
         points.push([places.len() as f64, places[places.len() - 1].1]);
         Ok(NozzleLaw::through(&points)
-            .with_jumps(&stacked.jumps(step, delay))
+            .with_layers(&stacked.jumps(step, delay), stacked.turns() + delay)
             .with_crossovers(stacked.pitch, crossover))
     }
 
@@ -387,8 +395,9 @@ impl SceneSettings {
                 None => drop(go_to(layer.last + lead, 1.0)),
             }
         }
+        let full = points[points.len() - 1][0];
         NozzleLaw::through(&points)
-            .with_jumps(&jumps)
+            .with_layers(&jumps, full)
             .with_pitch(*pitch)
     }
 

@@ -160,6 +160,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         profile: super::quasi_static::profile(scene, &surface, yardstick_tension(scene, inputs)),
         tension: yardstick_tension(scene, inputs),
         jumps: scene.nozzle_law.jumps().into(),
+        full: scene.nozzle_law.full(),
         crossover: (scene.nozzle_law.crossover()).map(|[step, angle]| Crossover { step, angle }),
         start_angle: polar_angle(clamp_core),
         direction: way_round,

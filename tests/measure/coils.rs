@@ -21,6 +21,7 @@ pub(crate) fn spec() -> CoilSpec {
         profile: Profile::new(vec![0.0]),
         tension: PULL,
         jumps: [].into(),
+        full: None,
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,

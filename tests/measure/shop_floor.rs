@@ -134,11 +134,10 @@ fn a_double_turn_before_the_nozzle_turns_is_one() {
     }
     let mut coil = wound(spec(), &nodes);
     coil.begin_pass(4.7 * TAU, -1.0);
-    let doubles: Vec<u32> = of(DefectKind::DoubleTurn, &coil)
-        .iter()
-        .map(|double| double.turn)
-        .collect();
-    assert_eq!(doubles, [5], "{:?}", coil.defects());
+    let double = only(DefectKind::DoubleTurn, &coil);
+    assert_eq!(double.turn, 5);
+    // over the turn that it lies on, and not the one below that
+    assert!((double.size_d.unwrap() - 1.0).abs() < 0.02, "{double:?}");
 }
 
 #[test]
@@ -251,6 +250,40 @@ fn a_jump_is_early_or_late_by_the_plan_only() {
     assert_eq!(late.turns()[4].verdict, Verdict::LateJump);
 }
 
+/// Nothing said that wire climbed out of the last layer of a plan, or out of the only one.
+#[test]
+fn a_climb_out_of_the_last_layer_is_early() {
+    let one_layer = |full: f64| CoilSpec {
+        full: Some(full * TAU),
+        ..spec()
+    };
+    // the coil is not whole yet
+    let jump = only(DefectKind::EarlyJump, &jumping(one_layer(12.0)));
+    assert_eq!((jump.turn, jump.layer), (6, 2));
+    assert!((jump.size_d.unwrap() - 7.0).abs() < 0.05, "{jump:?}");
+    // the last turn, known where it ends
+    let jump = only(DefectKind::EarlyJump, &jumping(one_layer(6.0)));
+    assert!((jump.size_d.unwrap() - 1.0).abs() < 0.05, "{jump:?}");
+    // what comes after the plan is not judged
+    assert!(!jumping(one_layer(5.0)).flags().early_jump);
+}
+
+/// Of wire that climbed twice before its jump the second climb was told, at another place and by fewer turns.
+#[test]
+fn wire_that_climbs_twice_is_early_from_its_first_climb() {
+    let place = |angle: f64| match (angle / TAU).floor() {
+        turn if turn < 5.0 => (D * turn, 0.0),
+        turn if turn < 9.0 => (D * (9.5 - turn), step()),
+        turn => (D * (turn - 8.0), 2.0 * step()),
+    };
+    let mut coil = wound(planned(12.0), &on_cylinder(12.2, 1.0, place));
+    coil.begin_pass(5.0 * TAU, -1.0);
+    coil.begin_pass(9.0 * TAU, 1.0);
+    let jump = only(DefectKind::EarlyJump, &coil);
+    assert_eq!((jump.turn, jump.layer), (6, 2));
+    assert!((jump.size_d.unwrap() - 6.9).abs() < 0.05, "{jump:?}");
+}
+
 /// Turns side by side, altered where `is_there` says.
 fn altered(is_there: impl Fn(f64) -> bool, alter: impl Fn(&mut SettledNode)) -> Coil {
     let mut nodes = on_cylinder(6.0, 1.0, |angle| (D * angle / TAU, 0.0));
@@ -274,6 +307,30 @@ fn wire_that_hangs_loose_over_half_a_turn_is_a_loose_turn() {
         |node| node.height += 0.2 * D,
     );
     assert!(!short.flags().loose_turn && !short.flags().bulge);
+}
+
+/// Wire on its way to the next layer, which is not judged, made a turn loose, by a height that no table had.
+#[test]
+fn wire_on_its_way_to_the_next_layer_is_not_loose() {
+    let loose = |turned: f64| {
+        let mut coil = altered(
+            |turn| (3.0..3.6).contains(&turn),
+            |node| {
+                node.height += if node.time > 3.5 * TAU / 30.0 {
+                    0.4
+                } else {
+                    0.2
+                } * D
+            },
+        );
+        coil.begin_pass(turned * TAU, -1.0);
+        of(DefectKind::LooseTurn, &coil)
+    };
+    let [turn] = &loose(5.9)[..] else {
+        panic!("a turn that hangs loose over its judged wire is");
+    };
+    assert!((turn.size_d.unwrap() - 0.4).abs() < 0.01, "{turn:?}");
+    assert_eq!(loose(3.65), [], "a quarter of a turn before is not judged");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The last turn of a layer in a window that fits exactly, pressed up between the turn before and a flange.
 
 use crate::coils::{D, on_cylinder, spec, wound};
-use coilwind::measure::{Coil, DefectFlags};
+use coilwind::measure::{Coil, CoilSpec, DefectFlags, DefectKind};
 use std::f64::consts::TAU;
 
 /// Turns of a layer.
@@ -10,6 +10,10 @@ const TURNS: f64 = 5.0;
 /// Two layers between flanges with room for exactly [`TURNS`]. From the fourth turn on wire leans over by `lean`, diameters,
 /// within a part of each turn (shares of a turn), so that the fifth has less than its place there. The nozzle turns back at `turned`, turns.
 fn squeezed(lean: f64, part: [f64; 2], turned: f64) -> Coil {
+    squeezed_in(spec(), lean, part, turned)
+}
+
+fn squeezed_in(spec: CoilSpec, lean: f64, part: [f64; 2], turned: f64) -> Coil {
     let place = |angle: f64| {
         let turn = (angle / TAU).floor();
         let within = angle / TAU - turn;
@@ -51,7 +55,7 @@ fn squeezed(lean: f64, part: [f64; 2], turned: f64) -> Coil {
         let ways = [-0.5 * D, (TURNS - 0.5) * D].map(|face| face - node.position.y);
         node.flange = Some(if ways[1] < -ways[0] { ways[1] } else { ways[0] });
     }
-    let mut coil = wound(spec(), &nodes);
+    let mut coil = wound(spec, &nodes);
     coil.begin_pass(turned * TAU, -1.0);
     coil
 }
@@ -77,4 +81,19 @@ fn a_last_turn_wedged_beside_the_flange_is_not_loose() {
         let coil = squeezed(lean, [0.2, 0.85], TURNS - 0.05);
         assert!(!coil.flags().loose_turn, "{:?}", coil.defects());
     }
+}
+
+/// What rides up beside a flange goes to the next layer, and is not judged. Out of the last layer of a plan nothing goes.
+#[test]
+fn a_last_turn_of_the_last_layer_that_rides_up_is_an_overlap() {
+    let kinds = |full: Option<f64>| -> Vec<(DefectKind, u32)> {
+        let spec = CoilSpec { full, ..spec() };
+        let coil = squeezed_in(spec, 0.2, [0.3, 0.5], TURNS - 0.05);
+        let all = coil.defects();
+        let found = all.iter().map(|defect| (defect.kind, defect.turn));
+        found.filter(|(_, turn)| *turn == 5).collect()
+    };
+    assert_eq!(kinds(None), []);
+    let told = kinds(Some(TURNS * TAU));
+    assert!(told.contains(&(DefectKind::Overlap, 5)), "{told:?}");
 }

@@ -24,6 +24,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         profile: None,
         tension: 0.0,
         jumps: [].into(),
+        full: None,
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,
