@@ -71,10 +71,14 @@ impl Winding {
         let told = new.iter().map(|run| (run.kind, run.counts_at));
         self.run.told_defects.extend(told);
         for together in new.chunk_by_mut(|a, b| b.counts_at - a.counts_at < TOGETHER) {
-            let at = together.last().map_or(0, |run| run.counts_at);
-            together.sort_by_key(|run| run.kind as usize);
-            let names: Vec<&str> = together.iter().map(|run| run.kind.words()).collect();
-            let text = format!("defect {} ({})", place(at), names.join(", "));
+            together.sort_by_key(|run| (run.counts_at, run.kind as usize));
+            let there = |runs: &[CountedRun]| {
+                let names: Vec<&str> = runs.iter().map(|run| run.kind.words()).collect();
+                format!("{} ({})", place(runs[0].counts_at), names.join(", "))
+            };
+            let places = together.chunk_by(|a, b| a.counts_at == b.counts_at);
+            let places: Vec<String> = places.map(there).collect();
+            let text = format!("defect found {}", places.join(" and "));
             self.report(EventKind::Defect, text);
         }
     }
@@ -150,9 +154,24 @@ mod tests {
         let told = defects_told(&mut winding);
         let found = winding.coil.defects();
         assert!(!found.is_empty());
-        let names: usize = told.iter().map(|text| text.split(", ").count()).sum();
+        // each is told at the place that the tables name
+        let all = told.join(" and ");
+        for defect in &found {
+            let (turn, angle, name) = (
+                defect.found_turn,
+                defect.found_angle_deg,
+                defect.kind.words(),
+            );
+            let place = format!("in turn {turn} at {angle:.0} deg (");
+            let there = all.split(" and ").find(|told| told.contains(&place));
+            assert!(
+                there.is_some_and(|told| told.contains(name)),
+                "{defect:?}: {all}"
+            );
+        }
+        let names = all.matches([',', '(']).count();
         assert_eq!(names, found.len(), "{told:?}");
-        assert!(told[0].contains("overlap"), "{told:?}");
+        assert!(all.contains("overlap"), "{told:?}");
 
         // a loose end comes to rest where it lay
         winding.coil_mut().unsettle(200);
@@ -191,11 +210,12 @@ mod tests {
         assert!(winding.coil.defects().is_empty());
         let gone = defects_told(&mut winding);
         let places = |texts: &[String]| -> Vec<String> {
-            let of = |text: &String| {
+            let all = texts.join(" and ");
+            let of = |text: &str| {
                 let from = text.find("in turn").expect("a place");
                 text[from..=text.find(')').expect("a kind")].to_owned()
             };
-            texts.iter().map(of).collect()
+            all.split(" and ").map(of).collect()
         };
         assert_eq!(places(&gone), places(&told), "{gone:?}");
         let because = "): the nozzle has turned since";
@@ -225,7 +245,7 @@ mod tests {
         }
         assert!(winding.coil.defects().is_empty());
         let gone = defects_told(&mut winding);
-        let place = told[0].strip_prefix("defect ").expect("a defect");
+        let place = told[0].strip_prefix("defect found ").expect("a defect");
         assert_eq!(
             gone,
             [format!("no longer a defect {place}: {MEASURED_ANEW}")]

@@ -55,11 +55,11 @@ def test_defects_come_with_time_turn_and_angle(slave):
         slave.set(nozzle_position=slave.get("nozzle_position") + travel)
         slave.fmu.doStep(k * STEP, STEP)
     events = [text for _, _, category, text in slave.log if category == "logEvents"]
-    defects = [text for text in events if "defect in turn" in text]
+    defects = [text for text in events if "defect found in turn" in text]
     assert defects, slave.log
     for text in events:
         assert re.match(r"t = \d+\.\d+ s, turn \d+\.\d+, core at -?\d+\.\d deg: ", text), text
-    assert re.search(r"defect in turn \d+ at \d+ deg \(gap", defects[0])
+    assert re.search(r"defect found in turn \d+ at \d+ deg \(gap", defects[0])
     # what was told and counts no more is said to be gone
     told = len(slave.log)
     slave.set(defects__gap=100.0)
