@@ -249,6 +249,13 @@ impl Coil {
             .fold(0.0, |most, node| node.settled.plastic_strain.max(most))
     }
 
+    /// Largest plastic stretch of the settled wire, and the station where it first is; `None` before there is wire.
+    pub(crate) fn largest_stretch(&self) -> Option<(f64, usize)> {
+        let strains = self.records.iter().map(|record| record.signs.strain);
+        let strains = strains.enumerate().map(|(index, strain)| (strain, index));
+        strains.reduce(|most, next| if next.0 > most.0 { next } else { most })
+    }
+
     /// The worst verdict of the turns of which half has settled, and of every defect; [`Verdict::Unsettled`] before that.
     pub fn verdict(&self) -> Verdict {
         let turns = self.turns();
