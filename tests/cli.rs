@@ -394,11 +394,10 @@ fn a_broken_wire_is_no_success() {
     assert_eq!(defect["place_m"].as_array().unwrap().len(), 3);
     let table = std::fs::read_to_string(out.join("defects.csv")).unwrap();
     let lines: Vec<&str> = table.lines().collect();
-    assert_eq!(lines[0], "kind,turn,layer,angle_deg,time_s,size_m,size_d");
-    assert!(
-        lines.len() == 2 && lines[1].starts_with("break,1,1,"),
-        "{table}"
-    );
+    let columns = "kind,turn,layer,angle_deg,time_s,size_m,size_d,found_turn,found_angle_deg";
+    assert_eq!(lines[0], columns);
+    assert_eq!(lines.len(), 2, "{table}");
+    assert!(lines[1].starts_with("break,1,1,"), "{table}");
 }
 
 /// Slack that had passed by the end of the run let `--fail-on-defect` exit with 0.

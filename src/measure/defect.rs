@@ -205,6 +205,10 @@ pub struct Defect {
     pub layer: u32,
     /// polar angle from the clamp within that turn, 0..360
     pub angle_deg: f64,
+    /// turn in which it was found: from that place on it lasts long enough to count, and there the run tells of it
+    pub found_turn: u32,
+    /// polar angle from the clamp at which it was found, 0..360
+    pub found_angle_deg: f64,
     /// when the wire there came to rest, or when the wire went slack or broke
     pub time_s: f64,
     /// when slack wire was last slack; nothing for other kinds

@@ -36,6 +36,22 @@ impl Coil {
         }
     }
 
+    /// True where a defect of this kind, which once counted from the station `at` on, is not in the settled wire there. Wire that
+    /// is not settled, and a run that may still grow long enough to count, leave that open.
+    pub(crate) fn has_come_to_nothing(&self, kind: DefectKind, at: usize) -> bool {
+        for index in at..self.records.len() {
+            let run = self.records[index].runs[kind as usize];
+            let (_, _, least) = self.criterion(kind, &self.records[index]);
+            if run == Run::default() {
+                return true;
+            }
+            if run.counts(least) {
+                return false;
+            }
+        }
+        false
+    }
+
     /// Runs of a kind that are long enough to count and reach the station `from` or beyond, along the wire.
     pub(crate) fn counted_runs(&self, kind: DefectKind, from: usize) -> Vec<CountedRun> {
         let run_at = |index: usize| self.records[index].runs[kind as usize];

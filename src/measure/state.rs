@@ -83,7 +83,7 @@ impl Coil {
     }
 
     fn defects_of(&self, kind: DefectKind) -> Vec<Defect> {
-        let worst = |run: CountedRun| -> Option<usize> {
+        let worst = |run: CountedRun| -> Option<(usize, usize)> {
             let mut worst: Option<(usize, f64)> = None;
             for index in run.first..=run.last {
                 if let (Some(value), ..) = self.criterion(kind, &self.records[index])
@@ -92,15 +92,16 @@ impl Coil {
                     worst = Some((index, value));
                 }
             }
-            worst.map(|(index, _)| index)
+            worst.map(|(index, _)| (index, run.counts_at))
         };
         let runs = self.counted_runs(kind, 0).into_iter();
         let worst = runs.filter_map(worst);
-        worst.map(|index| self.defect_at(kind, index)).collect()
+        let at = |(index, found)| self.defect_at(kind, index, found);
+        worst.map(at).collect()
     }
 
-    /// The defect of a run that is worst at `index`.
-    fn defect_at(&self, kind: DefectKind, index: usize) -> Defect {
+    /// The defect of a run that is worst at `index` and counts from the station `found` on.
+    fn defect_at(&self, kind: DefectKind, index: usize, found: usize) -> Defect {
         let place = self.place_of(kind, index);
         let station = &self.records[place].station;
         let size = self.size_at(kind, index);
@@ -109,6 +110,8 @@ impl Coil {
             turn: (place / STATIONS_PER_TURN) as u32 + 1,
             layer: station.layer,
             angle_deg: (place % STATIONS_PER_TURN) as f64,
+            found_turn: (found / STATIONS_PER_TURN) as u32 + 1,
+            found_angle_deg: (found % STATIONS_PER_TURN) as f64,
             time_s: station.time,
             until_s: None,
             size_m: size,
@@ -248,6 +251,13 @@ impl Coil {
             .rev()
             .take_while(|node| node.angle > end - TAU)
             .fold(0.0, |most, node| node.settled.plastic_strain.max(most))
+    }
+
+    /// Largest plastic stretch of the settled wire, and the station where it first is; `None` before there is wire.
+    pub(crate) fn largest_stretch(&self) -> Option<(f64, usize)> {
+        let strains = self.records.iter().map(|record| record.signs.strain);
+        let strains = strains.enumerate().map(|(index, strain)| (strain, index));
+        strains.reduce(|most, next| if next.0 > most.0 { next } else { most })
     }
 
     /// The worst verdict of the turns of which half has settled, and of every defect; [`Verdict::Unsettled`] before that.

@@ -4,10 +4,14 @@ use super::defect::{BulgeLimit, Defect, DefectKind};
 use super::turn::{TurnMeasures, Verdict};
 
 impl Defect {
-    /// What it is, how large and where, as a sentence without its full stop.
+    /// What it is, how large, where, and where it was found, as a sentence without its full stop.
     pub fn in_words(&self) -> String {
+        let found = match (self.found_turn, self.found_angle_deg) {
+            place if place == (self.turn, self.angle_deg) => String::new(),
+            (turn, angle) => format!("; found in turn {turn} at {angle:.0} deg"),
+        };
         let place = format!(
-            "in turn {} (layer {}) at {:.0} deg, t = {:.6} s",
+            "in turn {} (layer {}) at {:.0} deg, t = {:.6} s{found}",
             self.turn, self.layer, self.angle_deg, self.time_s
         );
         match (self.kind, self.size_m, self.size_d) {
@@ -215,6 +219,8 @@ mod tests {
             turn,
             layer: 1,
             angle_deg: 210.0,
+            found_turn: turn,
+            found_angle_deg: 170.0,
             time_s: 0.02,
             until_s: None,
             size_m: Some(size_m),
@@ -231,7 +237,7 @@ mod tests {
         assert_eq!(
             said,
             [
-                "2 times gap; the gravest: gap of 0.210 mm (0.30 d) in turn 3 (layer 1) at 210 deg, t = 0.020000 s"
+                "2 times gap; the gravest: gap of 0.210 mm (0.30 d) in turn 3 (layer 1) at 210 deg, t = 0.020000 s; found in turn 3 at 170 deg"
             ]
         );
         let said = reasons(Verdict::Gap, &defects[..1], &[], judged, 0.7e-3);

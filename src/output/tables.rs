@@ -46,6 +46,8 @@ struct DefectRow {
     time_s: f64,
     size_m: Option<f64>,
     size_d: Option<f64>,
+    found_turn: u32,
+    found_angle_deg: f64,
 }
 
 /// Writes `defects.csv`: one row per defect, in the order given.
@@ -63,6 +65,8 @@ impl From<&Defect> for DefectRow {
             time_s: defect.time_s,
             size_m: defect.size_m,
             size_d: defect.size_d,
+            found_turn: defect.found_turn,
+            found_angle_deg: defect.found_angle_deg,
         }
     }
 }
@@ -172,7 +176,8 @@ impl From<(usize, &Station)> for StationRow {
 const TURN_HEADER: &str = "turn,layer,turn_in_layer,verdict,settled,stations,gap_mean,gap_rms,gap_max,gap_over,\
     gap_run,flange_gap,axial_mean,bulge_max,bulge_excess_max,bulge_face_px,bulge_face_pz,bulge_face_nx,\
     bulge_face_nz,overlap_max,layer_max,out_of_groove";
-const DEFECT_HEADER: &str = "kind,turn,layer,angle_deg,time_s,size_m,size_d";
+const DEFECT_HEADER: &str =
+    "kind,turn,layer,angle_deg,time_s,size_m,size_d,found_turn,found_angle_deg";
 const STATION_HEADER: &str = "turn,station,angle,polar,x,y,z,radius,arc,time,height,bulge,\
     bulge_excess,gap,axial,flange_gap,overlap,layer,pass,measured,crosses,out_of_groove";
 
@@ -222,6 +227,8 @@ mod tests {
             time_s: 0.0,
             size_m: None,
             size_d: None,
+            found_turn: 1,
+            found_angle_deg: 0.0,
         };
         assert_eq!(
             header_of(&|writer| writer.serialize(&defect).unwrap()),

@@ -455,12 +455,21 @@ impl SceneSettings {
         let room = rounding + (ends[1] - ends[0]) - (largest - least);
         let start = self.nozzle.y_start;
         let places = [ends[0] + (start - least), ends[1] - (largest - start)].map(si);
+        let spread = |pitch: f64| self.winding.pitch == 0.0 && pitch > d * (1.0 + ROUNDING);
         let allowed = match room >= 0.0 {
             _ if self.traverse.mode == "table" => {
                 format!("positions from {} to {} m", si(ends[0]), si(ends[1]))
             }
             // a layer that fills the window leaves one place
-            true if places[0] == places[1] => format!("{} m", places[0]),
+            true if places[0] == places[1] => match law.pitch().filter(|pitch| spread(*pitch)) {
+                Some(pitch) => format!(
+                    "{} m, since winding.pitch = 0 spreads the turns over the whole window; or a winding.pitch from {} to below {} m",
+                    places[0],
+                    si(d),
+                    si(pitch)
+                ),
+                None => format!("{} m", places[0]),
+            },
             true => format!("{} to {} m", places[0], places[1]),
             false => format!("a way of {} m at most", si(ends[1] - ends[0])),
         };

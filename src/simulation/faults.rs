@@ -83,11 +83,14 @@ impl Winding {
     fn keep_fault(&mut self, kind: DefectKind, angle: f64, place: V3) {
         let angle = angle.max(0.0);
         let now = self.sys.state.time;
+        let (turn, angle_deg) = ((angle / TAU) as u32 + 1, (angle % TAU).to_degrees());
         self.run.faults.push(Defect {
             kind,
-            turn: (angle / TAU) as u32 + 1,
+            turn,
             layer: self.coil.layer_at(angle),
-            angle_deg: (angle % TAU).to_degrees(),
+            angle_deg,
+            found_turn: turn,
+            found_angle_deg: angle_deg,
             time_s: now,
             until_s: (kind == DefectKind::Slack).then_some(now),
             size_m: None,

@@ -41,6 +41,7 @@ mod straight_wire;
 mod summary;
 mod talk;
 mod telling;
+mod thinned;
 mod told;
 #[cfg(feature = "lab")]
 mod trail;

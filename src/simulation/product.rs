@@ -20,6 +20,8 @@ pub struct Product {
     pub wire_diameter_m: f64,
     /// diameter over the enamel, m; that of the bare wire without
     pub enamelled_diameter_m: f64,
+    /// least diameter over the enamel that plastic stretch leaves to settled wire, m: it keeps the volume
+    pub thinnest_diameter_m: f64,
     /// unstretched length of the settled wire from the clamp, m
     pub wire_length_m: f64,
     /// mass of that wire with its enamel, kg
@@ -92,6 +94,7 @@ impl Winding {
             material: self.scene.wire_material.clone(),
             wire_diameter_m: wire.bare_diameter,
             enamelled_diameter_m: wire.diameter,
+            thinnest_diameter_m: wire.diameter * self.least_diameter(),
             wire_length_m: length,
             wire_mass_kg: wire.mass_per_length() * length,
             resistivity_ohm_m: self.scene.resistivity,

@@ -145,6 +145,7 @@ impl Winding {
         );
         reasons.extend(self.slipped_off());
         reasons.extend(self.wire_on_a_rim());
+        reasons.extend(self.thinned_wire());
         let outputs = &self.run.outputs;
         reasons.extend(left_out(outputs.turns_wound, outputs.turns_settled));
         let limit = self.scene.window;

@@ -7,6 +7,11 @@ use crate::signals::EventKind;
 /// Stations within which defects that are found at once are told in one line. Chosen: about what a node settles.
 const TOGETHER: usize = 10;
 
+/// Why wire that comes to rest may lack the defect that was told of it: it was unwound and is wound again, or it was measured again
+/// without what comes to rest after it.
+const MEASURED_ANEW: &str =
+    "its wire was measured again, as the spindle or the nozzle had turned back";
+
 impl Winding {
     /// Measures wire that has come to rest, and tells of turns and defects that came to those there were.
     pub(super) fn settle_and_tell(&mut self, settled: SettledNode) {
@@ -25,13 +30,36 @@ impl Winding {
             self.keep_last_defect();
             self.tell_of_defects(from);
         }
+        self.tell_of_withdrawn(MEASURED_ANEW);
+    }
+
+    /// Settled wire has been measured again, since `because`: tells of defects that are new, and of those told before that are none
+    /// any more.
+    pub(super) fn tell_of_changes(&mut self, because: &str) {
+        self.tell_of_defects(0);
+        self.tell_of_withdrawn(because);
+    }
+
+    /// Tells of each defect that was told and that the wire there, which is at rest, does not have any more: `because` says what has
+    /// come to pass. Wire that was unwound is not there to be asked.
+    fn tell_of_withdrawn(&mut self, because: &str) {
+        let coil = &self.coil;
+        let gone = |(kind, at): &mut (DefectKind, usize)| coil.has_come_to_nothing(*kind, *at);
+        let withdrawn: Vec<_> = self.run.told_defects.extract_if(.., gone).collect();
+        for (kind, at) in withdrawn {
+            let (place, name) = (place(at), kind.words());
+            self.report(
+                EventKind::Defect,
+                format!("no longer a defect {place} ({name}): {because}"),
+            );
+        }
     }
 
     /// Tells of the defects that reach the station `from` or beyond and have not been told yet.
     ///
     /// Where the nozzle turned is known only once it has gone back. Wire of before is measured again then, and what is found so is
     /// told late. Wire that came loose and settles again with the same defect is no news.
-    pub(super) fn tell_of_defects(&mut self, from: usize) {
+    fn tell_of_defects(&mut self, from: usize) {
         let is_told = |run: &CountedRun| {
             let mut told = self.run.told_defects.iter();
             told.any(|(kind, at)| *kind == run.kind && (run.first..=run.last).contains(at))
@@ -43,21 +71,24 @@ impl Winding {
         let told = new.iter().map(|run| (run.kind, run.counts_at));
         self.run.told_defects.extend(told);
         for together in new.chunk_by_mut(|a, b| b.counts_at - a.counts_at < TOGETHER) {
-            let at = together.last().map_or(0, |run| run.counts_at);
-            together.sort_by_key(|run| run.kind as usize);
-            let names: Vec<&str> = together.iter().map(|run| run.kind.words()).collect();
-            let angle = (at % STATIONS_PER_TURN) as f64 * STATION_STEP;
-            self.report(
-                EventKind::Defect,
-                format!(
-                    "defect in turn {} at {:.0} deg ({})",
-                    at / STATIONS_PER_TURN + 1,
-                    angle.to_degrees(),
-                    names.join(", ")
-                ),
-            );
+            together.sort_by_key(|run| (run.counts_at, run.kind as usize));
+            let there = |runs: &[CountedRun]| {
+                let names: Vec<&str> = runs.iter().map(|run| run.kind.words()).collect();
+                format!("{} ({})", place(runs[0].counts_at), names.join(", "))
+            };
+            let places = together.chunk_by(|a, b| a.counts_at == b.counts_at);
+            let places: Vec<String> = places.map(there).collect();
+            let text = format!("defect found {}", places.join(" and "));
+            self.report(EventKind::Defect, text);
         }
     }
+}
+
+/// Where a station lies, in words.
+fn place(station: usize) -> String {
+    let angle = (station % STATIONS_PER_TURN) as f64 * STATION_STEP;
+    let turn = station / STATIONS_PER_TURN + 1;
+    format!("in turn {turn} at {:.0} deg", angle.to_degrees())
 }
 
 #[cfg(test)]
@@ -68,16 +99,15 @@ mod tests {
     use crate::settings::SceneSettings;
     use std::f64::consts::TAU;
 
-    /// Six turns on a circle round the core, one beside the other but for a step back of 0.6 diameters after three turns.
-    fn turns_with_a_step_back(start: f64, d: f64) -> Vec<SettledNode> {
+    /// Six turns on a circle round the core; `place` says where along y wire lies after so many turns, m.
+    fn six_turns(start: f64, place: impl Fn(f64) -> f64) -> Vec<SettledNode> {
         let node = |k: u32| {
             let turn = f64::from(k) / 72.0;
             let polar = start + TAU * turn;
-            let back = 0.6 * (12.0 * (turn - 3.0)).clamp(0.0, 1.0);
             SettledNode {
                 position: V3::new(
                     10e-3 * libm::cos(polar),
-                    d * (turn - back),
+                    place(turn),
                     10e-3 * libm::sin(polar),
                 ),
                 arc: TAU * 10e-3 * turn,
@@ -89,6 +119,13 @@ mod tests {
             }
         };
         (0..6 * 72).map(node).collect()
+    }
+
+    /// Six turns one beside the other but for a step back of 0.6 diameters after three turns.
+    fn turns_with_a_step_back(start: f64, d: f64) -> Vec<SettledNode> {
+        six_turns(start, |turn| {
+            d * (turn - 0.6 * (12.0 * (turn - 3.0)).clamp(0.0, 1.0))
+        })
     }
 
     fn defects_told(winding: &mut Winding) -> Vec<String> {
@@ -113,13 +150,28 @@ mod tests {
         assert!(winding.coil.defects().is_empty());
         // wire that goes on as before lies on the wrong side of its neighbour once the nozzle is known to have turned
         winding.coil_mut().begin_pass_at(3.0 * TAU, -1.0, 3.0 * d);
-        winding.tell_of_defects(0);
+        winding.tell_of_changes("the nozzle has turned since");
         let told = defects_told(&mut winding);
         let found = winding.coil.defects();
         assert!(!found.is_empty());
-        let names: usize = told.iter().map(|text| text.split(", ").count()).sum();
+        // each is told at the place that the tables name
+        let all = told.join(" and ");
+        for defect in &found {
+            let (turn, angle, name) = (
+                defect.found_turn,
+                defect.found_angle_deg,
+                defect.kind.words(),
+            );
+            let place = format!("in turn {turn} at {angle:.0} deg (");
+            let there = all.split(" and ").find(|told| told.contains(&place));
+            assert!(
+                there.is_some_and(|told| told.contains(name)),
+                "{defect:?}: {all}"
+            );
+        }
+        let names = all.matches([',', '(']).count();
         assert_eq!(names, found.len(), "{told:?}");
-        assert!(told[0].contains("overlap"), "{told:?}");
+        assert!(all.contains("overlap"), "{told:?}");
 
         // a loose end comes to rest where it lay
         winding.coil_mut().unsettle(200);
@@ -128,5 +180,75 @@ mod tests {
         }
         assert_eq!(winding.coil.defects().len(), found.len());
         assert_eq!(defects_told(&mut winding), [""; 0]);
+    }
+
+    /// A telling stood in the log that no table confirmed.
+    #[test]
+    fn a_defect_that_was_told_and_is_gone_is_told_to_be_gone() {
+        let scene = SceneSettings::default().build().expect("a scene");
+        let d = scene.wire.diameter;
+        let simulation = Simulation::new(&scene).expect("a start");
+        let mut winding = simulation.winding().clone();
+        let start = winding.coil.spec().start_angle;
+        for node in turns_with_a_step_back(start, d) {
+            winding.settle_and_tell(node);
+        }
+        winding.coil_mut().begin_pass_at(3.0 * TAU, -1.0, 3.0 * d);
+        winding.tell_of_changes("the nozzle has turned since");
+        let told = defects_told(&mut winding);
+        // Unwound wire is not there to be asked, and wire that comes to rest as before has its defects again.
+        winding.coil_mut().unsettle(200);
+        winding.tell_of_changes("nothing has come to pass");
+        assert_eq!(defects_told(&mut winding), [""; 0]);
+        for node in turns_with_a_step_back(start, d).split_off(6 * 72 - 200) {
+            winding.settle_and_tell(node);
+        }
+        assert_eq!(defects_told(&mut winding), [""; 0]);
+
+        winding.coil_mut().take_back_pass();
+        winding.tell_of_changes("the nozzle has turned since");
+        assert!(winding.coil.defects().is_empty());
+        let gone = defects_told(&mut winding);
+        let places = |texts: &[String]| -> Vec<String> {
+            let all = texts.join(" and ");
+            let of = |text: &str| {
+                let from = text.find("in turn").expect("a place");
+                text[from..=text.find(')').expect("a kind")].to_owned()
+            };
+            all.split(" and ").map(of).collect()
+        };
+        assert_eq!(places(&gone), places(&told), "{gone:?}");
+        let because = "): the nozzle has turned since";
+        assert!(gone.iter().all(|text| text.ends_with(because)), "{gone:?}");
+        // and told again where it comes again
+        winding.coil_mut().begin_pass_at(3.0 * TAU, -1.0, 3.0 * d);
+        winding.tell_of_changes("the nozzle has turned since");
+        assert_eq!(defects_told(&mut winding), told);
+    }
+
+    /// Rewound wire may lie better than it lay before.
+    #[test]
+    fn a_defect_that_is_wound_anew_without_it_is_told_to_be_gone() {
+        let scene = SceneSettings::default().build().expect("a scene");
+        let d = scene.wire.diameter;
+        let simulation = Simulation::new(&scene).expect("a start");
+        let mut winding = simulation.winding().clone();
+        let start = winding.coil.spec().start_angle;
+        for node in six_turns(start, |turn| d * (turn + 0.5 * (turn - 3.0).max(0.0))) {
+            winding.settle_and_tell(node);
+        }
+        let told = defects_told(&mut winding);
+        assert!(told.len() == 1 && told[0].contains("(gap)"), "{told:?}");
+        winding.coil_mut().unsettle(4 * 72);
+        for node in six_turns(start, |turn| d * turn).split_off(2 * 72) {
+            winding.settle_and_tell(node);
+        }
+        assert!(winding.coil.defects().is_empty());
+        let gone = defects_told(&mut winding);
+        let place = told[0].strip_prefix("defect found ").expect("a defect");
+        assert_eq!(
+            gone,
+            [format!("no longer a defect {place}: {MEASURED_ANEW}")]
+        );
     }
 }

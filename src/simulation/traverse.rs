@@ -25,7 +25,7 @@ impl Winding {
                 self.coil_mut().take_back_pass();
             }
             self.run.traverse = Traverse::new(self.sys.state.support[1].point.y);
-            self.tell_of_defects(0);
+            self.tell_of_changes("the core winds the other way round");
         }
         let core = turn * self.coil.spec().direction;
         let y = self.sys.state.support[1].point.y;
@@ -46,8 +46,7 @@ impl Winding {
                 Found::TakenBack => self.coil_mut().take_back_pass(),
             }
             if found != Found::Nothing {
-                // settled wire may have been measured again
-                self.tell_of_defects(0);
+                self.tell_of_changes("the nozzle has turned since");
             }
         }
     }

@@ -122,7 +122,7 @@ impl Winding {
             self.scene.defects = scene.defects;
             self.coil_mut().set_limits(scene.defects);
             self.count_defects();
-            self.tell_of_defects(0);
+            self.tell_of_changes("the limits of defects have changed");
         }
         if let Some(law) = self.sys.model.contact.law_mut() {
             law.mu_static = scene.friction.static_;

@@ -55,11 +55,18 @@ def test_defects_come_with_time_turn_and_angle(slave):
         slave.set(nozzle_position=slave.get("nozzle_position") + travel)
         slave.fmu.doStep(k * STEP, STEP)
     events = [text for _, _, category, text in slave.log if category == "logEvents"]
-    defects = [text for text in events if "defect in turn" in text]
+    defects = [text for text in events if "defect found in turn" in text]
     assert defects, slave.log
     for text in events:
         assert re.match(r"t = \d+\.\d+ s, turn \d+\.\d+, core at -?\d+\.\d deg: ", text), text
-    assert re.search(r"defect in turn \d+ at \d+ deg \(gap", defects[0])
+    assert re.search(r"defect found in turn \d+ at \d+ deg \(gap", defects[0])
+    # what was told and counts no more is said to be gone
+    told = len(slave.log)
+    slave.set(defects__gap=100.0)
+    slave.fmu.doStep(500 * STEP, STEP)
+    gone = [text for _, _, category, text in slave.log[told:] if category == "logEvents" and "(gap)" in text]
+    assert gone and all("no longer a defect in turn" in text for text in gone), slave.log[told:]
+    assert gone[0].endswith(": the limits of defects have changed")
 
 
 def test_a_derivative_that_depends_on_the_size_of_the_change_is_told(slave):

@@ -87,3 +87,28 @@ fn lower_flanges_are_those_of_the_scene_or_of_the_file() {
     assert_says(&of_the_file, &[inside, "or a core.file with lower flanges"]);
     assert!(!of_the_file.contains("core.flange"), "{of_the_file}");
 }
+
+/// A single allowed place was named, and neither why there is one nor what gives more room.
+#[test]
+fn a_pitch_of_0_leaves_one_start_and_its_refusal_says_why() {
+    let text = |more: &str| {
+        format!(
+            "[core]\nshape = 'cylinder'\n[core.flange]\ninner_distance_mm = 4.3\n[wire]\ndiameter_mm = 0.5\n\
+             [traverse]\nmode = 'orthocyclic'\n[winding]\nturns_per_layer = 8\nlayers = 3\n{more}"
+        )
+    };
+    assert_says(
+        &refused(&text("")),
+        &[
+            "nozzle.y_start = 0 m",
+            "allowed: -0.0019 m, since winding.pitch = 0 spreads the turns over the whole window; \
+             or a winding.pitch from 0.0005 to below 0.000506667 m",
+        ],
+    );
+    assert_says(
+        &refused(&text("pitch_mm = 0.5\n")),
+        &["allowed: -0.0019 to -0.00185 m"],
+    );
+    let place = "pitch_mm = 0.5\n[nozzle]\ny_start_mm = -1.87\n[start]\nclamp_y_mm = -1.87\n";
+    assert!(parse(&text(place)).is_ok_and(|settings| settings.build().is_ok()));
+}
