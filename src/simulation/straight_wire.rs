@@ -9,6 +9,10 @@ use std::f64::consts::FRAC_PI_2;
 /// Depth of straight wire in the core that is none, as a share of the wire's radius.
 const GRAZES: f64 = 1e-4;
 
+/// The same where the core is turned until the wire passes, as far as that can be. It has to be within what contact takes for
+/// outside: the landing of wire that begins deeper is not booked, and its rebound is.
+const PASSES: f64 = 1e-6;
+
 /// Halvings of an angle or a way until what passes is told from what does not.
 const HALVINGS: u32 = 40;
 
@@ -34,22 +38,29 @@ pub(super) fn clear_angle(
     angle: impl Fn(f64) -> f64,
 ) -> f64 {
     let radius = scene.wire.radius();
-    let is_clear = |back: f64| {
+    let is_clear = |back: f64, depth: f64| {
         let nozzle = Spin::new(angle(back)).to_core(nozzle);
         places(scene, surface, clamp, nozzle)
-            .all(|place| surface.nearest(place).distance > radius * (1.0 - GRAZES))
+            .all(|place| surface.nearest(place).distance > radius * (1.0 - depth))
     };
-    if is_clear(0.0) {
+    if is_clear(0.0, GRAZES) {
         return angle(0.0);
     }
+    // (wire that is clamped between two walls touches both wherever it leads, as deep as it is clamped)
+    let least = |depth: f64| least_clear(|back| is_clear(back, depth));
+    angle(least(PASSES).or_else(|| least(GRAZES)).unwrap_or(0.0))
+}
+
+/// The least angle, rad, up to a right one, that `passes`; none passes at 0.
+fn least_clear(passes: impl Fn(f64) -> bool) -> Option<f64> {
     let (mut deep, mut clear) = (0.0, 1e-3);
-    while !is_clear(clear) {
+    while !passes(clear) {
         (deep, clear) = (clear, 2.0 * clear);
         if clear > FRAC_PI_2 {
-            return angle(0.0);
+            return None;
         }
     }
-    angle(last_clear(clear, deep, is_clear))
+    Some(last_clear(clear, deep, passes))
 }
 
 /// The value next to `blocked` that still passes, from a `clear` one on.
