@@ -81,12 +81,13 @@ impl LineContact<'_> {
     /// Adds the slip couplings of the linear system to `list`.
     pub fn list_slip_couplings(&self, list: &mut Vec<SlipCoupling>) {
         for near in &self.scratch.near {
-            let block = near.tangent.map_or(Block::default(), |t| t.slip_coupling);
-            if block != Block::default() {
+            if let Some(tangent) = &near.tangent
+                && tangent.slip_coupling != Block::default()
+            {
                 list.push(SlipCoupling {
                     point: ContactPoint::of_number(near.point as usize).weights(),
                     foot: None,
-                    block,
+                    block: tangent.slip_coupling,
                 });
             }
         }

@@ -20,6 +20,8 @@ use crate::system::{Spindle, System};
 const SWEEPS: usize = 50;
 /// Way in a step that no sweep has to mend, as a share of the tolerance.
 const UNSEEN: f64 = 0.01;
+/// Change by a touch, as a share of what is unseen, after which the touches of its nodes are looked at again before all are.
+const STIRS: f64 = 0.1;
 
 /// Adds to what friction and blows took, J.
 fn book(sys: &mut System, rubbed: f64, stopped: f64) {
@@ -67,6 +69,8 @@ pub(super) struct Impacts {
     /// forces that came with landings, see [`Came`]
     came: Came,
     impulses: Vec<Impulse>,
+    /// by nodes, the last sweep that changed their motion by more than nothing to speak of
+    stirred: Vec<usize>,
 }
 
 impl Impacts {
@@ -149,11 +153,19 @@ impl Impacts {
     }
 
     /// Sweeps over the touches until none changes a part of the motion by more than `unseen`.
+    ///
+    /// Most touches are settled after few sweeps, and long flats need many. So after a sweep over all of them, only those are looked
+    /// at whose nodes were stirred since, until nothing stirs; a sweep over all has the last word.
     fn sweep_until(&mut self, part: usize, unseen: f64) {
-        for sweep in 0..SWEEPS {
-            if self.sweep(part, sweep % 2 == 1) < unseen {
+        self.stirred.clear();
+        self.stirred.resize(self.motion[part].len(), 0);
+        let mut all = true;
+        for sweep in 1..=SWEEPS {
+            let largest = self.sweep(part, sweep, all, STIRS * unseen);
+            if all && largest < unseen {
                 break;
             }
+            all = largest < unseen;
         }
     }
 
@@ -250,18 +262,26 @@ impl Impacts {
         sys.state.balance.numerical -= carried.gained(sys, now);
     }
 
-    /// Mends the speed, or place, of each touch in turn; returns the largest change.
-    fn sweep(&mut self, part: usize, backwards: bool) -> f64 {
+    /// Mends the speed, or place, of each touch in turn, every other `sweep` backwards along the wire: of `all`, or of those with a
+    /// node that changed by more than `stirs` in this sweep or the one before. Returns the largest change.
+    fn sweep(&mut self, part: usize, sweep: usize, all: bool, stirs: f64) -> f64 {
         let motion = &mut self.motion[part];
         let count = self.impulses.len();
         let mut largest: f64 = 0.0;
         for k in 0..count {
-            let k = if backwards { count - 1 - k } else { k };
+            let k = if sweep % 2 == 0 { count - 1 - k } else { k };
             let impulse = &mut self.impulses[k];
-            largest = largest.max(impulse.press(part, motion));
-            if part < 2 {
-                largest = largest.max(impulse.rub(part, motion));
+            if !all && impulse.nodes().all(|(i, _)| self.stirred[i] + 1 < sweep) {
+                continue;
             }
+            let mut change = impulse.press(part, motion);
+            if part < 2 {
+                change = change.max(impulse.rub(part, motion));
+            }
+            if change > stirs {
+                impulse.nodes().for_each(|(i, _)| self.stirred[i] = sweep);
+            }
+            largest = largest.max(change);
         }
         largest
     }
@@ -401,6 +421,35 @@ mod tests {
                 assert!(!falls, "{speed:?}, {opening}: into its touch");
             }
         }
+    }
+
+    /// Sweeps follow what stirs along the wire, and leave the rest alone; at the end nothing is left to mend.
+    #[test]
+    fn sweeps_follow_what_stirs() {
+        const NODES: usize = 80;
+        let places: Vec<V3> = (0..NODES).map(|i| V3::x() * (i as f64) * 1e-3).collect();
+        let mobility = vec![1.0 / MASS; NODES];
+        let touches = (1..NODES - 1).map(|i| AcceptedTouch {
+            point: ContactPoint::Node(i),
+            ..touch(V3::y(), V3::z() * 0.1)
+        });
+        let of_touch = |touch| Impulse::of(&touch, 1e-12, &mobility, &places);
+        let mut motion: [Vec<V3>; PARTS] = std::array::from_fn(|_| vec![V3::zeros(); NODES]);
+        motion[0][10] = V3::new(0.0, -1.0, 0.5);
+        let mut impacts = Impacts {
+            impulses: touches.filter_map(of_touch).collect(),
+            start: motion.clone(),
+            motion,
+            mobility,
+            ..Impacts::default()
+        };
+        let unseen = 1e-6;
+        impacts.sweep_until(0, unseen);
+        let stirred = |i: usize| impacts.stirred[i] > 0;
+        assert!((8..13).all(stirred), "{:?}", impacts.stirred);
+        assert!(!(40..NODES).any(stirred), "{:?}", impacts.stirred);
+        let left = impacts.sweep(0, 1, true, 0.0);
+        assert!(left < unseen, "{left}");
     }
 
     /// Friction stops a slide that it can stop, and brakes another by its share of the blow.

@@ -7,6 +7,7 @@
 mod assembly;
 mod beyond_band;
 mod carried;
+mod circle;
 mod commit;
 mod conjugate;
 mod dispatch;

@@ -1,5 +1,6 @@
 //! Newton's method on the incremental potential, with line search.
 
+use super::circle::Circle;
 use super::largest::largest;
 use super::model::Model;
 use super::unknowns::{Unknowns, add_at};
@@ -97,6 +98,11 @@ impl NewtonLimits {
         }
     }
 
+    /// Whether a shorter step is cheaper than a long search.
+    fn may_shorten(&self) -> bool {
+        self.line_search_halvings < Self::STEP.line_search_halvings
+    }
+
     /// Share of an update that is within reach, at most 1.
     fn share<const D: usize, U: Unknowns<D>>(
         &self,
@@ -154,6 +160,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         return Ok(0);
     }
     let mut last_update = f64::INFINITY;
+    let mut circle = Circle::NEW;
     let mut worst = (0, f64::INFINITY);
     for step in 1..=limits.steps {
         if step > FOLLOWS {
@@ -190,6 +197,9 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             }
         }
         let mut share = limits.share(work, update, model.diameter);
+        if circle.closes(update, share == 1.0) && limits.may_shorten() {
+            return Err(stuck(None));
+        }
         work.keep_start();
         // (the next evaluation fills in all of the stretch)
         std::mem::swap(&mut work.base, &mut work.axial);
