@@ -16,7 +16,7 @@ use crate::contact::AcceptedTouch;
 use crate::math::{Spin, V3, spin_velocity};
 use crate::system::{Spindle, System};
 
-/// Sweeps over the touches that are enough.
+/// Sweeps over all touches that are enough; those over a part of them count by how many they look at.
 const SWEEPS: usize = 50;
 /// Way in a step that no sweep has to mend, as a share of the tolerance.
 const UNSEEN: f64 = 0.01;
@@ -71,6 +71,15 @@ pub(super) struct Impacts {
     impulses: Vec<Impulse>,
     /// by nodes, the last sweep that changed their motion by more than nothing to speak of
     stirred: Vec<usize>,
+}
+
+/// What a sweep has done.
+#[derive(Default)]
+struct Swept {
+    /// largest change of a part of the motion
+    largest: f64,
+    /// touches that were looked at
+    visits: usize,
 }
 
 impl Impacts {
@@ -159,13 +168,15 @@ impl Impacts {
     fn sweep_until(&mut self, part: usize, unseen: f64) {
         self.stirred.clear();
         self.stirred.resize(self.motion[part].len(), 0);
-        let mut all = true;
-        for sweep in 1..=SWEEPS {
-            let largest = self.sweep(part, sweep, all, STIRS * unseen);
-            if all && largest < unseen {
+        let (mut all, mut sweep, mut visits) = (true, 0, 0);
+        while visits < SWEEPS * self.impulses.len() {
+            sweep += 1;
+            let swept = self.sweep(part, sweep, all, STIRS * unseen);
+            if all && swept.largest < unseen {
                 break;
             }
-            all = largest < unseen;
+            all = swept.largest < unseen;
+            visits += swept.visits;
         }
     }
 
@@ -263,11 +274,11 @@ impl Impacts {
     }
 
     /// Mends the speed, or place, of each touch in turn, every other `sweep` backwards along the wire: of `all`, or of those with a
-    /// node that changed by more than `stirs` in this sweep or the one before. Returns the largest change.
-    fn sweep(&mut self, part: usize, sweep: usize, all: bool, stirs: f64) -> f64 {
+    /// node that changed by more than `stirs` in this sweep or the one before.
+    fn sweep(&mut self, part: usize, sweep: usize, all: bool, stirs: f64) -> Swept {
         let motion = &mut self.motion[part];
         let count = self.impulses.len();
-        let mut largest: f64 = 0.0;
+        let mut swept = Swept::default();
         for k in 0..count {
             let k = if sweep % 2 == 0 { count - 1 - k } else { k };
             let impulse = &mut self.impulses[k];
@@ -281,9 +292,10 @@ impl Impacts {
             if change > stirs {
                 impulse.nodes().for_each(|(i, _)| self.stirred[i] = sweep);
             }
-            largest = largest.max(change);
+            swept.largest = swept.largest.max(change);
+            swept.visits += 1;
         }
-        largest
+        swept
     }
 
     /// Makes the motion that of the wire, now and at the step's start.
@@ -448,7 +460,7 @@ mod tests {
         let stirred = |i: usize| impacts.stirred[i] > 0;
         assert!((8..13).all(stirred), "{:?}", impacts.stirred);
         assert!(!(40..NODES).any(stirred), "{:?}", impacts.stirred);
-        let left = impacts.sweep(0, 1, true, 0.0);
+        let left = impacts.sweep(0, 1, true, 0.0).largest;
         assert!(left < unseen, "{left}");
     }
 
