@@ -280,7 +280,11 @@ impl Impacts {
         let count = self.impulses.len();
         let mut swept = Swept::default();
         for k in 0..count {
-            let k = if sweep.is_multiple_of(2) { count - 1 - k } else { k };
+            let k = if sweep.is_multiple_of(2) {
+                count - 1 - k
+            } else {
+                k
+            };
             let impulse = &mut self.impulses[k];
             if !all && impulse.nodes().all(|(i, _)| self.stirred[i] + 1 < sweep) {
                 continue;
