@@ -74,6 +74,28 @@ fn rows_after_a_kill(folder: &Path) -> usize {
 /// Bytes that the system writes between two looks for a signal, at least.
 const PAGE: usize = 4096;
 
+/// `timeout` and service managers signal a program and its group at once. The second signal ended the program in the middle of what it
+/// wrote, without its results.
+#[test]
+fn signals_that_come_at_once_end_a_run_as_one_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut child = run(folder.path(), 50.0).spawn().unwrap();
+    wait_for_rows(folder.path(), &mut child);
+    // (by the shell itself, within milliseconds; the run may be gone before the last)
+    let again = format!(
+        "for k in 1 2 3 4 5 6 7 8; do kill -TERM {}; done",
+        child.id()
+    );
+    let mut shell = Command::new("sh");
+    let kill = shell.args(["-c", &again]).stderr(Stdio::null());
+    kill.status().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130));
+    assert!(said(&output).contains("what was computed so far is in"));
+    assert!(folder.path().join("summary.json").is_file());
+    rows(folder.path());
+}
+
 /// The history ended in the middle of a number.
 #[test]
 fn a_killed_run_leaves_whole_lines() {

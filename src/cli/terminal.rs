@@ -3,13 +3,20 @@
 use super::failure::Failure;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
-/// A flag that Ctrl-C and SIGTERM raise; a second one ends the program at once.
+/// Signals within this time are one. Chosen: `timeout` and service managers signal a program and its group within milliseconds,
+/// nobody who presses Ctrl-C once more has waited less.
+const AT_ONCE: Duration = Duration::from_secs(1);
+
+/// A flag that Ctrl-C and SIGTERM raise; one that comes later ends the program at once.
 pub(super) fn stop_flag() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = Arc::clone(&flag);
+    let mut first = None;
     let handler = ctrlc::set_handler(move || {
-        if raised.swap(true, Ordering::SeqCst) {
+        raised.store(true, Ordering::SeqCst);
+        if first.get_or_insert_with(Instant::now).elapsed() > AT_ONCE {
             std::process::exit(130);
         }
     });
