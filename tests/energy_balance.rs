@@ -39,8 +39,8 @@ fn a_split_at_the_nozzle_is_no_work_of_the_spindle() {
     );
 }
 
-/// The new node of a bent edge stood off its chord, and both halves were too long for their wire: a fold of 0.3 rad stretched
-/// them by 1 %, far beyond yield, with six times the energy that the motion had.
+/// The new node of a bent edge stood off its chord, and both halves were too long for their wire. A fold of 0.3 rad stretched
+/// them by 1 %, far beyond yield. That was six times the energy of the motion.
 #[test]
 fn a_split_stretches_no_wire() {
     let mut sim = Simulation::new(&SceneSettings::default().build().unwrap()).unwrap();
