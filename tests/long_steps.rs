@@ -35,7 +35,7 @@ fn a_collision_is_told_when_the_nozzle_gets_there() {
     let (start, core, d) = (60e-3, libm::hypot(4e-3, 13e-3) + 2e-3, 0.7e-3);
     // it meets wire on the core first, and has half a wire left to the core itself
     let [wire, bare] = [core + d, core + 0.5 * d].map(|reach| (start - reach) / 0.26);
-    for dt in [0.2, 0.1, 0.01, 0.001] {
+    for dt in [0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.001] {
         let (time, turns) = met(dt);
         assert!((wire..bare).contains(&time), "{dt} s: {time}");
         assert!((1.5..1.9).contains(&turns), "{dt} s: {turns}");

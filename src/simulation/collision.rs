@@ -87,10 +87,14 @@ impl Winding {
     /// The coil must not reach the nozzle: no wire could leave it freely there.
     pub(super) fn check_clearance(&mut self) {
         let node = self.lift_off();
-        let x = self.sys.state.rod.x[node];
-        let reach = libm::hypot(x.x, x.z) + self.scene.wire.radius();
+        if node == 0 || node + 1 == self.sys.state.rod.nodes() {
+            return;
+        }
+        // (wire that leaves the core steeply stands off it at the node behind its last touch)
+        let touch = self.sys.touched_place(node);
+        let reach = libm::hypot(touch.x, touch.z) + self.scene.wire.radius();
         let distance = self.nozzle_distance();
-        if node == 0 || node + 1 == self.sys.state.rod.nodes() || reach < distance {
+        if reach < distance {
             return;
         }
         let (angle, _) = self.wound_to(node);

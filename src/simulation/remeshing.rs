@@ -39,6 +39,10 @@ impl Winding {
         let look = self.stepper.is_implicit() || self.run.steps.is_multiple_of(REMESH_STEPS);
         if look {
             self.check_health()?;
+            if self.run.over {
+                // (the outputs are those of the instant that the end is told with)
+                return Ok(());
+            }
             self.sys.turn_folded_clamp();
         }
         if self.stepper.is_implicit() {

@@ -86,6 +86,19 @@ impl System {
         }
     }
 
+    /// Where the wire touches core or frozen wire last before node `i` or there, m, of a node that [`Self::touches`]: there, or in
+    /// the middle of the edge before.
+    pub fn touched_place(&self, i: usize) -> V3 {
+        let itself = match &self.state.contact {
+            ContactState::Line(line) => line.touches_itself(i),
+            _ => true,
+        };
+        match itself {
+            true => self.centre(i),
+            false => ContactPoint::Edge(i - 1).place(&self.state.rod.x),
+        }
+    }
+
     /// Whether node `i` touches core or frozen wire, a flange not counted.
     pub fn touches_wound(&self, i: usize) -> bool {
         match (&self.state.contact, &self.model.contact) {

@@ -170,7 +170,16 @@ impl LineState {
         // (most have nothing near them, and searches for the last one that touches go through all of these)
         self.points[from..=2 * i + 1]
             .iter()
-            .any(|p| p.has_surroundings() && p.touches().iter().any(|t| t.depth > 0.0))
+            .any(|p| Self::is_touched(p))
+    }
+
+    /// Whether node `i` itself does, and not only the middle of an edge at it.
+    pub fn touches_itself(&self, i: usize) -> bool {
+        Self::is_touched(&self.points[2 * i])
+    }
+
+    fn is_touched(point: &PointState) -> bool {
+        point.has_surroundings() && point.touches().iter().any(|t| t.depth > 0.0)
     }
 
     /// The same without flanges: those of the `model`, or walls of its mesh that face along y.
