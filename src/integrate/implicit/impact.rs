@@ -12,12 +12,13 @@ use super::carried::Carried;
 use super::impulse::{Impulse, PARTS};
 use super::landings::{Came, Solved};
 use super::scheme::StepFormula;
+use super::stirred::Stirred;
 use crate::contact::AcceptedTouch;
 use crate::math::{Spin, V3, spin_velocity};
 use crate::system::{Spindle, System};
 
-/// Sweeps over all touches that are enough; those over a part of them count by how many they look at.
-const SWEEPS: usize = 50;
+/// How often a touch is looked at until that has to be enough.
+const LOOKS: u8 = 50;
 /// Way in a step that no sweep has to mend, as a share of the tolerance.
 const UNSEEN: f64 = 0.01;
 /// Change by a touch, as a share of what is unseen, after which the touches of its nodes are looked at again before all are.
@@ -69,17 +70,7 @@ pub(super) struct Impacts {
     /// forces that came with landings, see [`Came`]
     came: Came,
     impulses: Vec<Impulse>,
-    /// by nodes, the last sweep that changed their motion by more than nothing to speak of
-    stirred: Vec<usize>,
-}
-
-/// What a sweep has done.
-#[derive(Default)]
-struct Swept {
-    /// largest change of a part of the motion
-    largest: f64,
-    /// touches that were looked at
-    visits: usize,
+    stirred: Stirred,
 }
 
 impl Impacts {
@@ -141,6 +132,7 @@ impl Impacts {
     /// Impulses that stop what touches in a step of `h` (s), then those that let it rebound, and its history with them; until no way
     /// changes by `unseen`, m.
     fn settle(&mut self, h: f64, unseen: f64, parts: usize, restitution: f64) {
+        self.stirred.list(&self.impulses, self.mobility.len());
         self.sweep_until(0, unseen / h);
         if parts == 1 {
             return;
@@ -161,22 +153,23 @@ impl Impacts {
         }
     }
 
-    /// Sweeps over the touches until none changes a part of the motion by more than `unseen`.
+    /// Looks at the touches along the wire and back, until none changes a part of the motion by more than `unseen`.
     ///
-    /// Most touches are settled after few sweeps, and long flats need many. So after a sweep over all of them, only those are looked
-    /// at whose nodes were stirred since, until nothing stirs; a sweep over all has the last word.
+    /// Most touches are settled soon, and long flats need many sweeps. So after a sweep over all of them, only those are looked
+    /// at that share a node with one that changed since, until nothing stirs; a sweep over all has the last word.
     fn sweep_until(&mut self, part: usize, unseen: f64) {
-        self.stirred.clear();
-        self.stirred.resize(self.motion[part].len(), 0);
-        let (mut all, mut sweep, mut visits) = (true, 0, 0);
-        while visits < SWEEPS * self.impulses.len() {
-            sweep += 1;
-            let swept = self.sweep(part, sweep, all, STIRS * unseen);
-            if all && swept.largest < unseen {
-                break;
+        self.stirred.begin(LOOKS);
+        let (mut all, mut backwards) = (true, false);
+        loop {
+            if all {
+                self.stirred.all();
             }
-            all = swept.largest < unseen;
-            visits += swept.visits;
+            let largest = self.sweep(part, backwards, STIRS * unseen);
+            if all && largest < unseen {
+                return;
+            }
+            all = largest < unseen;
+            backwards = !backwards;
         }
     }
 
@@ -273,33 +266,25 @@ impl Impacts {
         sys.state.balance.numerical -= carried.gained(sys, now);
     }
 
-    /// Mends the speed, or place, of each touch in turn, every other `sweep` backwards along the wire: of `all`, or of those with a
-    /// node that changed by more than `stirs` in this sweep or the one before.
-    fn sweep(&mut self, part: usize, sweep: usize, all: bool, stirs: f64) -> Swept {
+    /// Mends the speed, or place, of each touch in turn that is to be looked at, along the wire or `backwards`, and those around one
+    /// that changes by more than `stirs`; returns the largest change.
+    fn sweep(&mut self, part: usize, backwards: bool, stirs: f64) -> f64 {
         let motion = &mut self.motion[part];
-        let count = self.impulses.len();
-        let mut swept = Swept::default();
-        for k in 0..count {
-            let k = if sweep.is_multiple_of(2) {
-                count - 1 - k
-            } else {
-                k
-            };
+        let mut largest = 0.0_f64;
+        let mut place = if backwards { self.impulses.len() } else { 0 };
+        while let Some(k) = self.stirred.take(place, backwards) {
+            place = if backwards { k } else { k + 1 };
             let impulse = &mut self.impulses[k];
-            if !all && impulse.nodes().all(|(i, _)| self.stirred[i] + 1 < sweep) {
-                continue;
-            }
             let mut change = impulse.press(part, motion);
             if part < 2 {
                 change = change.max(impulse.rub(part, motion));
             }
             if change > stirs {
-                impulse.nodes().for_each(|(i, _)| self.stirred[i] = sweep);
+                self.stirred.around(k);
             }
-            swept.largest = swept.largest.max(change);
-            swept.visits += 1;
+            largest = largest.max(change);
         }
-        swept
+        largest
     }
 
     /// Makes the motion that of the wire, now and at the step's start.
@@ -439,19 +424,16 @@ mod tests {
         }
     }
 
-    /// Sweeps follow what stirs along the wire, and leave the rest alone; at the end nothing is left to mend.
-    #[test]
-    fn sweeps_follow_what_stirs() {
-        const NODES: usize = 80;
-        let places: Vec<V3> = (0..NODES).map(|i| V3::x() * (i as f64) * 1e-3).collect();
-        let mobility = vec![1.0 / MASS; NODES];
-        let touches = (1..NODES - 1).map(|i| AcceptedTouch {
+    /// So many nodes of straight wire at rest, each with a touch.
+    fn laid(nodes: usize) -> Impacts {
+        let places: Vec<V3> = (0..nodes).map(|i| V3::x() * (i as f64) * 1e-3).collect();
+        let mobility = vec![1.0 / MASS; nodes];
+        let touches = (1..nodes - 1).map(|i| AcceptedTouch {
             point: ContactPoint::Node(i),
             ..touch(V3::y(), V3::z() * 0.1)
         });
         let of_touch = |touch| Impulse::of(&touch, 1e-12, &mobility, &places);
-        let mut motion: [Vec<V3>; PARTS] = std::array::from_fn(|_| vec![V3::zeros(); NODES]);
-        motion[0][10] = V3::new(0.0, -1.0, 0.5);
+        let motion: [Vec<V3>; PARTS] = std::array::from_fn(|_| vec![V3::zeros(); nodes]);
         let mut impacts = Impacts {
             impulses: touches.filter_map(of_touch).collect(),
             start: motion.clone(),
@@ -459,13 +441,56 @@ mod tests {
             mobility,
             ..Impacts::default()
         };
+        impacts.stirred.list(&impacts.impulses, nodes);
+        impacts
+    }
+
+    /// How often the touch of each node was looked at.
+    fn looks(impacts: &Impacts) -> Vec<u8> {
+        let left = impacts.stirred.left.iter();
+        left.map(|left| LOOKS - left).collect()
+    }
+
+    /// Sweeps follow what stirs along the wire, and leave the rest alone; at the end nothing is left to mend.
+    #[test]
+    fn sweeps_follow_what_stirs() {
+        let mut impacts = laid(200);
+        impacts.motion[0][70] = V3::new(0.0, -1.0, 0.5);
         let unseen = 1e-6;
         impacts.sweep_until(0, unseen);
-        let stirred = |i: usize| impacts.stirred[i] > 0;
-        assert!((8..13).all(stirred), "{:?}", impacts.stirred);
-        assert!(!(40..NODES).any(stirred), "{:?}", impacts.stirred);
-        let left = impacts.sweep(0, 1, true, 0.0).largest;
+        let looks = looks(&impacts);
+        // (all are looked at first and last)
+        assert!(looks[67..72].iter().all(|l| *l > 3), "{looks:?}");
+        assert!(
+            looks[..40].iter().chain(&looks[100..]).all(|l| *l == 2),
+            "{looks:?}"
+        );
+        impacts.stirred.begin(1);
+        impacts.stirred.all();
+        let left = impacts.sweep(0, false, 0.0);
         assert!(left < unseen, "{left}");
+    }
+
+    /// Touches that contradict each other were looked at fifty times as often as there are touches on the whole wire. The impulses there
+    /// grew all the while, and a bobbin spent a quarter of its time on them.
+    #[test]
+    fn a_contradiction_is_left_after_a_bounded_number_of_looks() {
+        let mut impacts = laid(200);
+        // one touch wants its node to rise, and another one on the same node that it falls
+        for (k, speed) in [(100, 1.0), (101, -1.0)] {
+            let twin = impacts.impulses[100];
+            impacts.impulses[k] = twin;
+            impacts.impulses[k].given = 1.0;
+            impacts.impulses[k].range = [[speed; 2]; PARTS];
+        }
+        impacts.stirred.list(&impacts.impulses, 200);
+        impacts.sweep_until(0, 1e-6);
+        let looks = looks(&impacts);
+        assert_eq!(looks[100..102], [LOOKS; 2]);
+        assert!(
+            looks[..60].iter().chain(&looks[140..]).all(|l| *l <= 2),
+            "{looks:?}"
+        );
     }
 
     /// Friction stops a slide that it can stop, and brakes another by its share of the blow.

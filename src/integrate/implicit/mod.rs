@@ -33,6 +33,7 @@ mod scheme;
 mod statics;
 mod step;
 mod step_control;
+mod stirred;
 mod tensioner;
 mod unknowns;
 mod work;
