@@ -96,13 +96,7 @@ impl TriMesh {
                 }
             }
         }
-        let [down, up] = reach.map(|reach| {
-            let ends = [f64::INFINITY, 0.0];
-            let far = reach.into_iter().flatten();
-            far.fold(ends, |[near, most], far| {
-                [near.min(far), f64::max(most, far)]
-            })
-        });
+        let [down, up] = reach.map(|reach| ends(reach.into_iter().flatten().collect(), least));
         let (mut height, mut too_high) = (least, self.radius_about_y());
         for _ in 0..HALVINGS {
             let middle = 0.5 * (height + too_high);
@@ -117,6 +111,20 @@ impl TriMesh {
             height,
             radius: section.radius(),
         })
+    }
+
+    /// Where wire of the thickness `least` (m) that is laid further and further on from `y` first meets what stands in its way, towards
+    /// -y and +y: a place for each that is looked at round the core, infinite where nothing does, m.
+    ///
+    /// Where that is nearly all round, it is a flange of a [`Self::room`]; else a shoe, a collar's end or a boss.
+    pub(crate) fn in_the_way(&self, y: f64, least: f64) -> Option<[Vec<f64>; 2]> {
+        let ring = evenly(&self.section(y)?.outline(0.5 * least, CHORDS));
+        Some([-1.0, 1.0].map(|side| {
+            let faces = self.flange_faces(y, side);
+            let far = ring.iter().map(|&place| first(&faces, place));
+            far.map(|far| y + side * far.unwrap_or(f64::INFINITY))
+                .collect()
+        }))
     }
 
     fn radius_about_y(&self) -> f64 {
@@ -159,6 +167,17 @@ impl Face {
         let share = |k: usize| parts[k] / whole * self.away[k];
         (inside && whole != 0.0).then(|| share(0) + share(1) + share(2))
     }
+}
+
+/// The nearest and the farthest place of a flange. Not counted are few places that are nearer than all others by more than the wire is
+/// thick, `least`, m: something stands on the core before the flange there.
+fn ends(mut far: Vec<f64>, least: f64) -> [f64; 2] {
+    far.sort_by(f64::total_cmp);
+    let few = (OPEN * PLACES as f64) as usize;
+    let stands_apart = |k: &usize| far.get(*k).is_some_and(|far_k| far_k - far[k - 1] >= least);
+    let before = (1..=few).rev().find(stands_apart).unwrap_or(0);
+    let counted = &far[before.min(far.len())..];
+    [counted.first(), counted.last()].map(|end| end.copied().unwrap_or_default())
 }
 
 /// How far along y the first of these faces is at a place, m.
@@ -272,6 +291,26 @@ mod tests {
                 assert!((room.height - 4e-3).abs() < 0.02e-3, "{room:?}");
             }
         }
+    }
+
+    /// A boss that is as high as the wire was taken for a flange, and the coil for a quarter of it.
+    #[test]
+    fn a_boss_before_a_flange_is_none() {
+        let with_boss = joined(&[
+            ([-6.0, 6.0], [-6.0, 7.0], [-10.0, 10.0]),
+            ([-9.0, 9.0], [-5.0, -4.0], [-13.0, 13.0]),
+            ([-9.0, 9.0], [5.0, 6.0], [-13.0, 13.0]),
+            ([5.0, 6.6], [1.0, 2.0], [-2.0, 2.0]),
+        ]);
+        for y in [-3.0e-3, 1.4e-3, 4.0e-3] {
+            let room = with_boss.room(y, 0.5e-3).expect("flanges");
+            assert!(near(room.faces, [-4e-3, 5e-3]), "{y}: {room:?}");
+        }
+        let [down, up] = with_boss.in_the_way(-3.0e-3, 0.5e-3).expect("a section");
+        assert!(down.iter().all(|&y| (y + 4e-3).abs() < 1e-9), "{down:?}");
+        let at_boss = up.iter().filter(|&&y| (y - 1e-3).abs() < 1e-9).count();
+        let share = at_boss as f64 / up.len() as f64;
+        assert!((share - 4.0 / 64.0).abs() < 0.03, "{share}");
     }
 
     /// Boxes, mm, that overlap.

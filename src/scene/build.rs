@@ -1,5 +1,6 @@
 //! From settings to a scene: every leaf in range, and no two that contradict each other.
 
+use super::clamp_places::clamp_places;
 use super::error::Warning;
 use super::extent::{Extent, between_turns};
 use super::features::Decisions;
@@ -11,7 +12,7 @@ use super::{
     Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver, Window,
 };
 use crate::geometry::stl::{self, StlError};
-use crate::geometry::{Room, TriMesh};
+use crate::geometry::{Room, Surface, TriMesh};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::settings::{NozzleFollows, SceneSettings, SolverSettings, Spindle};
@@ -321,6 +322,8 @@ impl SceneSettings {
             y_min: f64::INFINITY,
             y_max: f64::NEG_INFINITY,
             window: None,
+            clamp_places: Vec::new(),
+            in_the_way: None,
         };
         for vertex in &mesh.vertices {
             extent.turning_radius = extent.turning_radius.max(libm::hypot(vertex.x, vertex.z));
@@ -329,12 +332,17 @@ impl SceneSettings {
         }
         self.check_axis(&mesh, [extent.y_min, extent.y_max])?;
         // Wire that is no wider than they are high lies between flanges; what is lower are ribs.
+        let (clamp, wire) = (self.start.clamp_y, self.wire.outer_diameter());
         if self.core.flange.inner_distance == 0.0 {
-            extent.window = mesh.room(self.start.clamp_y, self.wire.outer_diameter());
+            extent.window = mesh.room(clamp, wire);
         }
         extent.winding_radius = extent
             .window
             .map_or(extent.turning_radius, |room| room.radius);
+        extent.in_the_way = mesh.in_the_way(clamp, wire);
+        if let Some(room) = extent.window {
+            extent.clamp_places = clamp_places(&Surface::new(mesh), room, 0.5 * wire);
+        }
         Ok(extent)
     }
 

@@ -75,16 +75,24 @@ impl SceneSettings {
         let rounding = ROUNDING * length;
         // (between flanges that leave the wire no room no place would do: their distance has been refused)
         let has_room = between_turns(high - low, wire.diameter).is_some();
-        let (low, high) = (low + wire.radius(), high - wire.radius());
-        let within = (low - rounding..=high + rounding).contains(&self.start.clamp_y);
-        if has_room && !within {
+        let all = [low + wire.radius(), high - wire.radius()];
+        let clamp = self.start.clamp_y;
+        // (how far it is beside a stretch)
+        let beside = |[low, high]: &[f64; 2]| (low - clamp).max(clamp - high);
+        let places = extent.clamp_places.iter();
+        let nearest = places.min_by(|a, b| beside(a).total_cmp(&beside(b)));
+        let [low, high] = *nearest.unwrap_or(&all);
+        if has_room && beside(&[low, high]) > rounding {
             problems.add(self.impossible(
                 "start.clamp_y",
                 match extent.window {
+                    Some(_) if beside(&all) <= rounding => {
+                        "the wire end is clamped in what stands on the core there, or on the rim of a flange"
+                    }
                     Some(_) => "the wire end is clamped in a flange",
                     None => "the wire end is clamped beside the core",
                 },
-                format!("{} to {} m", si(low), si(high)),
+                format!("{} to {} m", si_up(low), si_down(high)),
             ));
         }
     }

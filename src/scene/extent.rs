@@ -24,6 +24,10 @@ pub(super) struct Extent {
     pub(super) y_max: f64,
     /// what lies between flanges, those of the scene or those that a mesh has
     pub(super) window: Option<Room>,
+    /// between the flanges of a mesh, the stretches along the axis in which wire can be clamped on +x, m
+    pub(super) clamp_places: Vec<[f64; 2]>,
+    /// what wire on a mesh meets towards either end, by [`TriMesh::in_the_way`](crate::geometry::TriMesh::in_the_way)
+    pub(super) in_the_way: Option<[Vec<f64>; 2]>,
 }
 
 impl Extent {
@@ -36,6 +40,8 @@ impl Extent {
             y_min: -half,
             y_max: half,
             window: flange.map(|f| between(f, turning_radius)),
+            clamp_places: Vec::new(),
+            in_the_way: None,
         }
     }
 

@@ -9,6 +9,7 @@ mod angle_table;
 mod assign;
 mod build;
 mod checks;
+mod clamp_places;
 mod description;
 mod error;
 mod extent;

@@ -1,7 +1,7 @@
 //! Values that are possible but perhaps not meant.
 
 use super::error::Warning;
-use super::extent::Extent;
+use super::extent::{Extent, ROUNDING};
 use super::impossible::si;
 use super::without_effect::Reader;
 use super::{Core, Integrator, NozzleLaw, Solver, Window};
@@ -70,6 +70,36 @@ impl SceneSettings {
         Some((key, message))
     }
 
+    /// What stands on a mesh in the way of wire that the nozzle lays, and is no flange all round; the message for the key of its file.
+    fn in_the_way(&self, wire: &Section, extent: &Extent, law: &NozzleLaw) -> Option<String> {
+        let met = extent.in_the_way.as_ref()?;
+        let lead = self.traverse.lead.abs();
+        let [low, high] = law.range();
+        let mut laid = [low + lead - wire.radius(), high - lead + wire.radius()];
+        if let Some(room) = extent.window {
+            // (turns that go farther are told as past a flange)
+            laid = [laid[0].max(room.faces[0]), laid[1].min(room.faces[1])];
+        }
+        let rounding = ROUNDING * (extent.y_max - extent.y_min);
+        let found = [0, 1].map(|side| {
+            let depth = |y: f64| [y - laid[0], laid[1] - y][side];
+            let hit = met[side].iter().copied().filter(|&y| depth(y) > rounding);
+            let first = hit.clone().max_by(|a, b| depth(*a).total_cmp(&depth(*b)));
+            let share = hit.count() as f64 / met[side].len() as f64;
+            first.map(|y| (y, laid[side], share))
+        });
+        let (y, end, share) = found
+            .into_iter()
+            .flatten()
+            .max_by(|a, b| a.2.total_cmp(&b.2))?;
+        Some(format!(
+            "something stands on the core from {} m on, over {:.0} % of the way round it, as a shoe, a collar or a boss does; turns are laid as far as {} m, and those there lie on it",
+            si(y),
+            100.0 * share,
+            si(end)
+        ))
+    }
+
     pub(super) fn warnings(
         &self,
         solver: &Solver,
@@ -106,6 +136,9 @@ impl SceneSettings {
                 "nozzle.y_start",
                 format!("the nozzle starts beside the core; {ends}"),
             );
+        }
+        if by_law && let Some(message) = self.in_the_way(wire, extent, law) {
+            warn("core.file", message);
         }
         let last = law.position(law.end());
         let by_angle = by_law && self.traverse.mode == "by-angle";

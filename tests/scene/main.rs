@@ -8,6 +8,7 @@ mod reading;
 mod refusals;
 mod remedies;
 mod several;
+mod standing_on_the_core;
 #[path = "../common/stl.rs"]
 mod stl;
 mod wire;

@@ -10,7 +10,7 @@ fn triangles() -> Vec<[[f32; 3]; 3]> {
 }
 
 /// The same of a box of any size: half its width and height, mm, and from where to where along y.
-fn of_a_box(half_x: f32, y: [f32; 2], half_z: f32) -> Vec<[[f32; 3]; 3]> {
+pub(crate) fn of_a_box(half_x: f32, y: [f32; 2], half_z: f32) -> Vec<[[f32; 3]; 3]> {
     let corner = |i: u32| {
         let side = |bit: u32, half: f32| if i >> bit & 1 == 1 { half } else { -half };
         [side(0, half_x), y[(i >> 1 & 1) as usize], side(2, half_z)]
@@ -32,7 +32,7 @@ fn of_a_box(half_x: f32, y: [f32; 2], half_z: f32) -> Vec<[[f32; 3]; 3]> {
 }
 
 /// The text of a file whose solid has this name.
-fn text(name: &str, triangles: &[[[f32; 3]; 3]]) -> String {
+pub(crate) fn text(name: &str, triangles: &[[[f32; 3]; 3]]) -> String {
     let facet = |corners: &[[f32; 3]; 3]| {
         let vertices = corners
             .map(|[x, y, z]| format!("vertex {x} {y} {z}\n"))
