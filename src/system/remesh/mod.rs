@@ -37,12 +37,16 @@ impl System {
     /// balance. The residual was `unexplained` (J) before.
     ///
     /// The moment on the core stays what it was, since a change of the mesh is no motion. Nothing has balanced the forces of the
-    /// new nodes yet; they would go with the core's way over the next step.
+    /// new nodes and points yet; what they would add to it the core holds. Otherwise they would go with the core's way over the
+    /// next step in the work on the wire, and not in that of the spindle.
     pub fn follow_mesh(&mut self, unexplained: f64) {
-        let moment = (self.state.torque_on_core, self.state.unbalanced);
+        let torque = self.state.torque_on_core;
         self.refresh();
         if self.model.contact.is_line() {
-            (self.state.torque_on_core, self.state.unbalanced) = moment;
+            if self.state.turning.is_some() {
+                self.state.unbalanced += torque - self.state.torque_on_core;
+            }
+            self.state.torque_on_core = torque;
         }
         self.state.balance.remeshing += self.energy_residual(None) - unexplained;
     }
