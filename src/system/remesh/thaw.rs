@@ -44,6 +44,8 @@ impl System {
         for part in self.parts() {
             part.insert_front(&thaw);
         }
+        // the point of what was the clamp lies elsewhere since its neighbour moved, and nothing saw it slide
+        self.carry_points(count, count);
         self.roll_with_core(count);
         self.place_supports();
         for i in 1..=count {
