@@ -4,7 +4,7 @@ use super::{REMESH_STEPS, SimError, Winding};
 use crate::geometry::FrozenNode;
 use crate::math::Spin;
 use crate::math::turn_about_y;
-use crate::math::{polar_angle, wrap_to_pi};
+use crate::math::{polar_angle, spin_velocity, wrap_to_pi};
 use crate::measure::DefectKind;
 use crate::scene::LiveContact;
 use crate::system::HALF_TURN;
@@ -26,6 +26,9 @@ const SHORTEST_BENT: f64 = 0.1;
 /// Angle from which on that share goes down with its square, so that the chord loses no more, rad. Four times [`BENT`]: wire that
 /// turns by more from edge to edge is folded.
 const WELL_BENT: f64 = 4.0 * BENT;
+
+/// Longest step over the one before it, rounded up: no step that lands before the next look is longer.
+const AHEAD: f64 = 2.0;
 
 /// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
 /// turn back.
@@ -50,7 +53,7 @@ impl Winding {
         }
         let insert = self.nozzle_edge_is_long();
         let refine = if look {
-            self.edges_to_refine()
+            self.edges_to_refine(dt)
         } else {
             Vec::new()
         };
@@ -77,6 +80,9 @@ impl Winding {
         // from the nozzle down, so that the numbers of the others stay
         for j in refine.into_iter().rev() {
             self.split(j);
+        }
+        if look {
+            self.refine_ahead_of_touch(dt);
         }
         for i in coarsen.into_iter().rev() {
             if i > freeze + 1 {
@@ -155,14 +161,34 @@ impl Winding {
         self.cosine_at(node) < libm::cos(angle)
     }
 
-    /// Edges that are too long for where they came or how they bend, ascending.
-    fn edges_to_refine(&self) -> Vec<usize> {
+    /// Edges that are too long for where they came in a step of `dt`, s, or how they bend, ascending.
+    fn edges_to_refine(&self, dt: f64) -> Vec<usize> {
+        let near = self.scene.solver.refine_distance;
+        self.long_edges(|j| {
+            self.is_bent(j) || self.comes_near_core(j, near.max(self.way_ahead(j, dt)))
+        })
+    }
+
+    /// Halves long edges that a step after one of `dt`, s, may bring to the core until they are fine: at the next look it would be
+    /// too late, and new points between those that touch would lie deep in the core.
+    fn refine_ahead_of_touch(&mut self, dt: f64) {
+        loop {
+            let soon = self.long_edges(|j| self.comes_near_core(j, self.way_ahead(j, dt)));
+            if soon.is_empty() {
+                break;
+            }
+            for j in soon.into_iter().rev() {
+                self.split(j);
+            }
+        }
+    }
+
+    /// Edges ahead of settled wire, but for that at the nozzle, that are longer than fine ones and `wanted`, ascending.
+    fn long_edges(&self, wanted: impl Fn(usize) -> bool) -> Vec<usize> {
         let solver = self.scene.solver;
         if solver.spacing_free < 1.5 * solver.spacing_near {
             return Vec::new();
         }
-        let spin = Spin::new(self.sys.state.spindle.angle);
-        let reach = self.layers_below() + solver.refine_distance + self.scene.wire.radius();
         let rod = &self.sys.state.rod;
         // the edge at the nozzle keeps its length for the feed
         let first = if self.stepper.is_implicit() {
@@ -171,23 +197,25 @@ impl Winding {
             0
         };
         (first..rod.edges() - 1)
-            .filter(|&j| {
-                rod.rest[j] > 1.5 * solver.spacing_near
-                    && (self.is_bent(j) || self.comes_near_core(j, spin, reach))
-            })
+            .filter(|&j| rod.rest[j] > 1.5 * solver.spacing_near && wanted(j))
             .collect()
     }
 
-    /// Whether edge `j` comes within `reach` of the core: looked at in places so close together that where it touches between
-    /// them, one is within reach.
-    fn comes_near_core(&self, j: usize, spin: Spin, reach: f64) -> bool {
+    /// How far edge `j` may come towards the core in a step after one of `dt`, s, m.
+    fn way_ahead(&self, j: usize, dt: f64) -> f64 {
+        let (rod, core) = (&self.sys.state.rod, self.sys.state.spindle);
+        let speed = |i: usize| (rod.v[i] - spin_velocity(core.speed, rod.x[i])).norm();
+        AHEAD * dt * speed(j).max(speed(j + 1))
+    }
+
+    /// Whether edge `j` comes so `near` (m) to the core or the layers below: looked at in places so close together that where it
+    /// touches between them, one is.
+    fn comes_near_core(&self, j: usize, near: f64) -> bool {
+        let spin = Spin::new(self.sys.state.spindle.angle);
         let rod = &self.sys.state.rod;
-        let most = self
-            .scene
-            .solver
-            .refine_distance
-            .max(self.scene.wire.radius());
-        let half = (rod.rest[j] / (4.0 * most)).ceil().max(1.0);
+        let radius = self.scene.wire.radius();
+        let reach = self.layers_below() + near + radius;
+        let half = (rod.rest[j] / (4.0 * near.max(radius))).ceil().max(1.0);
         (-half as i32..=half as i32).any(|k| {
             let from_centre = f64::from(k) / half;
             let end = rod.x[if k < 0 { j } else { j + 1 }];
