@@ -3,6 +3,7 @@
 use super::buckets::Buckets;
 use super::crossover::Crossover;
 use super::defect::{BulgeLimit, DefectLimits, FALLBACK_BULGE, MEASURED};
+use super::onset::Onset;
 use super::passes::Passes;
 use super::plumb::Plumb;
 use super::profile::Profile;
@@ -94,7 +95,7 @@ pub(crate) struct Node {
     pub(crate) second_moment: f64,
     /// what plastic stretch adds to the wire's resistance up to here, see [`Coil::added_by_stretch`], m
     added_by_stretch: f64,
-    stations_before: usize,
+    pub(super) stations_before: usize,
 }
 
 impl Node {
@@ -142,6 +143,8 @@ pub(crate) struct Record {
     pub(crate) other_layer: u32,
     /// last station up to here at which wire crosses to its next place
     pub(crate) last_crossing: Option<usize>,
+    /// it is on its way to the next row, or is pressed up beside a flange
+    pub(super) rises: bool,
 }
 
 /// Measures of the settled wire, kept up to date node by node.
@@ -157,6 +160,8 @@ pub struct Coil {
     /// latest station by polar station and `floor(y / d)`
     pub(super) buckets: Buckets,
     pub(super) passes: Passes,
+    /// steps to a next row that began before they were certain, along the wire
+    pub(super) onsets: Vec<Onset>,
 }
 
 /// Settled nodes in a saved state, and what they were laid by.
@@ -177,6 +182,7 @@ impl Coil {
             records: PersistentVec::default(),
             buckets: Buckets::default(),
             passes,
+            onsets: Vec::new(),
         }
     }
 
@@ -283,13 +289,18 @@ impl Coil {
 
     /// Takes the nodes from this one on back and settles them again.
     fn measure_again(&mut self, first: usize) {
+        for node in self.take_from(first) {
+            self.settle(node);
+        }
+    }
+
+    /// Takes the nodes from this one on back.
+    pub(super) fn take_from(&mut self, first: usize) -> Vec<SettledNode> {
         let nodes: Vec<SettledNode> = (first..self.nodes.len())
             .map(|node| self.nodes[node].settled)
             .collect();
         self.unsettle(nodes.len());
-        for node in nodes {
-            self.settle(node);
-        }
+        nodes
     }
 
     /// Number of nodes settled.
@@ -345,6 +356,9 @@ impl Coil {
         });
         while self.records.len() as f64 * STATION_STEP <= angle + HAIR {
             self.add_station();
+            if self.date_step_back() {
+                return;
+            }
         }
     }
 
@@ -426,6 +440,9 @@ impl Coil {
             }
         }
         self.nodes.truncate(keep);
+        if let Some(first) = self.forget_steps() {
+            self.measure_again(first);
+        }
     }
 
     /// A copy of this coil with `extra` wire settled too, to measure wire that is still live.
@@ -476,7 +493,7 @@ impl Coil {
                 self.spec.direction,
             ),
         };
-        let (row, support) = self.row_and_support(pass, &at);
+        let (row, support, rises) = self.row_and_support(pass, &at);
         let bulge = height - support.level;
         // A drawn loop lies close on wire that itself stands off the core as it would alone.
         let at_rest = |profile: &Profile| match support.is_wire {
@@ -550,6 +567,7 @@ impl Coil {
             beneath,
             other_layer,
             last_crossing,
+            rises: rises && self.may_climb(layer, angle),
         }));
     }
 
@@ -561,11 +579,12 @@ impl Coil {
     }
 
     /// Layer of the next station where wire lies `below` it as it does, and for how many stations that has said otherwise.
-    /// A layer changes once it has for as many as a defect needs, or at once where a planned row begins. Layers of a turn begin
-    /// over each other, and would do so later and later.
+    /// A layer changes once it has for as many as a defect needs, or at once where a step begins that is certain, or a planned row. Layers
+    /// of a turn begin over each other, and would do so later and later.
     fn layer_after(&self, below: u32, row: Row) -> (u32, u32) {
+        let at_once = self.has_planned_passes() || self.steps_up_next();
         match self.records.last() {
-            Some(last) if self.has_planned_passes() && row.number > last.row.number => (below, 0),
+            Some(last) if at_once && row.number > last.row.number => (below, 0),
             Some(last) if last.station.layer != below => match last.other_layer + 1 {
                 count if count < stations_for(SHORT_RUN) => (last.station.layer, count),
                 _ => (below, 0),

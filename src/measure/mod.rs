@@ -11,6 +11,7 @@
 
 mod below;
 mod buckets;
+mod climb;
 mod coil;
 mod contour;
 mod crossover;
@@ -19,6 +20,7 @@ mod judge;
 mod jumps;
 mod marks;
 mod neighbour;
+mod onset;
 mod passes;
 mod plumb;
 mod profile;

@@ -57,29 +57,30 @@ impl Support {
 }
 
 impl Coil {
-    /// Row of the next station in this pass, and what lies below it.
-    pub(crate) fn row_and_support(&self, pass: Pass, at: &RowPlace) -> (Row, Support) {
+    /// Row of the next station in this pass, what lies below it, and whether it is pressed up beside a flange or on its way to the next row.
+    pub(crate) fn row_and_support(&self, pass: Pass, at: &RowPlace) -> (Row, Support, bool) {
         let RowPlace { angle, y, .. } = *at;
         let last = self.records.last();
         let row = last.map_or_else(|| Row::first(pass, y), |last| last.row);
         // Once the nozzle has turned, wire of the row itself may be what the next one lies on.
         let least = row.number + u32::from(row.is_over_in(pass));
-        let squeezed =
-            at.has_no_room_in(row, self.spec.diameter) && self.has_place_beside_turn_before(row);
+        let has_no_room = at.has_no_room_in(row, self.spec.diameter);
+        let squeezed = has_no_room && self.has_place_beside_turn_before(row);
+        let leaves = || self.support(row.number + 1, at).layer > self.layer_of(row);
+        let is_certain = self.steps_up_next();
         let climbed = row.is_over_in(pass)
-            && !squeezed
-            && (self.support(least, at).layer > last.map_or(1, |last| last.station.layer)
-                || self.climbs_by_plan(row, at));
+            && (is_certain
+                || !squeezed
+                    && (self.support(least, at).layer > last.map_or(1, |last| last.station.layer)
+                        || self.climbs_by_plan(row, at)));
         let climbs_at_flange = !row.is_over_in(pass)
-            && row.sense == pass.sense
-            && at.has_no_room_in(row, self.spec.diameter)
-            && !squeezed
-            && self.support(row.number + 1, at).layer > self.layer_of(row);
+            && (is_certain || row.sense == pass.sense && has_no_room && !squeezed && leaves());
+        let rises = squeezed && leaves();
         let row = match climbs_at_flange {
             true => row.beside_flange(pass, angle, y),
             false => row.next(pass, angle, y, climbed, self.spec.diameter),
         };
-        (row, self.support(row.number, at))
+        (row, self.support(row.number, at), rises)
     }
 
     /// Whether the turn before, of this row, has left a place beside a flange: wire that stands high there is the last turn of the row, which is
@@ -156,6 +157,8 @@ impl Coil {
                 let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
                 let climbing = of.number > 1 && station.angle < of.from + STEP_UP;
                 let carries = earlier || (one_turn_back && climbing);
+                // what crosses the slow climb of its own row lies in that row's layer
+                let over = station.layer + u32::from(!one_turn_back || !self.is_slow_climb(index));
                 if !earlier && aside <= BELOW && rise > 0.0 {
                     support.own_row = Some(match support.own_row {
                         // it stands on the higher of two turns below it
@@ -165,7 +168,7 @@ impl Coil {
                 }
                 let below = aside <= if earlier { BELOW } else { CLIMBED };
                 if below && rise >= NEXT_LAYER * d {
-                    support.layer = support.layer.max(station.layer + 1);
+                    support.layer = support.layer.max(over);
                 } else if aside <= BELOW && rise >= NEXT_LAYER * d {
                     let side = &mut groove[usize::from(lower.y > y)];
                     *side = station.layer.max(*side);

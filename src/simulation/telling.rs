@@ -12,11 +12,14 @@ const TOGETHER: usize = 10;
 const MEASURED_ANEW: &str =
     "its wire was measured again, as the spindle or the nozzle had turned back";
 
+/// The same where wire beside a flange has left its row for certain.
+const STEPPED: &str = "its wire was on its way to the next layer";
+
 impl Winding {
     /// Measures wire that has come to rest, and tells of turns and defects that came to those there were.
     pub(super) fn settle_and_tell(&mut self, settled: SettledNode) {
         let (turns, defects) = (self.coil.turns_settled(), self.coil.raised());
-        let from = self.coil.stations().len();
+        let (from, step) = (self.coil.stations().len(), self.coil.last_step());
         self.coil_mut().settle(settled);
         let now = self.coil.turns_settled();
         if now.floor() > turns.floor() {
@@ -25,12 +28,18 @@ impl Winding {
                 format!("turn {} has come to rest", now.floor()),
             );
         }
+        // a step to the next row that has become certain changes what was measured since it began
+        let changed = self
+            .coil
+            .last_step()
+            .filter(|_| self.coil.last_step() != step);
+        let from = changed.map_or(from, |step| from.min(step));
         let raised = self.coil.raised();
-        if (raised.iter().zip(defects)).any(|(now, before)| *now > before) {
+        if changed.is_some() || (raised.iter().zip(defects)).any(|(now, before)| *now > before) {
             self.keep_last_defect();
             self.tell_of_defects(from);
         }
-        self.tell_of_withdrawn(MEASURED_ANEW);
+        self.tell_of_withdrawn(changed.map_or(MEASURED_ANEW, |_| STEPPED));
     }
 
     /// Settled wire has been measured again, since `because`: tells of defects that are new, and of those told before that are none
@@ -250,5 +259,53 @@ mod tests {
             gone,
             [format!("no longer a defect {place}: {MEASURED_ANEW}")]
         );
+    }
+
+    /// Wire beside a flange that has left its row for certain was on its way since it stood on the turn before, and is judged there.
+    #[test]
+    fn a_defect_on_the_way_to_the_next_layer_is_told_once_the_wire_is_there() {
+        let scene = SceneSettings::default().build().expect("a scene");
+        let d = scene.wire.diameter;
+        let simulation = Simulation::new(&scene).expect("a start");
+        let mut winding = simulation.winding().clone();
+        winding.run.events.clear();
+        let start = winding.coil.spec().start_angle;
+        // beside the flange wire rises on the turn before, stands off it for a tenth of a turn, and climbs on
+        let lean = |turn: f64| match turn.fract() {
+            within if within < 0.2 => 0.0,
+            within if within < 0.6 => 0.15,
+            _ => 0.4,
+        };
+        let mut nodes = six_turns(start, |turn| match turn {
+            turn if turn < 3.0 => d * turn,
+            turn if turn < 4.0 => d * (3.0 + lean(turn)),
+            _ => d * 4.0,
+        });
+        nodes.truncate(5 * 72);
+        for (node, k) in nodes.iter_mut().zip(0..) {
+            let turn = f64::from(k) / 72.0;
+            let rise = match turn {
+                turn if turn < 4.0 => 0.0,
+                turn if (4.4..4.5).contains(&turn) => 1.3,
+                turn => (1.0 - (1.0 - lean(turn)).powi(2)).sqrt(),
+            };
+            node.height = d * rise;
+            node.flange = Some(4.5 * d - node.position.y);
+        }
+        for node in nodes {
+            winding.settle_and_tell(node);
+        }
+        let found = winding.coil.defects();
+        let bulges = found
+            .iter()
+            .filter(|defect| defect.kind == DefectKind::Bulge);
+        let places: Vec<(u32, f64)> = bulges.map(|d| (d.found_turn, d.found_angle_deg)).collect();
+        let [(5, angle)] = places[..] else {
+            panic!("one bulge: {found:?}");
+        };
+        assert!((144.0..180.0).contains(&angle), "{found:?}");
+        let told = defects_told(&mut winding);
+        let place = format!("in turn 5 at {angle:.0} deg (");
+        assert!(told.iter().any(|told| told.contains(&place)), "{told:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! The last turn of a layer in a window that fits exactly, pressed up between the turn before and a flange.
 
 use crate::coils::{D, on_cylinder, spec, wound};
-use coilwind::measure::{Coil, CoilSpec, DefectFlags, DefectKind};
+use coilwind::measure::{Coil, CoilSpec, DefectFlags, DefectKind, SettledNode};
 use std::f64::consts::TAU;
 
 /// Turns of a layer.
@@ -14,14 +14,21 @@ fn squeezed(lean: f64, part: [f64; 2], turned: f64) -> Coil {
 }
 
 fn squeezed_in(spec: CoilSpec, lean: f64, part: [f64; 2], turned: f64) -> Coil {
+    let lean = |turns: f64| match (part[0]..part[1]).contains(&turns.fract()) {
+        true => lean,
+        false => 0.0,
+    };
+    let mut coil = wound(spec, &leaning(lean));
+    coil.begin_pass(turned * TAU, -1.0);
+    coil
+}
+
+/// The wire of such layers, which leans over by so many diameters after so many turns.
+fn leaning(lean: impl Fn(f64) -> f64) -> Vec<SettledNode> {
     let place = |angle: f64| {
         let turn = (angle / TAU).floor();
         let within = angle / TAU - turn;
-        let leans = if (part[0]..part[1]).contains(&within) {
-            lean
-        } else {
-            0.0
-        };
+        let leans = lean(angle / TAU);
         // the step to the next place, in the last tenth
         let aside = ((within - 0.9) / 0.1).max(0.0);
         let last = TURNS - 1.0;
@@ -55,9 +62,82 @@ fn squeezed_in(spec: CoilSpec, lean: f64, part: [f64; 2], turned: f64) -> Coil {
         let ways = [-0.5 * D, (TURNS - 0.5) * D].map(|face| face - node.position.y);
         node.flange = Some(if ways[1] < -ways[0] { ways[1] } else { ways[0] });
     }
-    let mut coil = wound(spec, &nodes);
-    coil.begin_pass(turned * TAU, -1.0);
-    coil
+    nodes
+}
+
+/// Share of the last turn from which on wire stands half a diameter high on the turn before, and from which on it has left its row for
+/// certain.
+const CLIMB: [f64; 2] = [0.3, 0.6];
+
+/// Wire that climbs slowly beside the flange. The turn before leans over as long as it does not step to its next place.
+fn slow_climb() -> Vec<SettledNode> {
+    leaning(|turns| match turns.fract() {
+        within if turns < TURNS - 1.0 && within > 0.85 => 0.0,
+        within if within < CLIMB[0] => 0.05,
+        within if within < CLIMB[1] => 0.15,
+        _ => 0.4,
+    })
+}
+
+/// The next layer began only where wire had less than three quarters of a diameter beside the turn before, up to a quarter of a turn
+/// after it had begun to rise. Until then the turn after had no neighbour, and gaps beside it were not told.
+#[test]
+fn a_climb_begins_where_wire_sets_out_for_it() {
+    let nodes = slow_climb();
+    let mut coil = wound(spec(), &nodes);
+    coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    let begins = |turn: f64| ((turn + CLIMB[0]) * 360.0).round() as usize;
+    let layers: Vec<u32> = coil.stations().map(|s| s.layer).collect();
+    let second = layers.iter().position(|layer| *layer == 2);
+    // nodes lie two to three stations apart
+    let off = second.map(|station| station.abs_diff(begins(TURNS - 1.0)));
+    assert!(off.is_some_and(|off| off <= 3), "{second:?}");
+    let climb = begins(TURNS - 1.0) + 3..begins(TURNS - 0.5);
+    assert!(layers[climb].iter().all(|layer| *layer == 2));
+    let beside: Vec<bool> = coil.stations().map(|s| s.neighbour.is_some()).collect();
+    assert!(!beside[begins(TURNS) - 3] && beside[begins(TURNS) + 3]);
+}
+
+/// Such a climb was told to be late.
+#[test]
+fn a_slow_climb_is_as_late_as_where_it_begins() {
+    let jumps = [[TURNS - 1.1, TURNS - 1.05].map(|turn| turn * TAU)].into();
+    let mut coil = Coil::new(CoilSpec { jumps, ..spec() });
+    let mut was_late = false;
+    for node in slow_climb() {
+        coil.settle(node);
+        was_late |= coil.flags().late_jump;
+    }
+    assert!(
+        was_late,
+        "{:?}",
+        coil.stations()
+            .map(|s| (s.angle / TAU, s.layer))
+            .filter(|s| s.0 > 4.2 && s.0 < 4.7)
+            .step_by(8)
+            .collect::<Vec<_>>()
+    );
+    assert!(!coil.flags().late_jump, "{:?}", coil.defects());
+}
+
+#[test]
+fn a_climb_that_is_taken_back_was_never_known() {
+    let nodes = slow_climb();
+    let per_turn = nodes.len() as f64 / (2.0 * TURNS - 2.2);
+    let mut told = Coil::new(spec());
+    told.begin_pass((TURNS - 0.05) * TAU, -1.0);
+    for turn in [4.2, 4.35, 4.5, 4.59, 4.6, 4.61, 4.8, 5.4] {
+        let keep = (turn * per_turn) as usize;
+        let mut straight = told.clone();
+        nodes[..keep].iter().for_each(|&node| straight.settle(node));
+        let mut back = told.clone();
+        nodes.iter().for_each(|&node| back.settle(node));
+        back.unsettle(nodes.len() - keep);
+        assert!(straight == back, "{turn} turns left");
+        nodes[keep..].iter().for_each(|&node| back.settle(node));
+        nodes[keep..].iter().for_each(|&node| straight.settle(node));
+        assert!(straight == back, "wound again from {turn} turns");
+    }
 }
 
 /// Where it stood half a diameter high it began the next row, and the turn in the groove over it was a double turn.
