@@ -186,6 +186,8 @@ impl Coil {
                 };
                 if rise > 0.0 {
                     support.highest = support.highest.max(level);
+                    // what leans on wire lies in the layer of that wire at least
+                    support.layer = support.layer.max(station.layer);
                 }
                 if carries && level > support.level {
                     support.level = level;

@@ -177,3 +177,35 @@ fn a_last_turn_of_the_last_layer_that_rides_up_is_an_overlap() {
     let told = kinds(Some(TURNS * TAU));
     assert!(told.contains(&(DefectKind::Overlap, 5)), "{told:?}");
 }
+
+/// It lay on nothing, and so in the first layer, which then was as high as the second.
+#[test]
+fn wire_that_leans_on_a_turn_lies_in_its_layer() {
+    let aside: f64 = 0.92;
+    let leaning = 1.0 + (1.0 - aside * aside).sqrt();
+    // where the last turn leans on the one before, wire of the first layer has gone on to its next place
+    let places = [
+        (1.0, 0.0),
+        (2.0, 0.0),
+        (3.0, 0.0),
+        (2.5, 0.75f64.sqrt()),
+        (1.02, 1.0),
+    ];
+    let mut nodes = on_cylinder(5.85, 1.0, |angle| {
+        let place = places.get((angle / TAU) as usize).copied();
+        let (y, height) = place.unwrap_or((1.02 - aside, leaning));
+        (D * y, D * height)
+    });
+    for node in &mut nodes {
+        node.flange = Some(D * (0.52 - aside) - node.position.y);
+    }
+    let mut coil = wound(spec(), &nodes);
+    coil.begin_pass(3.0 * TAU, -1.0);
+    let layers: Vec<u32> = coil.turns().iter().map(|turn| turn.layer).collect();
+    assert_eq!(layers, [1, 1, 1, 2, 2, 2]);
+    let contour = coil.contour();
+    assert!(
+        contour[0].height_max_m < contour[1].height_mean_m,
+        "{contour:?}"
+    );
+}
