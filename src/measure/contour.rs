@@ -11,6 +11,10 @@ use std::f64::consts::PI;
 /// climbs, for up to one and a half turns until it has settled.
 const LAYER: f64 = 2.0;
 
+/// Part of a turn from which on wire that follows its nozzle to a next layer is one. Chosen: half. A layer may be a single turn, and a
+/// crossover or a place beside a flange takes less.
+const BEGUN: f64 = 0.5;
+
 /// Sectors round the core in which heights are compared. Chosen: half of the usual crossover each.
 const SECTORS: usize = 12;
 
@@ -73,6 +77,17 @@ fn median(values: &[f64]) -> f64 {
     0.5 * (values[(count - 1) / 2] + values[count / 2])
 }
 
+/// The highest layer in which, with those over it, so many turns lie; of each station its layer.
+fn highest(layers: impl Iterator<Item = u32>, turns: f64) -> Option<u32> {
+    let mut layers: Vec<u32> = layers.collect();
+    layers.sort_unstable();
+    let least = (turns * STATIONS_PER_TURN as f64) as usize;
+    layers
+        .len()
+        .checked_sub(least)
+        .and_then(|k| layers.get(k).copied())
+}
+
 impl Coil {
     /// Outer side of each layer that settled wire lies in, from the core outwards.
     pub fn contour(&self) -> Vec<LayerContour> {
@@ -96,9 +111,9 @@ impl Coil {
 
     /// Layers of the settled wire.
     ///
-    /// The nozzle makes a pass for each. Wire that climbs within its pass is a layer of its own from two turns on, also where it heaps
-    /// up turn on turn. So less than two turns lie over the layers of a coil. The last swing of a nozzle that swings past its
-    /// places is no pass.
+    /// The nozzle makes a pass for each, and at least half a turn lies there. Wire that climbs within its pass is a layer of its own from
+    /// two turns on, also where it heaps up turn on turn. So less than two turns lie over the layers of a coil. The last swing of a nozzle
+    /// that swings past its places is no pass.
     pub fn layers(&self) -> u32 {
         let end = self.stations().last().map_or(0.0, |station| station.angle);
         let swing = self.last_swing(end);
@@ -106,17 +121,10 @@ impl Coil {
             Some(swing) if station.pass == swing => swing - 1,
             _ => station.pass,
         };
-        let by_pass = self.stations().map(|s| s.layer.min(passes(s))).max();
-        let contour = self.contour();
-        let by_wire = contour
-            .iter()
-            .rev()
-            .scan(0.0, |turns, layer| {
-                *turns += layer.turns;
-                Some((layer.layer, *turns))
-            })
-            .find_map(|(layer, turns)| (turns >= LAYER).then_some(layer));
-        by_wire.max(by_pass).unwrap_or(0)
+        let by_pass = highest(self.stations().map(|s| s.layer.min(passes(s))), BEGUN);
+        let by_wire = highest(self.stations().map(|station| station.layer), LAYER);
+        let first = u32::from(self.stations().len() > 0);
+        by_wire.max(by_pass).unwrap_or(first)
     }
 
     /// Turns of settled wire over this layer.

@@ -115,6 +115,23 @@ fn a_last_turn_that_climbs_is_no_layer() {
     assert!(Coil::new(spec()).contour().is_empty());
 }
 
+/// Wire of a coil that ended where a pass had just begun was a layer: it gave the coil its height, and a fill factor as if that were full.
+#[test]
+fn a_layer_that_hardly_begins_is_none() {
+    for (more, layers) in [(0.1, 4), (0.4, 4), (0.6, 5), (1.4, 5)] {
+        let mut coil = ideal(4, more, true);
+        coil.begin_pass(4.0 * TURNS * TAU, 1.0);
+        let last = coil.stations().last().map(|s| (s.layer, s.pass));
+        assert_eq!(last, Some((5, 5)));
+        assert_eq!(coil.layers(), layers, "{more}");
+        let over = coil.turns_over(layers);
+        let expected = if layers == 4 { more } else { 0.0 };
+        assert!((over - expected).abs() < 0.05, "{over}");
+    }
+    // the first has begun with the first wire
+    assert_eq!(ideal(1, -19.8, false).layers(), 1);
+}
+
 /// Each turn of a heap beside a flange lies over the one before: no layer had two turns, and twenty turns seven layers high were
 /// told as one layer, which they filled to 108 %.
 #[test]
