@@ -461,7 +461,7 @@ impl Winding {
         let count = self.sys.thaw_front(count);
         self.sys.take_up_frozen(count);
         self.join_frozen_to_live();
-        self.coil_mut().unsettle(count);
+        self.take_back(count);
         self.run.watch.insert_front(count);
         if let Some(l) = self.sys.line_contact() {
             l.state.forget_surroundings();

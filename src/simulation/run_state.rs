@@ -48,6 +48,8 @@ pub(super) struct RunState {
     pub(super) was_slack: bool,
     /// slack and breaks, in the order of their times
     pub(super) faults: Vec<Defect>,
+    /// turns at rest that have been told
+    pub(super) told_turns: u32,
     /// defects of settled wire that have been told: kind, and the station from which on it counted
     pub(super) told_defects: Vec<(DefectKind, usize)>,
     /// unstretched wire from the clamp to the last that has lain on the coil and was not unwound, m

@@ -261,6 +261,7 @@ impl Winding {
             told_over: false,
             was_slack: false,
             faults: Vec::new(),
+            told_turns: 0,
             told_defects: Vec::new(),
             laid: 0.0,
             slipped: None,

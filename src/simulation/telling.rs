@@ -18,15 +18,13 @@ const STEPPED: &str = "its wire was on its way to the next layer";
 impl Winding {
     /// Measures wire that has come to rest, and tells of turns and defects that came to those there were.
     pub(super) fn settle_and_tell(&mut self, settled: SettledNode) {
-        let (turns, defects) = (self.coil.turns_settled(), self.coil.raised());
+        let defects = self.coil.raised();
         let (from, step) = (self.coil.stations().len(), self.coil.last_step());
         self.coil_mut().settle(settled);
-        let now = self.coil.turns_settled();
-        if now.floor() > turns.floor() {
-            self.report(
-                EventKind::Turn,
-                format!("turn {} has come to rest", now.floor()),
-            );
+        let now = self.coil.turns_settled() as u32;
+        if now > self.run.told_turns {
+            self.run.told_turns = now;
+            self.report(EventKind::Turn, format!("turn {now} has come to rest"));
         }
         // a step to the next row that has become certain changes what was measured since it began
         let changed = self
@@ -40,6 +38,14 @@ impl Winding {
             self.tell_of_defects(from);
         }
         self.tell_of_withdrawn(changed.map_or(MEASURED_ANEW, |_| STEPPED));
+    }
+
+    /// Takes the last `count` nodes back that have come to rest. A turn is told again once all of it was taken back: a part of it may come
+    /// loose and settle again with nobody unwinding it.
+    pub(super) fn take_back(&mut self, count: usize) {
+        self.coil_mut().unsettle(count);
+        let left = self.coil.turns_settled().ceil() as u32;
+        self.run.told_turns = self.run.told_turns.min(left);
     }
 
     /// Settled wire has been measured again, since `because`: tells of defects that are new, and of those told before that are none
@@ -307,5 +313,36 @@ mod tests {
         let told = defects_told(&mut winding);
         let place = format!("in turn 5 at {angle:.0} deg (");
         assert!(told.iter().any(|told| told.contains(&place)), "{told:?}");
+    }
+
+    /// An end of a turn that came loose told of the turn twice.
+    #[test]
+    fn a_turn_is_told_once_unless_it_is_unwound() {
+        let scene = SceneSettings::default().build().expect("a scene");
+        let d = scene.wire.diameter;
+        let simulation = Simulation::new(&scene).expect("a start");
+        let mut winding = simulation.winding().clone();
+        winding.run.events.clear();
+        let start = winding.coil.spec().start_angle;
+        let nodes = six_turns(start, |turn| d * turn);
+        let mut told_after = |back: usize| -> Vec<String> {
+            winding.take_back(back);
+            let there = winding.coil.len();
+            for node in &nodes[there..3 * 72 + 5] {
+                winding.settle_and_tell(*node);
+            }
+            let events = std::mem::take(&mut winding.run.events).into_iter();
+            let turns = events.filter(|event| event.kind == EventKind::Turn);
+            turns.map(|event| event.text).collect()
+        };
+        let told = |turns: &[u32]| -> Vec<String> {
+            let words = |turn| format!("turn {turn} has come to rest");
+            turns.iter().map(words).collect()
+        };
+        assert_eq!(told_after(0), told(&[1, 2, 3]));
+        assert_eq!(told_after(30), told(&[]));
+        assert_eq!(told_after(72), told(&[]));
+        assert_eq!(told_after(72 + 30), told(&[3]));
+        assert_eq!(told_after(3 * 72 + 5), told(&[1, 2, 3]));
     }
 }
