@@ -80,8 +80,9 @@ fn killed_until_it_ends(first: &mut Command, out: &Path, random: &mut ChaCha8Rng
     let mut child = first.args(["--checkpoint-every", "0.02"]).spawn().unwrap();
     let mut kills = 0;
     loop {
-        let wait = Duration::from_millis(50 + u64::from(random.next_u32() % 500));
-        std::thread::sleep(wait);
+        // (longer and longer, so that a machine under load gets past a checkpoint as well)
+        let wait = 50 + u64::from(random.next_u32() % (500 + 20 * kills));
+        std::thread::sleep(Duration::from_millis(wait));
         if let Some(status) = child.try_wait().unwrap() {
             assert!(status.success(), "{status}");
             return kills;

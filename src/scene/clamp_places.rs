@@ -1,16 +1,16 @@
 //! Where between the flanges of a mesh the wire can be clamped.
 
 use crate::geometry::{Room, Surface};
-use crate::math::V3;
 
-/// Depth in a face, as a share of the wire's radius, up to which clamped wire lies on it. Chosen: as exact as a room with slanted flanges.
-const ON_FACE: f64 = 0.05;
+/// Share of the room that stretches have at least. Of a surface that crosses itself, inside and outside are not told apart, and
+/// wire seems to lie nowhere.
+const JUDGED: f64 = 0.1;
 
 /// Halvings of the step to the last place of a stretch.
 const HALVINGS: u32 = 30;
 
 /// The stretches along the axis, m, in which wire of this radius (m) that is clamped on +x lies on the core, and neither in a
-/// flange nor on one that leans over it.
+/// flange nor on one that leans over it. None where that cannot be told.
 pub(super) fn clamp_places(surface: &Surface, room: Room, radius: f64) -> Vec<[f64; 2]> {
     let [low, high] = room.widest;
     let middle = 0.5 * (low + high);
@@ -26,6 +26,10 @@ pub(super) fn clamp_places(surface: &Surface, room: Room, radius: f64) -> Vec<[f
             _ => places.push(stretch),
         }
     }
+    let free: f64 = places.iter().map(|[from, to]| to - from).sum();
+    if free < JUDGED * (high - low - 2.0 * radius) {
+        places.clear();
+    }
     places
 }
 
@@ -36,12 +40,12 @@ struct Way<'a> {
 }
 
 impl Way<'_> {
-    /// How far clamped wire lies from the axis at `y`, m; none where it lies on no core.
+    /// Half width of the core for wire that is clamped at `y`, m; none where it lies on no core.
     fn lies_at(&self, y: f64) -> Option<f64> {
-        let x = self.surface.half_width(y, self.radius)? + self.radius;
-        let depth = self.radius - self.surface.nearest(V3::new(x, y, 0.0)).distance;
-        let lies = depth <= ON_FACE * self.radius && !self.surface.overhangs(y, self.radius);
-        lies.then_some(x)
+        let lies =
+            self.surface.holds_clamped(y, self.radius) && !self.surface.overhangs(y, self.radius);
+        lies.then(|| self.surface.half_width(y, self.radius))
+            .flatten()
     }
 
     /// The same, but none on what rises by more than 45 degrees since the place and distance `last`, as a flange does.
