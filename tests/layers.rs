@@ -247,6 +247,10 @@ fn a_disc_coil_lies_turn_on_turn() {
         let layers: Vec<u32> = sim.turns().iter().map(|turn| turn.layer).collect();
         assert_eq!(layers, [1, 2, 3, 4, 5], "{inner} mm");
         assert_eq!(sim.defects(), [], "{inner} mm");
+        // a single turn leaves no groove for the turn that lies on it
+        let out: Vec<f64> = sim.turns().iter().map(|turn| turn.out_of_groove).collect();
+        assert_eq!(out, [0.0; 5], "{inner} mm");
+        assert_eq!(sim.verdict(), Verdict::Single, "{:?}", sim.reasons());
         let deepest = sim.product().coil.expect("a coil").height_m;
         assert!(deepest > 4.0 * 0.35e-3, "{deepest}");
     }

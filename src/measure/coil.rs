@@ -536,7 +536,7 @@ impl Coil {
             layer,
             pass: number,
             crosses,
-            out_of_groove: support.stands_on_wire && self.has_crossovers() && !crosses,
+            out_of_groove: support.stands_on_wire && self.has_grooves_below(number) && !crosses,
             measured: self.is_free_of_clamp(angle) && !steps_up,
         };
         station.overlap_depth = self.overlap_depth(&station);

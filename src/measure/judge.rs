@@ -48,6 +48,11 @@ impl Coil {
         self.spec.crossover.is_some()
     }
 
+    /// Whether wire of a pass is meant to lie in grooves of the layer below. A single turn has none.
+    pub(crate) fn has_grooves_below(&self, pass: u32) -> bool {
+        self.has_crossovers() && !self.passes.lies_on_single_turn(pass)
+    }
+
     /// Whether there is more room beside a turn than a crossover leaves.
     pub(crate) fn is_hole(&self, neighbour: Option<Neighbour>) -> bool {
         let crossover = self.spec.crossover.zip(neighbour);

@@ -79,6 +79,19 @@ impl Passes {
         !self.planned.is_empty()
     }
 
+    /// Whether the pass with this number lies on a layer that is a single turn long by plan.
+    pub(crate) fn lies_on_single_turn(&self, number: u32) -> bool {
+        let from = |number: usize| match number {
+            0 => Some(0.0),
+            _ => self.planned.get(number - 1).copied(),
+        };
+        let number = number as usize;
+        let [below, own] = [number.checked_sub(2), number.checked_sub(1)].map(|at| from(at?));
+        below
+            .zip(own)
+            .is_some_and(|(below, own)| own - below < HUNG_BACK)
+    }
+
     /// The same for a first pass in this direction along y.
     pub(crate) fn set_first_sense(&mut self, sense: f64) {
         let first = Self::new(sense, self.near);
