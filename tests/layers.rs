@@ -4,9 +4,9 @@
 mod bobbin;
 
 use bobbin::{DIAMETER, STRAIGHT, TURNS, small_bobbin};
-use coilwind::measure::{DefectKind, STATIONS_PER_TURN, Verdict};
+use coilwind::measure::{Defect, DefectKind, STATIONS_PER_TURN, Verdict};
 use coilwind::settings::SceneSettings;
-use coilwind::signals::EventKind;
+use coilwind::signals::{EventKind, Inputs};
 use coilwind::simulation::Simulation;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -277,4 +277,42 @@ fn wire_that_gets_over_a_rim_is_told() {
     };
     assert!(wound(1.2));
     assert!(!wound(2.5));
+}
+
+/// Slack at the end of a layer was told in the next one, or in the one before: the layer was guessed when it happened.
+#[test]
+fn slack_lies_in_the_layer_in_which_its_wire_came_to_rest() {
+    let mut sim = started(
+        "[wire]\nmaterial = 'copper-soft'\ndiameter_mm = 0.7\n[core]\nwidth_x_mm = 8\nheight_z_mm = 24\n\
+         corner_radius_mm = 1\n[core.flange]\ninner_distance_mm = 2.9\nheight_mm = 4\n[nozzle]\ndistance_mm = 20\n\
+         y_start_mm = -1.1\n[start]\nclamp_y_mm = -1.1\n[tensioner]\ntension = 15\n[spindle]\nspeed = 100\n\
+         ramp_turns = 0.5\n[traverse]\nmode = 'orthocyclic'\ncrossover_deg = 60\n[winding]\nlayers = 3\n",
+    );
+    let profile = sim.motion_profile().clone();
+    let step = 5e-4;
+    while sim.time() < profile.time_at(9.8 * TAU) {
+        let time = sim.time();
+        let lets_go = time > 0.02 && (time + 0.025) % 0.035 < 0.004;
+        let inputs = Inputs {
+            spindle_speed: profile.speed(time),
+            nozzle_position: profile.nozzle(time),
+            tension_setpoint: if lets_go { 0.0 } else { 15.0 },
+            ..sim.inputs()
+        };
+        sim.advance(inputs, step).expect("the run goes on");
+    }
+    let layers: Vec<u32> = sim.coil().stations().map(|s| s.layer).collect();
+    let slack = |defect: &Defect| defect.kind == DefectKind::Slack;
+    let mut compared = Vec::new();
+    for defect in sim.defects().into_iter().filter(slack) {
+        let station = (defect.turn as usize - 1) * STATIONS_PER_TURN;
+        if let Some(layer) = layers.get(station + defect.angle_deg.round() as usize) {
+            assert_eq!(defect.layer, *layer, "{defect:?}");
+            compared.push(*layer);
+        }
+    }
+    assert!(
+        compared.contains(&1) && compared.contains(&3),
+        "{compared:?}"
+    );
 }

@@ -201,6 +201,12 @@ impl Coil {
         self.layer() + self.passes.layers_begun(settled, angle)
     }
 
+    /// Layer of the settled wire at this winding angle, rad; none where the wire has not settled.
+    pub(crate) fn settled_layer_at(&self, angle: f64) -> Option<u32> {
+        let record = self.records.get((angle / STATION_STEP).round() as usize);
+        record.map(|record| record.station.layer)
+    }
+
     /// Extent of the settled wire along y with its thickness, m.
     pub fn coil_width(&self) -> f64 {
         self.nodes

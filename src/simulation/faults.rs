@@ -161,9 +161,23 @@ impl Winding {
     /// Every defect so far, in the order of their times: those of settled wire, slack, and a break.
     pub fn defects(&self) -> Vec<Defect> {
         let mut all = self.coil.defects();
-        all.extend(self.run.faults.iter().cloned());
+        all.extend(
+            self.run
+                .faults
+                .iter()
+                .map(|fault| self.with_settled_layer(fault)),
+        );
         all.sort_by(|a, b| a.time_s.total_cmp(&b.time_s));
         all
+    }
+
+    /// A fault of wire that has settled since lies in the layer where that came to rest; until then the layer is what the nozzle lays.
+    fn with_settled_layer(&self, fault: &Defect) -> Defect {
+        let angle = f64::from(fault.turn - 1) * TAU + fault.angle_deg.to_radians();
+        Defect {
+            layer: self.coil.settled_layer_at(angle).unwrap_or(fault.layer),
+            ..fault.clone()
+        }
     }
 
     /// Measures of every turn, with the verdict of what the wire met while it was wound there. Where that befell wire of which
