@@ -160,6 +160,8 @@ impl Coil {
                 // what crosses the slow climb of its own row lies in that row's layer
                 let over = station.layer + u32::from(!one_turn_back || !self.is_slow_climb(index));
                 if !earlier && aside <= BELOW && rise > 0.0 {
+                    // what it stands higher than it lies on that turn is a bulge
+                    let rise = rise.min(d * (1.0 - aside * aside).sqrt());
                     support.own_row = Some(match support.own_row {
                         // it stands on the higher of two turns below it
                         Some(other) if other.min(rise) >= NEXT_LAYER * d => other.min(rise),

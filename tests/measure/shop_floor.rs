@@ -70,6 +70,23 @@ fn a_turn_on_its_own_row_is_a_double_turn() {
     assert_eq!(coil.turns()[6].verdict, Verdict::Aligned);
 }
 
+/// A double turn that stood off the turns below it was told larger than a wire on a wire can rise.
+#[test]
+fn what_stands_off_a_turn_of_its_own_row_is_no_part_of_a_double_turn() {
+    let place = in_places(&DOUBLE);
+    let nodes = on_cylinder(6.8, 1.0, |angle| {
+        let (y, height) = place(angle);
+        let off = ((angle / TAU - 4.5) / 0.1).abs();
+        (y, height + 0.6 * D * (1.0 - off).max(0.0))
+    });
+    let coil = wound(spec(), &nodes);
+    let double = only(DefectKind::DoubleTurn, &coil);
+    assert_eq!(double.turn, 5);
+    assert!((double.size_d.unwrap() - 0.866).abs() < 0.02, "{double:?}");
+    let bulge = only(DefectKind::Bulge, &coil);
+    assert_eq!((bulge.turn, bulge.angle_deg), (5, 180.0));
+}
+
 /// A nozzle that hung back began a row of its own, so that a turn on other turns was a layer and no defect.
 #[test]
 fn a_nozzle_that_hangs_back_for_a_turn_begins_no_layer() {
