@@ -57,9 +57,11 @@ pub enum MeshError {
     },
     /// A triangle has no area.
     #[error(
-        "triangle {triangle} is degenerate: height {height:.3e} m on a side of {longest:.3e} m"
+        "the triangle with a side at {at} has no area (triangle {triangle}, height {height:.3e} m on a side of {longest:.3e} m); mesh the body once more, or merge the corners there"
     )]
     Degenerate {
+        /// middle of the longest side
+        at: Place,
         /// triangle index
         triangle: usize,
         /// least height, m
@@ -77,7 +79,7 @@ pub enum MeshError {
     },
     /// An edge has more than two triangles.
     #[error(
-        "the mesh is not a surface: the edge at {at} has {count} triangles, triangle {triangle} among them"
+        "the mesh is not a surface: the edge at {at} has {count} triangles, triangle {triangle} among them; unite bodies that touch there, or move them apart"
     )]
     NonManifold {
         /// middle of the edge

@@ -7,7 +7,7 @@
 
 use super::bodies::{bounds, check_bodies, signed_volume};
 use super::elements::{Corner, Edge, Facet};
-use super::error::MeshError;
+use super::error::{MeshError, Place};
 use super::topology::{corners, edges, pieces, rise};
 use crate::math::V3;
 
@@ -151,6 +151,15 @@ fn check_numbers(vertices: &[V3], triangles: &[[u32; 3]]) -> Result<(), MeshErro
     Ok(())
 }
 
+/// Whether a triangle with these corners is more than a line.
+pub(super) fn has_area(p: [V3; 3]) -> bool {
+    let sides = [p[1] - p[0], p[2] - p[1], p[0] - p[2]];
+    let twice_area = sides[0].cross(&sides[1]).norm();
+    let longest = sides.iter().map(|s| s.norm()).fold(0.0, f64::max);
+    // Written so that NaN and zero sides fail.
+    twice_area > LEAST_HEIGHT * longest * longest && twice_area > 0.0
+}
+
 /// Planes of every triangle; edges and neighbours are filled in by [`edges`].
 fn facets(vertices: &[V3], triangles: &[[u32; 3]]) -> Result<Vec<Facet>, MeshError> {
     let mut facets = Vec::with_capacity(triangles.len());
@@ -160,15 +169,16 @@ fn facets(vertices: &[V3], triangles: &[[u32; 3]]) -> Result<Vec<Facet>, MeshErr
         let area_vector = sides[0].cross(&sides[1]);
         let twice_area = area_vector.norm();
         let longest = sides.iter().map(|s| s.norm()).fold(0.0, f64::max);
-        // Written so that NaN and zero sides fail.
-        let sound = twice_area > LEAST_HEIGHT * longest * longest && twice_area > 0.0;
-        if !sound {
+        if !has_area(p) {
             let height = if longest > 0.0 {
                 twice_area / longest
             } else {
                 0.0
             };
+            let middle = |k: usize| 0.5 * (p[k] + p[(k + 1) % 3]);
+            let side = (0..3).find(|&k| sides[k].norm() == longest);
             return Err(MeshError::Degenerate {
+                at: Place(side.map_or(p[0], middle)),
                 triangle,
                 height,
                 longest,

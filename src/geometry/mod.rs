@@ -24,6 +24,7 @@ mod error;
 mod feature;
 mod flange;
 mod flank;
+mod flat;
 mod front;
 mod grid;
 mod hull;

@@ -6,6 +6,7 @@
 //! surface, as programs write them that name its faces, or bodies that make up the core together, as in a binary file.
 
 use super::error::MeshError;
+use super::flat::cut_the_other_way;
 use super::mesh::TriMesh;
 use crate::math::V3;
 use std::collections::HashMap;
@@ -51,7 +52,8 @@ pub enum StlError {
 /// Reads a mesh; `unit` is metres per file unit (0.001 for mm).
 ///
 /// Vertices with equal coordinates become one, and where that leaves the surface open, also those nearer to each other than a
-/// millionth of the core's size. Triangles that have two equal vertices then are dropped, which leaves no hole. Normals in the file are ignored: the order of the vertices
+/// millionth of the core's size. Triangles that have two equal vertices then are dropped, which leaves no hole. Those of three
+/// vertices on a line are cut differently, with a neighbour. Normals in the file are ignored: the order of the vertices
 /// says what is outside. Triangle indices in errors count what is left. The reader is rewound
 /// first.
 pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlError> {
@@ -63,12 +65,19 @@ pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlErr
     reader.read_to_end(&mut bytes).map_err(StlError::Read)?;
     let (bytes, form) = normalise(bytes);
 
-    let size = bytes.len();
+    let (size, counted) = (bytes.len(), counted(&bytes));
     let broken = |triangles: usize, error: io::Error| StlError::NotStl {
         bytes: size,
         form,
         triangles,
-        reason: error.to_string(),
+        reason: match counted {
+            _ if form != "binary" => error.to_string(),
+            Some(count) => {
+                let needed = BINARY_HEADER as u64 + BINARY_TRIANGLE as u64 * u64::from(count);
+                format!("its header counts {count} triangles, which take {needed} bytes")
+            }
+            None => format!("a binary file has a header of {BINARY_HEADER} bytes"),
+        },
     };
     let mut cursor = Cursor::new(bytes);
     let mut welded = Welded::default();
@@ -78,14 +87,16 @@ pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlErr
         welded.push(triangle.vertices.map(|v| v.0), unit);
     }
     let apart = welded.clone();
+    cut_the_other_way(&welded.vertices, &mut welded.triangles);
     match TriMesh::new(welded.vertices, welded.triangles) {
         // Seams whose two sides were rounded differently look open.
         Err(open @ MeshError::Open { .. }) => {
             let Welded {
                 vertices,
-                triangles,
+                mut triangles,
                 ..
             } = apart.pulled_together();
+            cut_the_other_way(&vertices, &mut triangles);
             TriMesh::new(vertices, triangles).map_err(|_| open.into())
         }
         mesh => Ok(mesh?),
@@ -127,12 +138,15 @@ fn normalise(mut bytes: Vec<u8>) -> (Vec<u8>, &'static str) {
 
 /// Whether the size is that of a binary file with the number of triangles its header names.
 fn is_binary(bytes: &[u8]) -> bool {
-    let Some((header, body)) = bytes.split_at_checked(BINARY_HEADER) else {
-        return false;
-    };
-    let count = [header[80], header[81], header[82], header[83]];
-    let count = u32::from_le_bytes(count) as usize;
-    count.checked_mul(BINARY_TRIANGLE) == Some(body.len())
+    let body = bytes.len().checked_sub(BINARY_HEADER);
+    let size = |count: u32| (count as usize).checked_mul(BINARY_TRIANGLE);
+    body.is_some() && counted(bytes).and_then(size) == body
+}
+
+/// The number of triangles that the header of a binary file names; none where the file is shorter than a header.
+fn counted(bytes: &[u8]) -> Option<u32> {
+    let count = bytes.get(BINARY_HEADER - 4..BINARY_HEADER)?;
+    count.try_into().ok().map(u32::from_le_bytes)
 }
 
 /// Share of the size of a core by which two vertices may differ that are meant to be one: a few units in the last place of
@@ -347,6 +361,51 @@ mod tests {
         collapsed.vertices[1] = collapsed.vertices[0];
         soup.push(collapsed);
         check(&read_bytes(binary(&soup)).unwrap());
+    }
+
+    /// A triangle of three corners on a line was refused although the surface is closed.
+    #[test]
+    fn triangles_that_close_t_junctions_are_cut_differently() {
+        let whole = read_bytes(binary(&soup())).unwrap();
+        let middle =
+            |a: Vector<f32>, b: Vector<f32>| Vector([0, 1, 2].map(|k| 0.5 * (a.0[k] + b.0[k])));
+        let mut with_junction = soup();
+        let normal = with_junction[0].normal;
+        // one side of an edge is cut in four; what is open between them is filled by triangles on its line
+        let [a, b, c] = with_junction[0].vertices;
+        let m = middle(a, b);
+        let (l, n) = (middle(a, m), middle(m, b));
+        let triangle = |vertices| Triangle { normal, vertices };
+        let cut = [[a, l, c], [l, m, c], [m, n, c], [n, b, c]].map(triangle);
+        with_junction.splice(0..1, cut);
+        let open = read_bytes(binary(&with_junction)).unwrap_err();
+        assert!(
+            matches!(open, StlError::Mesh(MeshError::Open { .. })),
+            "{open}"
+        );
+        with_junction.extend([[l, a, m], [m, b, n], [m, a, b]].map(triangle));
+        for backwards in [false, true] {
+            if backwards {
+                with_junction.reverse();
+            }
+            let mesh = read_bytes(binary(&with_junction)).unwrap();
+            assert_eq!(mesh.len(), with_junction.len());
+            assert!((mesh.volume() / whole.volume() - 1.0).abs() < 1e-6);
+            assert!(mesh.is_convex());
+        }
+    }
+
+    /// "failed to fill whole buffer"
+    #[test]
+    fn a_binary_file_that_was_cut_off_tells_what_is_missing() {
+        let whole = binary(&soup());
+        let said = read_bytes(&whole[..whole.len() - 33])
+            .unwrap_err()
+            .to_string();
+        let (count, size) = (soup().len(), whole.len());
+        let needed = format!("its header counts {count} triangles, which take {size} bytes");
+        assert!(said.contains(&needed), "{said}");
+        assert!(said.contains(&format!("({} bytes", size - 33)), "{said}");
     }
 
     #[test]

@@ -85,7 +85,10 @@ fn a_mesh_that_makes_no_core_is_told_with_its_key_and_place() {
         (
             "twice.stl",
             text(" part", &all).repeat(2),
-            &["has 4 triangles"],
+            &[
+                "has 4 triangles",
+                "unite bodies that touch there, or move them apart",
+            ],
         ),
     ] {
         let said = said_of(folder.path(), name, &text).expect("must be refused");
