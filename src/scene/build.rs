@@ -46,6 +46,19 @@ impl SceneSettings {
     /// Those of [`build`](Self::build). Where the scene's own law would send the nozzle is no error where it follows an input.
     pub fn build_for(&self, follows: NozzleFollows) -> Result<(Scene, Vec<Warning>), SceneError> {
         self.check_ranges()?;
+        let built = self.build_in_range(follows);
+        let Err(error) = built else {
+            return built;
+        };
+        let mut problems = Problems::default();
+        if let Some(error) = self.file_of_no_mesh() {
+            problems.add(error);
+        }
+        problems.add(error);
+        problems.finish_with(None)
+    }
+
+    fn build_in_range(&self, follows: NozzleFollows) -> Result<(Scene, Vec<Warning>), SceneError> {
         let mut problems = Problems::default();
         let wire = problems.note(section(self));
         let (laws, resistivity) = wire

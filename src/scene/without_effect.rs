@@ -1,5 +1,6 @@
 //! Keys that were given although nothing reads them.
 
+use super::SceneError;
 use super::error::Warning;
 use super::{Integrator, Window};
 use crate::settings::{NozzleFollows, Origin, SceneSettings};
@@ -259,6 +260,19 @@ impl Reader<'_> {
             part.keys.iter().for_each(|key| warn(key, part.why));
         }
         warnings
+    }
+}
+
+impl SceneSettings {
+    /// The error of a file that would be the core if the scene said so. What else is wrong may follow from that, and comes alone
+    /// without the warnings.
+    pub(super) fn file_of_no_mesh(&self) -> Option<SceneError> {
+        let shape = &self.core.shape;
+        let is_none = self.core.file.is_empty() || shape == "mesh";
+        (!is_none).then(|| {
+            let reason = format!("{SHAPE} = {shape} does not use it");
+            self.impossible("core.file", reason, format!("{SHAPE} = mesh, or no file"))
+        })
     }
 }
 

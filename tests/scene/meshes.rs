@@ -248,3 +248,23 @@ fn flanges_of_a_file_bound_the_winding_as_those_of_a_scene_do() {
     .expect_err("past a face");
     assert_says(&past, &["nozzle.y_start", "past a flange"]);
 }
+
+/// A scene that named a mesh and not its shape was told of turns only.
+#[test]
+fn a_file_without_the_shape_of_a_mesh_is_told_with_what_follows_from_it() {
+    let refused = |text: &str| {
+        let scene = format!("[core]\n{text}\n[traverse]\nmode = 'orthocyclic'\n");
+        let error = parse(&scene).expect("parses").build();
+        error.expect_err("refused").to_string()
+    };
+    let said = refused("file = 'tooth.stl'");
+    assert_says(
+        &said,
+        &[
+            "test.toml:2: core.file = ",
+            "core.shape = rounded-box does not use it; allowed: core.shape = mesh, or no file",
+            "winding.turns_per_layer",
+        ],
+    );
+    assert!(!refused("").contains("core.file"));
+}
