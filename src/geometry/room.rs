@@ -3,6 +3,7 @@
 use super::flank::FLANGE_FACE;
 use super::hull::Hull;
 use super::mesh::TriMesh;
+use crate::math::V3;
 
 /// Places round the core at which its flanges are looked for.
 const PLACES: usize = 72;
@@ -55,6 +56,21 @@ impl TriMesh {
         // the core may be wider at `y`, in a fillet or towards a slanted flange, than it is between them
         let middle = 0.5 * (found.faces[0] + found.faces[1]);
         self.room_round(middle, least).or(Some(found))
+    }
+
+    /// Another axis than y about which this mesh has flanges as those of a [`Self::room`].
+    pub(crate) fn flanged_about(&self, least: f64) -> Option<char> {
+        // x, y, z in turn, which keeps what is outside
+        let turned = |along: usize| {
+            let about = |v: &V3| V3::new(v[(along + 2) % 3], v[along], v[(along + 1) % 3]);
+            let vertices = self.vertices.iter().map(about).collect();
+            Self::new(vertices, self.triangles.clone()).ok()
+        };
+        let has_room = |along| turned(along).is_some_and(|mesh| mesh.room(0.0, least).is_some());
+        let axes = [(0, 'x'), (2, 'z')].into_iter();
+        axes.filter(|(along, _)| has_room(*along))
+            .map(|(_, axis)| axis)
+            .next()
     }
 
     /// The convex hull of the section at `y`; none where the axis does not go through it.

@@ -337,6 +337,7 @@ impl SceneSettings {
             window: None,
             clamp_places: Vec::new(),
             in_the_way: None,
+            flanged_about: None,
         };
         for vertex in &mesh.vertices {
             extent.turning_radius = extent.turning_radius.max(libm::hypot(vertex.x, vertex.z));
@@ -348,6 +349,10 @@ impl SceneSettings {
         let (clamp, wire) = (self.start.clamp_y, self.wire.outer_diameter());
         if self.core.flange.inner_distance == 0.0 {
             extent.window = mesh.room(clamp, wire);
+            let has_to_have = self.winds_layers() && self.winding.turns_per_layer == 0.0;
+            if extent.window.is_none() && has_to_have {
+                extent.flanged_about = mesh.flanged_about(wire);
+            }
         }
         extent.winding_radius = extent
             .window

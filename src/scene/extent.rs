@@ -28,6 +28,8 @@ pub(super) struct Extent {
     pub(super) clamp_places: Vec<[f64; 2]>,
     /// what wire on a mesh meets towards either end, by [`TriMesh::in_the_way`](crate::geometry::TriMesh::in_the_way)
     pub(super) in_the_way: Option<[Vec<f64>; 2]>,
+    /// another axis than y about which a mesh has flanges, where it should have some and has none about y
+    pub(super) flanged_about: Option<char>,
 }
 
 impl Extent {
@@ -42,6 +44,7 @@ impl Extent {
             window: flange.map(|f| between(f, turning_radius)),
             clamp_places: Vec::new(),
             in_the_way: None,
+            flanged_about: None,
         }
     }
 

@@ -235,10 +235,17 @@ impl SceneSettings {
         }
         let turns = match (w.turns_per_layer, most) {
             (0.0, None) => {
+                let (about, turned) = match extent.flanged_about {
+                    Some(axis) => (
+                        format!(" about y, only about {axis},"),
+                        format!(", or core.file with the mesh turned so that its {axis} is y"),
+                    ),
+                    None => Default::default(),
+                };
                 problems.add(self.impossible(
                     "winding.turns_per_layer",
-                    "there are no flanges that would say how many turns fit",
-                    "1 or more, or core.flange.inner_distance",
+                    format!("there are no flanges{about} that would say how many turns fit"),
+                    format!("1 or more, or core.flange.inner_distance{turned}"),
                 ));
                 return None;
             }

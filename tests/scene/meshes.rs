@@ -268,3 +268,46 @@ fn a_file_without_the_shape_of_a_mesh_is_told_with_what_follows_from_it() {
     );
     assert!(!refused("").contains("core.file"));
 }
+
+/// Of a bobbin that stands along another axis it was told only that it has no flanges.
+#[test]
+fn a_bobbin_about_another_axis_is_told_with_that_axis() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut bobbin = of_a_box(4.0, [-6.0, 6.0], 5.0);
+    for y in [[-8.0, -6.0], [6.0, 8.0]] {
+        bobbin.extend(of_a_box(8.0, y, 9.0));
+    }
+    // (flanges that touch the core are united with it by reaching into it)
+    for corner in bobbin[..12].iter_mut().flatten() {
+        corner[1] *= 7.0 / 6.0;
+    }
+    let said = |axis: usize| {
+        let turned = |[x, y, z]: [f32; 3]| {
+            let mut place = [0.0; 3];
+            place[axis] = y;
+            place[(axis + 1) % 3] = z;
+            place[(axis + 2) % 3] = x;
+            place
+        };
+        let turned: Vec<_> = bobbin.iter().map(|t| t.map(turned)).collect();
+        let path = folder.path().join("bobbin.stl");
+        std::fs::write(&path, text(" bobbin", &turned)).unwrap();
+        let scene = format!(
+            "[core]\nshape = 'mesh'\nfile = {path:?}\n[wire]\ndiameter_mm = 0.5\n[nozzle]\ndistance_mm = 30\n\
+             y_start_mm = -5.75\n[start]\nclamp_y_mm = -5.75\n[traverse]\nmode = 'orthocyclic'\n"
+        );
+        let built = parse(&scene).expect("parses").build();
+        built.err().map(|error| error.to_string())
+    };
+    assert_eq!(said(1), None);
+    for (axis, name) in [(0, 'x'), (2, 'z')] {
+        assert_says(
+            &said(axis).expect("refused"),
+            &[
+                "winding.turns_per_layer = 0 is impossible here",
+                &format!("no flanges about y, only about {name}, that"),
+                &format!("core.file with the mesh turned so that its {name} is y"),
+            ],
+        );
+    }
+}
