@@ -27,9 +27,20 @@ stamp=$venv/requirements.txt
 # Windows has Scripts, everybody else bin.
 python_of() { if [ -x "$venv/Scripts/python.exe" ]; then echo "$venv/Scripts/python.exe"; else echo "$venv/bin/python"; fi; }
 
-if cmp -s "$requirements" "$stamp" && "$(python_of)" -c '' 2>/dev/null; then
+is_there() { cmp -s "$requirements" "$stamp" && "$(python_of)" -c '' 2>/dev/null; }
+if is_there; then
     python_of
     exit
+fi
+# Two that ask for it at once would each remove what the other makes. Where there is no flock, they must not.
+if command -v flock >/dev/null; then
+    mkdir -p "$(dirname "$venv")"
+    exec 9>"$venv.lock"
+    flock 9
+    if is_there; then
+        python_of
+        exit
+    fi
 fi
 
 system=
