@@ -27,7 +27,7 @@ pub(super) struct Stirred {
 }
 
 impl Stirred {
-    /// Finds out which of the touches on so many `nodes` share one; none is to be looked at yet.
+    /// Finds out which of the touches on so many `nodes` share one.
     pub(super) fn list(&mut self, impulses: &[Impulse], nodes: usize) {
         self.count = impulses.len();
         self.list_by_node(impulses, nodes);
