@@ -129,9 +129,9 @@ impl TriMesh {
         })
     }
 
-    /// Where wire of the thickness `least` (m) that is laid further and further on from `y` first meets what stands in its way, towards
-    /// -y and +y: a place for each that is looked at round the core, infinite where nothing does, m.
+    /// Where wire of the thickness `least` (m) first meets what stands in its way, as it is laid on from `y` towards -y and +y, m.
     ///
+    /// There is one place for each that is looked at round the core; it is infinite where nothing stands.
     /// Where that is nearly all round, it is a flange of a [`Self::room`]; else a shoe, a collar's end or a boss.
     pub(crate) fn in_the_way(&self, y: f64, least: f64) -> Option<[Vec<f64>; 2]> {
         let ring = evenly(&self.section(y)?.outline(0.5 * least, CHORDS));

@@ -169,8 +169,9 @@ impl Winding {
         })
     }
 
-    /// Halves long edges that a step after one of `dt`, s, may bring to the core until they are fine: at the next look it would be
-    /// too late, and new points between those that touch would lie deep in the core.
+    /// Halves long edges that a step after one of `dt`, s, may bring to the core until they are fine.
+    ///
+    /// At the next look it would be too late: new points between those that touch would lie deep in the core.
     fn refine_ahead_of_touch(&mut self, dt: f64) {
         loop {
             let soon = self.long_edges(|j| self.comes_near_core(j, self.way_ahead(j, dt)));
