@@ -143,6 +143,16 @@ mod tests {
         })
     }
 
+    /// A winding of the default scene that has told nothing yet, its wire's diameter, m, and the angle of its clamp, rad.
+    fn started() -> (Winding, f64, f64) {
+        let scene = SceneSettings::default().build().expect("a scene");
+        let simulation = Simulation::new(&scene).expect("a start");
+        let mut winding = simulation.winding().clone();
+        winding.run.events.clear();
+        let start = winding.coil.spec().start_angle;
+        (winding, scene.wire.diameter, start)
+    }
+
     fn defects_told(winding: &mut Winding) -> Vec<String> {
         let events = std::mem::take(&mut winding.run.events).into_iter();
         let defects = events.filter(|event| event.kind == EventKind::Defect);
@@ -152,12 +162,7 @@ mod tests {
     /// Nobody was told of what was found when wire was measured again, as the nozzle had turned: it stood among the defects at the end.
     #[test]
     fn a_defect_that_is_found_late_is_told_once() {
-        let scene = SceneSettings::default().build().expect("a scene");
-        let d = scene.wire.diameter;
-        let simulation = Simulation::new(&scene).expect("a start");
-        let mut winding = simulation.winding().clone();
-        winding.run.events.clear();
-        let start = winding.coil.spec().start_angle;
+        let (mut winding, d, start) = started();
         for node in turns_with_a_step_back(start, d) {
             winding.settle_and_tell(node);
         }
@@ -270,12 +275,7 @@ mod tests {
     /// Wire beside a flange that has left its row for certain was on its way since it stood on the turn before, and is judged there.
     #[test]
     fn a_defect_on_the_way_to_the_next_layer_is_told_once_the_wire_is_there() {
-        let scene = SceneSettings::default().build().expect("a scene");
-        let d = scene.wire.diameter;
-        let simulation = Simulation::new(&scene).expect("a start");
-        let mut winding = simulation.winding().clone();
-        winding.run.events.clear();
-        let start = winding.coil.spec().start_angle;
+        let (mut winding, d, start) = started();
         // beside the flange wire rises on the turn before, stands off it for a tenth of a turn, and climbs on
         let lean = |turn: f64| match turn.fract() {
             within if within < 0.2 => 0.0,
@@ -318,12 +318,7 @@ mod tests {
     /// An end of a turn that came loose told of the turn twice.
     #[test]
     fn a_turn_is_told_once_unless_it_is_unwound() {
-        let scene = SceneSettings::default().build().expect("a scene");
-        let d = scene.wire.diameter;
-        let simulation = Simulation::new(&scene).expect("a start");
-        let mut winding = simulation.winding().clone();
-        winding.run.events.clear();
-        let start = winding.coil.spec().start_angle;
+        let (mut winding, d, start) = started();
         let nodes = six_turns(start, |turn| d * turn);
         let mut told_after = |back: usize| -> Vec<String> {
             winding.take_back(back);
