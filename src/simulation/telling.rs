@@ -205,11 +205,7 @@ mod tests {
     /// A telling stood in the log that no table confirmed.
     #[test]
     fn a_defect_that_was_told_and_is_gone_is_told_to_be_gone() {
-        let scene = SceneSettings::default().build().expect("a scene");
-        let d = scene.wire.diameter;
-        let simulation = Simulation::new(&scene).expect("a start");
-        let mut winding = simulation.winding().clone();
-        let start = winding.coil.spec().start_angle;
+        let (mut winding, d, start) = started();
         for node in turns_with_a_step_back(start, d) {
             winding.settle_and_tell(node);
         }
@@ -249,11 +245,7 @@ mod tests {
     /// Rewound wire may lie better than it lay before.
     #[test]
     fn a_defect_that_is_wound_anew_without_it_is_told_to_be_gone() {
-        let scene = SceneSettings::default().build().expect("a scene");
-        let d = scene.wire.diameter;
-        let simulation = Simulation::new(&scene).expect("a start");
-        let mut winding = simulation.winding().clone();
-        let start = winding.coil.spec().start_angle;
+        let (mut winding, d, start) = started();
         for node in six_turns(start, |turn| d * (turn + 0.5 * (turn - 3.0).max(0.0))) {
             winding.settle_and_tell(node);
         }
