@@ -169,9 +169,9 @@ impl Near<'_> {
     }
 }
 
-/// The boxes of a node's halves by their squared distance from `p`, m^2, the nearer first.
+/// The halves of a node by the squared `distance` of their boxes, m^2, the nearer first.
 #[inline(always)]
-fn nearer_first(node: &Node, p: V3) -> Option<[(f64, usize); 2]> {
+fn nearer_first(node: &Node, distance: impl Fn(&Box3) -> f64) -> Option<[(f64, usize); 2]> {
     let Node::Node {
         child_l_index,
         child_l_aabb,
@@ -182,8 +182,8 @@ fn nearer_first(node: &Node, p: V3) -> Option<[(f64, usize); 2]> {
     else {
         return None;
     };
-    let left = (box_distance_sq(child_l_aabb, p), *child_l_index);
-    let right = (box_distance_sq(child_r_aabb, p), *child_r_index);
+    let left = (distance(child_l_aabb), *child_l_index);
+    let right = (distance(child_r_aabb), *child_r_index);
     Some(if right.0 < left.0 {
         [right, left]
     } else {
@@ -195,7 +195,7 @@ fn nearer_first(node: &Node, p: V3) -> Option<[(f64, usize); 2]> {
 fn reaching_walk(nodes: &[Node], mesh: &TriMesh, p: V3, node: usize, limit: f64) -> bool {
     match &nodes[node] {
         Node::Leaf { shape_index, .. } => mesh.closest(*shape_index as u32, p).distance_sq < limit,
-        inner => nearer_first(inner, p)
+        inner => nearer_first(inner, |bounds| box_distance_sq(bounds, p))
             .into_iter()
             .flatten()
             .any(|(distance_sq, child)| {
@@ -215,7 +215,10 @@ fn nearest_walk(nodes: &[Node], mesh: &TriMesh, p: V3, node: usize, best: &mut (
             }
         }
         inner => {
-            for (distance_sq, child) in nearer_first(inner, p).into_iter().flatten() {
+            for (distance_sq, child) in nearer_first(inner, |bounds| box_distance_sq(bounds, p))
+                .into_iter()
+                .flatten()
+            {
                 if distance_sq <= best.0 {
                     nearest_walk(nodes, mesh, p, child, best);
                 }
@@ -244,10 +247,13 @@ fn level_walk(
             }
         }
         inner => {
-            for (bounds, child) in children(inner) {
-                let crosses = bounds.min.y <= p.y && p.y <= bounds.max.y;
-                let least = best.map_or(f64::INFINITY, |(found, _)| found.distance_sq);
-                if crosses && box_distance_sq(bounds, p) <= least {
+            let distance = |bounds: &Box3| match bounds.min.y <= p.y && p.y <= bounds.max.y {
+                true => box_distance_sq(bounds, p),
+                false => f64::INFINITY,
+            };
+            for (distance_sq, child) in nearer_first(inner, distance).into_iter().flatten() {
+                let least = best.map_or(f64::MAX, |(found, _)| found.distance_sq);
+                if distance_sq <= least {
                     level_walk(nodes, mesh, p, child, best);
                 }
             }
