@@ -70,6 +70,13 @@ impl Hull {
         far.fold(0.0, f64::max)
     }
 
+    /// How far it reaches from the axis in a direction, rad from +x to +z, m.
+    pub(crate) fn reach(&self, angle: f64) -> f64 {
+        let (sin, cos) = libm::sincos(angle);
+        let along = self.corners.iter().map(|[x, z]| cos * x + sin * z);
+        along.fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Both ends of each edge, the edge before the first corner first.
     fn edges(&self) -> impl Iterator<Item = [[f64; 2]; 2]> {
         let before = self.corners.iter().cycle().skip(self.corners.len() - 1);

@@ -219,7 +219,7 @@ impl Coil {
             },
             Some(profile) => BulgeLimit::OverRest {
                 limit_m: limits.bulge_excess * d,
-                highest_m: profile.heights().iter().copied().fold(0.0, f64::max),
+                highest_m: profile.highest(),
             },
             None => BulgeLimit::Fallback {
                 limit_m: FALLBACK_BULGE * d,
@@ -498,7 +498,7 @@ impl Coil {
         // A drawn loop lies close on wire that itself stands off the core as it would alone.
         let at_rest = |profile: &Profile| match support.is_wire {
             true => 0.0,
-            false => profile.at(self.polar_at(angle)),
+            false => profile.at(self.polar_at(angle), position.y),
         };
         let (layer, other_layer) = self.layer_after(support.layer, row);
         let (neighbour, window) = self.neighbour(angle, position, row);

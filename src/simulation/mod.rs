@@ -40,6 +40,7 @@ mod stepping;
 mod straight_wire;
 mod summary;
 mod talk;
+mod tapered;
 mod telling;
 mod thinned;
 mod told;

@@ -8,7 +8,7 @@
 use super::drawn_loop::{
     MOST_EDGES, SPACING, draw_tight, heights, loop_section, profile_of, stiffened, touching_core,
 };
-use super::whole_turn;
+use super::{tapered, whole_turn};
 use crate::geometry::generate::prism;
 use crate::geometry::{Hull, Surface};
 use crate::math::{V3, frame_along, scaled};
@@ -48,20 +48,28 @@ pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Op
                 corner: corner_radius,
                 y: 0.0,
             };
-            round_section(scene, surface, &section, tension)
+            round_section(scene, surface, surface, &section, tension)
         }
-        Core::Mesh { .. } => round_mesh(scene, surface, tension).or_else(|| {
-            let prism = prism_at_waist(surface, scene.wire.diameter)?;
-            round_mesh(scene, &Arc::new(prism), tension)
-        }),
+        Core::Mesh { .. } => tapered::profile(scene, surface, tension)
+            .or_else(|| round_mesh(scene, surface, surface, tension))
+            .or_else(|| {
+                let prism = prism_at_waist(surface, scene.wire.diameter)?;
+                let prism = Arc::new(prism);
+                round_mesh(scene, &prism, &prism, tension)
+            }),
     }
 }
 
-/// The same round the middle of a mesh.
-fn round_mesh(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Profile> {
+/// The same round the middle of a mesh, and over that of another.
+pub(super) fn round_mesh(
+    scene: &Scene,
+    surface: &Arc<Surface>,
+    over: &Surface,
+    tension: f64,
+) -> Option<Profile> {
     match CoreSection::of(surface, SYMMETRIC * scene.wire.diameter) {
-        Some(section) => round_section(scene, surface, &section, tension),
-        None => whole_turn::profile(scene, surface, tension),
+        Some(section) => round_section(scene, surface, over, &section, tension),
+        None => whole_turn::profile(scene, surface, over, tension),
     }
 }
 
@@ -69,11 +77,12 @@ fn round_mesh(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Pro
 fn round_section(
     scene: &Scene,
     surface: &Arc<Surface>,
+    over: &Surface,
     section: &CoreSection,
     tension: f64,
 ) -> Option<Profile> {
     let sys = quarter_loop(scene, surface, section, tension)?;
-    let quarter = heights(scene, surface, &sys.state.rod.x);
+    let quarter = heights(scene, over, &sys.state.rod.x);
     profile_of(&quarter, |angle| {
         // fold into the quarter from +x to +z
         let a = angle.rem_euclid(PI);
@@ -260,7 +269,7 @@ mod tests {
             let profile =
                 profile(&scene, &surface, scene.tensioner.tension).expect("a loop at rest");
             let highest = (0..STATIONS_PER_TURN)
-                .map(|k| profile.at(k as f64 * STATION_STEP))
+                .map(|k| profile.at(k as f64 * STATION_STEP, 0.0))
                 .fold(0.0, f64::max);
             assert!(
                 (least..2e-3).contains(&highest),
@@ -413,7 +422,7 @@ mod tests {
         let found = profile(&scene, &turned, 15.0).expect("a whole turn");
         // about y, z turns towards x: the polar angle falls
         for (k, height) in found.heights().iter().enumerate() {
-            let expected = known.at((k as f64 + f64::from(stations)) * STATION_STEP);
+            let expected = known.at((k as f64 + f64::from(stations)) * STATION_STEP, 0.0);
             // a tenth of the excess that is a bulge: corners have few nodes, which lie elsewhere
             let apart = (height - expected).abs();
             assert!(apart < 0.05 * scene.wire.diameter, "{k}: {apart}");
@@ -429,6 +438,6 @@ mod tests {
             flange: None,
         };
         let profile = profile(&scene, &surface, 15.0).expect("a helix");
-        assert_eq!(profile.at(1.0), 0.0);
+        assert_eq!(profile.at(1.0, 0.0), 0.0);
     }
 }

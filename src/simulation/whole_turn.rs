@@ -30,13 +30,26 @@ const CHORDS: usize = 32;
 
 /// Height over the core by polar angle of wire at rest under `tension`, N, in the middle of a mesh. There is none where the axis
 /// does not go through the mesh, or no rest is found.
-pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Profile> {
-    of_turns(scene, surface, tension, TURNS)
+///
+/// It is the height over `over`, which may be another mesh than the one that the wire lies on.
+pub(super) fn profile(
+    scene: &Scene,
+    surface: &Arc<Surface>,
+    over: &Surface,
+    tension: f64,
+) -> Option<Profile> {
+    of_turns(scene, surface, over, tension, TURNS)
 }
 
 /// The same from so many turns.
-fn of_turns(scene: &Scene, surface: &Arc<Surface>, tension: f64, turns: usize) -> Option<Profile> {
-    let mut turn = middle_turn(scene, surface, tension, turns)?;
+fn of_turns(
+    scene: &Scene,
+    surface: &Arc<Surface>,
+    over: &Surface,
+    tension: f64,
+    turns: usize,
+) -> Option<Profile> {
+    let mut turn = middle_turn(scene, surface, over, tension, turns)?;
     turn.sort_by(|a, b| a.0.total_cmp(&b.0));
     // the first and the last once more, a turn on and a turn back
     let (first, last) = (turn[0], turn[turn.len() - 1]);
@@ -49,6 +62,7 @@ fn of_turns(scene: &Scene, surface: &Arc<Surface>, tension: f64, turns: usize) -
 fn middle_turn(
     scene: &Scene,
     surface: &Arc<Surface>,
+    over: &Surface,
     tension: f64,
     turns: usize,
 ) -> Option<Vec<(f64, f64)>> {
@@ -65,7 +79,7 @@ fn middle_turn(
         let rest = stiffened(tight, &section, tension, TOLERANCE)?;
         let before = turns / 2 * per_turn;
         let middle = &rest.state.rod.x[before..before + per_turn];
-        Some(heights(scene, surface, middle))
+        Some(heights(scene, over, middle))
     })
 }
 
@@ -180,7 +194,7 @@ mod tests {
                 });
                 let mut before = f64::INFINITY;
                 for tension in [3.0, 8.0, 15.0, 25.0, 40.0, 60.0] {
-                    let Some(heights) = profile(&scene, &wedge, tension) else {
+                    let Some(heights) = profile(&scene, &wedge, &wedge, tension) else {
                         none.push((share, across, tension));
                         continue;
                     };
@@ -201,8 +215,8 @@ mod tests {
         let (scene, surface) = on_a_mesh();
         // a trapezoid, wider on one side by a third
         let tapered = moved(&surface, |p| V3::new(p.x * (1.0 + p.z / 60e-3), p.y, p.z));
-        let [three, five] =
-            [3, 5].map(|turns| of_turns(&scene, &tapered, TENSION, turns).expect("at rest"));
+        let [three, five] = [3, 5]
+            .map(|turns| of_turns(&scene, &tapered, &tapered, TENSION, turns).expect("at rest"));
         let [three, five] = [three.heights(), five.heights()];
         let apart = largest(three.iter().zip(five).map(|(a, b)| a - b));
         assert!(apart < 0.05 * scene.wire.diameter, "{apart}");

@@ -1,0 +1,222 @@
+//! Wire at rest on a core whose section changes along its axis, such as a tooth that is wider at its foot.
+//!
+//! A loop without friction slides off such a core. So it is drawn round prisms on sections of the core, one after another along the
+//! axis, and how high it stands is asked of the core itself.
+
+use super::quasi_static::round_mesh;
+use crate::geometry::generate::prism;
+use crate::geometry::{Hull, Surface};
+use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN};
+use crate::scene::Scene;
+use std::sync::Arc;
+
+/// Sections that differ by less, in wire diameters, are the same; a tenth of the largest bulge excess.
+const SAME: f64 = 0.05;
+
+/// Largest difference of neighbouring levels, in wire diameters. Heights between them are then within 0.03 diameters of those round a
+/// box of that section (a tooth that tapers by 0.15).
+const STEP: f64 = 0.5;
+
+/// Most intervals between levels. A fillet is so steep that it would ask for more.
+const MOST: usize = 16;
+
+/// Sections that are looked at for how the core changes.
+const LOOKS: usize = 96;
+
+/// How often a section may change from growing to shrinking along the axis: a barrel between fillets does so three times. A core with
+/// grooves does so more often, and wire lies in each groove as in the next.
+const TURNS: usize = 3;
+
+/// Height over the core by polar angle and place along the axis of wire at rest under `tension`, N. There is none where the section is
+/// the same all along the core, where it has grooves, or where no rest is found.
+pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Profile> {
+    let levels = levels(surface, scene.wire.diameter)?;
+    let at = |&y: &f64| {
+        let hull = surface.mesh().section(y)?;
+        let ends = [y - hull.radius(), y + hull.radius()];
+        let prism = Arc::new(Surface::new(prism(&hull, ends).ok()?));
+        Some((y, round_mesh(scene, &prism, surface, tension)?))
+    };
+    Profile::along(levels.iter().map(at).collect::<Option<_>>()?)
+}
+
+/// Places along y, m, for wire of this diameter, m, between which sections differ little; none where one does for all.
+fn levels(surface: &Surface, diameter: f64) -> Option<Vec<f64>> {
+    let [low, high] = wound(surface, diameter)?;
+    let place = |k: usize, of: usize| low + (high - low) * k as f64 / of as f64;
+    let looks: Option<Vec<_>> = (0..=LOOKS)
+        .map(|k| Some(reaches(&surface.mesh().section(place(k, LOOKS))?)))
+        .collect();
+    let looks = looks?;
+    let (same, step) = (SAME * diameter, STEP * diameter);
+    let changes = looks.iter().any(|look| differs(look, &looks[0], same));
+    let has_grooves = (0..STATIONS_PER_TURN)
+        .any(|station| turning_points(looks.iter().map(|look| look[station]), same) > TURNS);
+    if !changes || has_grooves {
+        return None;
+    }
+    let mut count = 2;
+    while count < MOST {
+        let apart = LOOKS / count;
+        let mut pairs = looks.iter().zip(looks.iter().skip(apart)).step_by(apart);
+        if !pairs.any(|(a, b)| differs(a, b, step)) {
+            break;
+        }
+        count *= 2;
+    }
+    Some((0..=count).map(|k| place(k, count)).collect())
+}
+
+/// Where along y the middle of the wire may lie on a core, m: between its flanges, or its ends.
+fn wound(surface: &Surface, diameter: f64) -> Option<[f64; 2]> {
+    let (low, high) = surface.bounds();
+    let room = surface.mesh().room(0.5 * (low.y + high.y), diameter);
+    let [low, high] = room.map_or([low.y, high.y], |room| room.faces);
+    let ends = [low + 0.5 * diameter, high - 0.5 * diameter];
+    (ends[0] < ends[1]).then_some(ends)
+}
+
+/// How far a section reaches from the axis, m, in the direction of each station of a turn.
+fn reaches(section: &Hull) -> Vec<f64> {
+    let all = (0..STATIONS_PER_TURN).map(|k| section.reach(k as f64 * STATION_STEP));
+    all.collect()
+}
+
+fn differs(a: &[f64], b: &[f64], by: f64) -> bool {
+    a.iter().zip(b).any(|(a, b)| (a - b).abs() > by)
+}
+
+/// How often values change from rising to falling and back, ups and downs of less than `least` left out.
+fn turning_points(values: impl Iterator<Item = f64>, least: f64) -> usize {
+    let (mut way, mut found) = (0.0, 0);
+    let mut extreme: Option<f64> = None;
+    for value in values {
+        let from = *extreme.get_or_insert(value);
+        let moved = value - from;
+        if moved * way > 0.0 {
+            extreme = Some(value);
+        } else if moved.abs() > least {
+            found += usize::from(way != 0.0);
+            way = moved.signum();
+            extreme = Some(value);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{core_model::core_surface, quasi_static};
+    use super::*;
+    use crate::geometry::generate::sewn;
+    use crate::math::V3;
+    use crate::scene::Core;
+    use crate::settings::SceneSettings;
+    use std::f64::consts::FRAC_PI_2;
+
+    const TENSION: f64 = 15.0;
+    /// Half widths of the box along x and z, radius of its corners and half its length, m.
+    const HALF: [f64; 2] = [6e-3, 12e-3];
+    const CORNER: f64 = 2.5e-3;
+    const END: f64 = 10e-3;
+
+    /// The scene `fig8` with copper on a box that is everywhere so much wider on each side, m.
+    fn on_a_box(wider: f64) -> Scene {
+        let settings = SceneSettings::packed("fig8").expect("packed");
+        let mut settings = settings.expect("it is read");
+        let [x, z] = HALF.map(|half| (2e3 * (half + wider)).to_string());
+        for (key, text) in [
+            ("wire.material", "copper"),
+            ("core.width_x_mm", &x),
+            ("core.height_z_mm", &z),
+            (
+                "core.corner_radius_mm",
+                &(1e3 * (CORNER + wider)).to_string(),
+            ),
+        ] {
+            settings.set_text(key, text).expect("there is one");
+        }
+        settings.build().expect("a scene")
+    }
+
+    /// The same on a mesh that is so much wider at each place along y, m, and moved along x by `aside`, m.
+    fn on_a_mesh(wider: impl Fn(f64) -> f64, aside: f64) -> (Scene, Arc<Surface>) {
+        let ring = |y: f64| -> Vec<V3> {
+            let (chords, radius) = (24, CORNER + wider(y));
+            let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
+                .iter()
+                .enumerate();
+            let points = corners.flat_map(|(quarter, &[x, z])| {
+                (0..=chords).map(move |k| {
+                    let turn = quarter as f64 + f64::from(k) / f64::from(chords);
+                    let (sin, cos) = libm::sincos(FRAC_PI_2 * turn);
+                    let (x, z) = (x * (HALF[0] - CORNER), z * (HALF[1] - CORNER));
+                    V3::new(aside + x + radius * cos, y, z + radius * sin)
+                })
+            });
+            points.collect()
+        };
+        let rings: Vec<Vec<V3>> = (0..=200)
+            .map(|k| ring(END * (f64::from(k) / 100.0 - 1.0)))
+            .collect();
+        let core = Core::Mesh {
+            path: "unused".into(),
+            unit: 1e-3,
+            flange: None,
+        };
+        let scene = Scene {
+            core,
+            ..on_a_box(0.0)
+        };
+        let surface = Surface::new(sewn(&rings).expect("closed"));
+        (scene, Arc::new(surface))
+    }
+
+    /// Its ends were judged by its middle: wire at rest on a tooth that tapers by 0.15 was half a diameter too high.
+    #[test]
+    fn wire_on_a_tooth_that_tapers_is_as_high_as_on_boxes_of_its_sections() {
+        for slope in [0.05, 0.15] {
+            let (scene, surface) = on_a_mesh(|y| slope * y, 0.0);
+            let profile = quasi_static::profile(&scene, &surface, TENSION).expect("at rest");
+            for y in [-9.5e-3, -7.3e-3, -1.1e-3, 0.4e-3, 4.9e-3, 9.1e-3] {
+                let scene = on_a_box(slope * y);
+                let surface = Arc::new(core_surface(&scene.core).expect("a core"));
+                let exact = quasi_static::profile(&scene, &surface, TENSION).expect("at rest");
+                for k in 0..STATIONS_PER_TURN {
+                    let angle = k as f64 * STATION_STEP;
+                    let apart = (profile.at(angle, y) - exact.at(angle, 0.0)).abs();
+                    let most = SAME * scene.wire.diameter;
+                    assert!(apart < most, "{slope} at {y} m, station {k}: {apart} m");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn levels_are_where_the_section_changes() {
+        let count = |wider: &dyn Fn(f64) -> f64| {
+            let (scene, surface) = on_a_mesh(wider, 0.0);
+            levels(&surface, scene.wire.diameter).map(|levels| levels.len())
+        };
+        assert_eq!(count(&|_| 0.0), None, "a prism");
+        assert_eq!(count(&|y| 1e-3 * y), None, "as good as one");
+        assert_eq!(count(&|y| 0.05 * y), Some(5));
+        assert_eq!(count(&|y| 0.12 * y), Some(9));
+        let barrel = |y: f64| 0.5e-3 * (1.0 - (y / END).powi(2));
+        assert_eq!(count(&barrel), Some(5));
+        let grooves = |y: f64| 0.1e-3 * libm::cos(y / 0.8e-3);
+        assert_eq!(count(&grooves), None, "grooves");
+    }
+
+    /// Wire on it is a whole turn, which has no mirror planes.
+    #[test]
+    fn a_tooth_that_tapers_beside_its_axis_has_a_yardstick() {
+        let (scene, surface) = on_a_mesh(|y| 0.1 * y, 1e-3);
+        let profile = profile(&scene, &surface, TENSION).expect("at rest");
+        let heights = [-END, 0.0, END].map(|y| profile.at(0.5, y) / scene.wire.diameter);
+        assert!(
+            heights.iter().all(|h| (0.02..1.0).contains(h)),
+            "{heights:?}"
+        );
+    }
+}
