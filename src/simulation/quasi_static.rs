@@ -50,18 +50,20 @@ pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Op
             };
             round_section(scene, surface, surface, &section, tension)
         }
-        Core::Mesh { .. } => tapered::profile(scene, surface, tension)
-            .or_else(|| round_mesh(scene, surface, surface, tension))
-            .or_else(|| {
-                let prism = prism_at_waist(surface, scene.wire.diameter)?;
-                let prism = Arc::new(prism);
-                round_mesh(scene, &prism, &prism, tension)
-            }),
+        Core::Mesh { .. } => tapered::profile(surface, scene.wire.diameter, |prism| {
+            round_mesh(scene, prism, surface, tension)
+        })
+        .or_else(|| round_mesh(scene, surface, surface, tension))
+        .or_else(|| {
+            let prism = prism_at_waist(surface, scene.wire.diameter)?;
+            let prism = Arc::new(prism);
+            round_mesh(scene, &prism, &prism, tension)
+        }),
     }
 }
 
 /// The same round the middle of a mesh, and over that of another.
-pub(super) fn round_mesh(
+fn round_mesh(
     scene: &Scene,
     surface: &Arc<Surface>,
     over: &Surface,

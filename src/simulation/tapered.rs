@@ -3,11 +3,9 @@
 //! A loop without friction slides off such a core. So it is drawn round prisms on sections of the core, one after another along the
 //! axis, and how high it stands is asked of the core itself.
 
-use super::quasi_static::round_mesh;
 use crate::geometry::generate::prism;
 use crate::geometry::{Hull, Surface};
 use crate::measure::{Profile, STATION_STEP, STATIONS_PER_TURN};
-use crate::scene::Scene;
 use std::sync::Arc;
 
 /// Sections that differ by less, in wire diameters, are the same; a tenth of the largest bulge excess.
@@ -27,15 +25,21 @@ const LOOKS: usize = 96;
 /// grooves does so more often, and wire lies in each groove as in the next.
 const TURNS: usize = 3;
 
-/// Height over the core by polar angle and place along the axis of wire at rest under `tension`, N. There is none where the section is
-/// the same all along the core, where it has grooves, or where no rest is found.
-pub(super) fn profile(scene: &Scene, surface: &Arc<Surface>, tension: f64) -> Option<Profile> {
-    let levels = levels(surface, scene.wire.diameter)?;
+/// Height over the core of wire at rest by polar angle and place along the axis; `round` finds that round a prism.
+///
+/// There is none where the section is the same all along the core, where it has grooves, or where `round` finds none. `diameter` is
+/// that of the wire, m.
+pub(super) fn profile(
+    surface: &Surface,
+    diameter: f64,
+    round: impl Fn(&Arc<Surface>) -> Option<Profile>,
+) -> Option<Profile> {
+    let levels = levels(surface, diameter)?;
     let at = |&y: &f64| {
         let hull = surface.mesh().section(y)?;
         let ends = [y - hull.radius(), y + hull.radius()];
         let prism = Arc::new(Surface::new(prism(&hull, ends).ok()?));
-        Some((y, round_mesh(scene, &prism, surface, tension)?))
+        Some((y, round(&prism)?))
     };
     Profile::along(levels.iter().map(at).collect::<Option<_>>()?)
 }
@@ -110,7 +114,7 @@ mod tests {
     use super::*;
     use crate::geometry::generate::sewn;
     use crate::math::V3;
-    use crate::scene::Core;
+    use crate::scene::{Core, Scene};
     use crate::settings::SceneSettings;
     use std::f64::consts::FRAC_PI_2;
 
@@ -212,7 +216,8 @@ mod tests {
     #[test]
     fn a_tooth_that_tapers_beside_its_axis_has_a_yardstick() {
         let (scene, surface) = on_a_mesh(|y| 0.1 * y, 1e-3);
-        let profile = profile(&scene, &surface, TENSION).expect("at rest");
+        let profile = quasi_static::profile(&scene, &surface, TENSION).expect("at rest");
+        assert!(levels(&surface, scene.wire.diameter).is_some());
         let heights = [-END, 0.0, END].map(|y| profile.at(0.5, y) / scene.wire.diameter);
         assert!(
             heights.iter().all(|h| (0.02..1.0).contains(h)),
