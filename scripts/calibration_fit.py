@@ -159,9 +159,10 @@ def sizes_of(fit):
 
 def at_point(fit, found):
     """What the runs round the solution say."""
-    freedom = np.count_nonzero(found.fun) - found.x.size
-    deviation, correlation = surfaces.spread(fit.jacobian(found.x), found.fun, sizes_of(fit), freedom)
-    return Answer(found, deviation, correlation, freedom, fit.computed([found.x])[0], np.sum(found.fun**2))
+    residual = fit.residuals(found.x)
+    freedom = np.count_nonzero(residual) - found.x.size
+    deviation, correlation = surfaces.spread(fit.jacobian(found.x), residual, sizes_of(fit), freedom)
+    return Answer(found, deviation, correlation, freedom, fit.computed([found.x])[0], np.sum(residual**2))
 
 
 def smooth(fit, found):
@@ -179,6 +180,10 @@ def smooth(fit, found):
         freedom = np.count_nonzero(residual) - centre.size
         deviation, correlation = surfaces.spread(jacobian, residual, sizes_of(fit), freedom)
         centre = np.clip(centre + move, -np.log(REACH), np.log(REACH))
+        end = Solution(centre, np.zeros(centre.size, int), found.success)
+        if ends_of(centre, end):
+            # The surface falls on to the end of the range: there is no way left for the next one.
+            return at_point(fit, end)
         with np.errstate(invalid="ignore", divide="ignore"):
             if np.all(np.abs(move) < surfaces.CLOSE * deviation) and np.all(np.abs(np.log(deviation / before)) < surfaces.CLOSE):
                 break
