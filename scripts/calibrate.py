@@ -31,8 +31,9 @@ from pathlib import Path
 import numpy as np
 
 import folder as folders
-from calibration_curves import TURN, autocorrelation, read_curves, rms, too_few
-from calibration_fit import REACH, Fit, calibrate, ends_of, explains_nothing, intervals, warnings_of
+from calibration_curves import TURN, ZERO_REACH, read_curves, too_few
+from calibration_fit import ANGLES, REACH, Fit, calibrate, ends_of, explains_nothing, intervals, warnings_of, zero_intervals
+from calibration_rest import rests_of
 from calibration_runs import Model
 from failure import Interrupted, Mistake, told
 
@@ -65,6 +66,7 @@ def main():
     parser.add_argument("scene", help="scene file, or the name of a packed scene")
     parser.add_argument("--measured", action="append", required=True, type=Path, metavar="FILE.csv", help="may be given several times")
     parser.add_argument("--fit", action="append", required=True, metavar="NAME[=START]", help="parameter, in SI; starts from START, else from --set, else from the scene; may be given several times")
+    parser.add_argument("--fit-angle-zero", action="store_true", help="fit also where the angle of each file is zero, within 15 degrees")
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="as for coilwind run")
     parser.add_argument("--out", type=Path, default=Path("calibration"), metavar="DIR", help="where results go (default: calibration)")
     parser.add_argument("--confidence", type=float, default=0.95, metavar="P", help="of the intervals (default: 0.95)")
@@ -126,38 +128,48 @@ def run(args):
         model = Model(args.command, args.scene, args.set, [], curves, folder)
         names, starts = starts_of(model, args.fit)
         model.names = names
+        if args.fit_angle_zero:
+            model.fit_zeros()
         fit = Fit(model, starts, args.threads)
         try:
             answer = calibrate(fit)
+            # Where zeros are not fitted, it is asked whether others would explain what is left.
+            turned = [] if model.zeros else model.turned(fit.values(answer.found.x), ANGLES)
         except KeyboardInterrupt:
             fit.stop()
             raise Interrupted(keep_best(args, fit)) from None
-    return tell(args, model, starts, answer)
+    return tell(args, model, starts, answer, list(rests_of(curves, answer.computed, answer.slopes, ANGLES, turned)))
 
 
-def tell(args, model, starts, answer):
+def tell(args, model, starts, answer, rests):
     """Prints the outcome, then writes it: a full disk takes nothing from who reads along. The exit code."""
-    names, curves, computed = model.names, model.curves, answer.computed
+    names, curves = model.names, model.curves
     best, width = intervals(starts, answer, args.confidence)
+    zeros, wide = (np.degrees(one) for one in zero_intervals(starts, answer, args.confidence))
+    angles = [f"zero of {source}" for source in model.zeros]
     with np.errstate(over="ignore"):
         low, high = best * np.exp(-width), best * np.exp(width)
-    ends = ends_of(names, answer.found)
-    open_ = [name for name, wide in zip(names, width) if not wide < np.log(REACH) and name not in ends]
-    nothing, told_of = explains_nothing(answer, curves), list(warnings_of(names, answer, curves))
+    ends = ends_of([*names, *angles], answer.found)
+    reach = np.degrees(ZERO_REACH)
+    open_ = [name for name, by in zip([*names, *angles], [*width / np.log(REACH), *wide / reach]) if not by < 1.0 and name not in ends]
+    doubtful = any(rest.doubtful for rest in rests)
+    nothing, told_of = explains_nothing(answer, curves), [*warnings_of([*names, *angles], answer), *(text for rest in rests for text in rest.warnings())]
 
     print(f"{'parameter':32} {'start':>11} {'fitted':>11}   {100 * args.confidence:g} % interval")
-    for name, start, value, a, b in zip(names, starts, best, low, high):
-        interval = f"at the {ends[name]} end of its range" if name in ends else "not determined" if name in open_ else f"{a:.5g} to {b:.5g}"
-        print(f"{name:32} {start:11.5g} {value:11.5g}   {interval}")
-    for curve, values in zip(curves, computed):
-        print(f"{curve.column}: rms {rms(curve.values - values) / curve.unit:.3g} over {values.size} points")
+    rows = [(name, f"{start:.5g}", f"{value:.5g}", f"{a:.5g} to {b:.5g}") for name, start, value, a, b in zip(names, starts, best, low, high)]
+    rows += [(name, "0 deg", f"{value:.3g} deg", f"{value - by:.3g} to {value + by:.3g} deg") for name, value, by in zip(angles, zeros, wide)]
+    for name, start, value, between in rows:
+        interval = f"at the {ends[name]} end of its range" if name in ends else "not determined" if name in open_ else f"{between}{', doubtful' if doubtful else ''}"
+        print(f"{name:32} {start:>11} {value:>11}   {interval}")
+    for rest in rests:
+        print(f"{rest.curve.column}: rms {rest.record()['rms']:.3g} over {np.isfinite(rest.values).sum()} points")
     for sentence in told_of:
         print(f"warning: {sentence}")
     reasons = []
     if ends:
         which = ", ".join(f"{name} ended at the {end} end of its range" for name, end in ends.items())
         reasons.append(
-            f"{which}, a factor of {REACH:g} from its start; do the columns have the units of their names "
+            f"{which}, a factor of {REACH:g} from its start{f' or {reach:.0f} degrees' if angles else ''}; do the columns have the units of their names "
             "(angle_deg, angle_rad, turns)? If so, give another start with --fit NAME=START"
         )
     if open_:
@@ -179,11 +191,18 @@ def tell(args, model, starts, answer):
         }
         for name, start, value, a, b in zip(names, starts, best, low, high)
     }
+    of_angles = {
+        str(source): {
+            "value_deg": float(value), "low_deg": finite(value - by), "high_deg": finite(value + by), "at_end": ends.get(name),
+            "determined": name not in open_ and not nothing,
+        }
+        for source, name, value, by in zip(model.zeros, angles, zeros, wide)
+    }
     result = {
-        "fitted": not reasons, "stopped": False, "confidence": args.confidence, "warnings": told_of, "parameters": parameters,
+        "fitted": not reasons, "stopped": False, "doubtful": doubtful, "confidence": args.confidence, "warnings": told_of, "parameters": parameters, "angle_zeros": of_angles,
         "correlation": [[finite(cell) for cell in row] for row in answer.correlation],
     }
-    write(args, model, result, computed)
+    write(args, model, result, answer.computed, rests)
     print(f"{model.runs} runs; residuals: {args.out / 'residuals.png'}")
     return 1 if reasons else 0
 
@@ -193,12 +212,12 @@ def keep_best(args, fit):
     if (kept := fit.best()) is None:
         return "interrupted before the first run ended; nothing is kept"
     point, computed = kept
-    names, best = fit.model.names, fit.starts * np.exp(point)
+    names, best = fit.model.names, fit.values(point)
     parameters = {
         name: {"start": float(start), "value": float(value), "low": None, "high": None, "at_end": None, "determined": False}
         for name, start, value in zip(names, fit.starts, best)
     }
-    write(args, fit.model, {"fitted": False, "stopped": True, "parameters": parameters}, computed)
+    write(args, fit.model, {"fitted": False, "stopped": True, "parameters": parameters}, computed, rests_of(fit.model.curves, computed))
     return f"interrupted after {len(fit.seen)} runs; the best values so far are in {args.out / 'calibration.json'}; go on from them with: {go_on(args, fit.model, best)}"
 
 
@@ -212,18 +231,16 @@ def go_on(args, model, best):
         ("--confidence", [args.confidence]), ("--threads", [args.threads]),
     ):
         words += [str(word) for value in values for word in (option, value)]
+    words += ["--fit-angle-zero"] if args.fit_angle_zero else []
     return shlex.join([sys.executable, sys.argv[0], *words, "--force"])
 
 
-def write(args, model, result, computed):
+def write(args, model, result, computed, rests):
     """The files of a calibration. Others in the folder stay, since the scene may be one of them."""
     folders.make(args.out)
     curves = model.curves
     result = {"scene": args.scene, "runs": model.runs} | result | {
-        "curves": {
-            curve.column: {"rms": rms(curve.values - values) / curve.unit, "autocorrelation": autocorrelation(curve.values - values)}
-            for curve, values in zip(curves, computed)
-        },
+        "curves": {rest.curve.column: rest.record() for rest in rests},
     }
 
     def table(path):

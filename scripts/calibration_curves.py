@@ -19,6 +19,9 @@ UNITS = {
     "height": LENGTHS,
     "resistance": {"ohm": 1.0, "mohm": 1e-3},
 }
+# How far the zero of a measured angle is looked for, both ways: less than half the way between corners of a core, which are then not
+# taken for one another.
+ZERO_REACH = np.radians(15.0)
 # Measured and computed levels that differ by more than this factor are of other units.
 FOREIGN = 8.0
 # Measured values that each parameter takes, so that noise can be told from a fit.
@@ -109,10 +112,3 @@ def check_levels(curves, computed):
 
 def rms(residual):
     return float(np.sqrt(np.nanmean(residual**2)))
-
-
-def autocorrelation(residual):
-    residual = residual[np.isfinite(residual)]
-    residual = residual - np.mean(residual)
-    power = np.sum(residual**2)
-    return float(np.sum(residual[1:] * residual[:-1]) / power) if power > 0.0 else 0.0

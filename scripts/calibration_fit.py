@@ -6,7 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 import response_surface as surfaces
-from calibration_curves import LEAST, autocorrelation, check_levels, rms, too_few
+from calibration_curves import LEAST, ZERO_REACH, check_levels, rms, too_few
+from calibration_noise import autocorrelation
+from calibration_rest import AUTOCORRELATED
 from failure import Mistake
 
 # Differences of the logarithm of a parameter, both ways: large against what a run's adaptive steps scatter by.
@@ -20,10 +22,12 @@ HALVINGS = 4
 REACH = 10.0
 # Of the way there, in the logarithm: from here on it is at the end of its range.
 NEAR = 0.99
-# Share of the run's turns: a curve over less is told of.
-SHORT = 0.25
-# Of 1: above it, residuals are not noise, or two parameters cannot be told apart.
-CORRELATED, AUTOCORRELATED = 0.95, 0.5
+# A zero of an angle (rad) for 1 of what a logarithm is for a parameter.
+ZERO = ZERO_REACH / np.log(REACH)
+# The zeros of an angle that are looked at: each whole degree within reach.
+ANGLES = np.radians(np.arange(-14.0, 15.0))
+# Of 1: above it, two parameters cannot be told apart.
+CORRELATED = 0.95
 # Of the sum of squares: less than this is no gain over the start.
 GAIN = 0.01
 # Rest over variation of a curve from which on a solution is none; one that hardly varies counts as varying by this share of its level.
@@ -31,12 +35,16 @@ FAR_MORE, LEVEL = 3.0, 0.1
 
 
 class Fit:
-    """Least squares over the logarithms of the parameters, relative to where they start."""
+    """Least squares over the logarithms of the parameters, relative to where they start.
+
+    Zeros of angles, where they are fitted, follow the parameters, in units that give them the same range.
+    """
 
     def __init__(self, model, starts, threads):
         self.model, self.starts = model, np.array(starts)
         self.pool = ThreadPoolExecutor(threads)
         self.seen = {}
+        self.size = len(starts) + len(model.zeros)
 
     def computed(self, points):
         """Curves at several points at once."""
@@ -48,8 +56,16 @@ class Fit:
         return [self.seen[key] for key in keys]
 
     def look(self, key):
-        self.seen[key] = self.model.wind(self.starts * np.exp(key))
+        self.seen[key] = self.model.wind(self.values(key), self.zeros(key))
         return key
+
+    def values(self, point):
+        """The parameters at a point."""
+        return self.starts * np.exp(point[: self.starts.size])
+
+    def zeros(self, point):
+        """The zeros of angles (rad) at a point."""
+        return ZERO * np.array(point[self.starts.size :])
 
     def stop(self):
         """Ends the runs that go on, and waits for their end."""
@@ -95,6 +111,40 @@ class Fit:
             self.residuals, point, self.jacobian, bounds=(-reach, reach), xtol=2e-3, ftol=1e-5, gtol=1e-10, max_nfev=25
         )
 
+    def find(self):
+        """A solution. Where zeros of angles are looked for, the best of those that a look at all of them leads to."""
+        found = self.settle(self.solve(self.aligned(np.zeros(self.size))))
+        for _ in range(ROUNDS if self.model.zeros else 0):
+            other = self.solve(self.aligned(found.x))
+            if other.cost > (1.0 - 1e-3) * found.cost:
+                break
+            found = self.settle(other)
+        return found
+
+    def aligned(self, point):
+        """The point with zeros of angles at which the parameters, as far as their slopes tell, leave least of each file.
+
+        Curves ring, so that the sum of squares has a dip for each ringing that is taken for another.
+        """
+        if not self.model.zeros:
+            return point
+        steps = DIFFERENCE * np.eye(self.starts.size)
+        logs = point[: self.starts.size]
+        values = [self.starts * np.exp(logs + by) for by in (0.0 * logs, *(sign * step for step in steps for sign in (1, -1)))]
+        turned = list(self.pool.map(lambda one: self.model.turned(one, ANGLES), values))
+        left = np.zeros((len(self.model.zeros), ANGLES.size))
+        for k, source in enumerate(self.model.zeros):
+            for place in range(ANGLES.size):
+                middle, *sides = [self.of_file(source, run[place]) for run in turned]
+                slopes = np.column_stack([(high - low) / (2 * DIFFERENCE) for high, low in zip(sides[::2], sides[1::2])])
+                left[k, place] = np.sum((middle - slopes @ np.linalg.lstsq(slopes, middle, rcond=None)[0]) ** 2)
+        return np.concatenate([logs, ANGLES[np.argmin(left, axis=1)] / ZERO])
+
+    def of_file(self, source, computed):
+        """Residuals of the curves of a file by their noise."""
+        curves = zip(self.model.curves, computed)
+        return np.concatenate([np.nan_to_num((values - curve.values) / curve.sigma) for curve, values in curves if curve.source == source])
+
     def settle(self, found):
         """Looks past the dips that ringing and adaptive steps leave in the sum of squares: along the axes of the valley."""
         for _ in range(ROUNDS):
@@ -131,24 +181,26 @@ class Answer:
     square: float
     # that at the start over that at the solution
     gain: float = 1.0
+    # what a parameter changes of the weighed residuals, a column each
+    slopes: np.ndarray | None = None
 
 
 def calibrate(fit):
-    model, parameters = fit.model, len(fit.starts)
+    model, parameters = fit.model, fit.size
     start = fit.computed([np.zeros(parameters)])[0]
     check_levels(model.curves, start)
     if (points := sum(curve.angle.size for curve in model.curves)) < LEAST * parameters:
         raise too_few(points, parameters)
     for curve in model.curves:
         curve.sigma = np.std(curve.values) or 1.0
-    found = fit.settle(fit.solve(np.zeros(parameters)))
+    found = fit.find()
     if len(model.curves) > 1:
         # Each curve counts by its own noise, which is known once it has been fitted.
         for curve, values in zip(model.curves, fit.computed([found.x])[0]):
             curve.sigma = max(rms(values - curve.values), 1e-9 * curve.sigma)
         found = fit.settle(fit.solve(found.x))
     # At an end of the range there is no minimum to look at.
-    answer = at_point(fit, found) if ends_of(fit.starts, found) else smooth(fit, found)
+    answer = at_point(fit, found) if ends_of(found.x, found) else smooth(fit, found)
     answer.gain = np.sum(fit.weighed(start) ** 2) / answer.square if answer.square > 0.0 else np.inf
     return answer
 
@@ -161,8 +213,9 @@ def at_point(fit, found):
     """What the runs round the solution say."""
     residual = fit.residuals(found.x)
     freedom = np.count_nonzero(residual) - found.x.size
-    deviation, correlation = surfaces.spread(fit.jacobian(found.x), residual, sizes_of(fit), freedom)
-    return Answer(found, deviation, correlation, freedom, fit.computed([found.x])[0], np.sum(residual**2))
+    slopes = fit.jacobian(found.x)
+    deviation, correlation = surfaces.spread(slopes, residual, sizes_of(fit), freedom)
+    return Answer(found, deviation, correlation, freedom, fit.computed([found.x])[0], np.sum(residual**2), slopes=slopes)
 
 
 def smooth(fit, found):
@@ -188,14 +241,25 @@ def smooth(fit, found):
             if np.all(np.abs(move) < surfaces.CLOSE * deviation) and np.all(np.abs(np.log(deviation / before)) < surfaces.CLOSE):
                 break
     solution = Solution(centre, np.zeros(centre.size, int), found.success)
-    return Answer(solution, deviation, correlation, freedom, fit.computed([centre])[0], np.sum(residual**2))
+    return Answer(solution, deviation, correlation, freedom, fit.computed([centre])[0], np.sum(residual**2), slopes=jacobian)
 
 
 def intervals(starts, answer, confidence):
     """Values of the parameters, and by which share of them the ends of their intervals lie off, as a logarithm."""
+    count = len(starts)
+    return np.array(starts) * np.exp(answer.found.x[:count]), wide(answer, confidence)[:count]
+
+
+def zero_intervals(starts, answer, confidence):
+    """Zeros of angles, and how far the ends of their intervals lie off, in rad."""
+    count = len(starts)
+    return ZERO * answer.found.x[count:], ZERO * wide(answer, confidence)[count:]
+
+
+def wide(answer, confidence):
     from scipy import stats
 
-    return np.array(starts) * np.exp(answer.found.x), stats.t.ppf(0.5 + 0.5 * confidence, answer.freedom) * answer.deviation
+    return stats.t.ppf(0.5 + 0.5 * confidence, answer.freedom) * answer.deviation
 
 
 def ends_of(names, found):
@@ -218,18 +282,13 @@ def explains_nothing(answer, curves):
     return None
 
 
-def warnings_of(names, answer, curves):
-    found, deviation, correlation, computed = answer.found, answer.deviation, answer.correlation, answer.computed
+def warnings_of(names, answer):
+    found, deviation, correlation = answer.found, answer.deviation, answer.correlation
     for k, name in enumerate(names):
         if not deviation[k] < 0.5:
             yield f"{name} hardly shows in what was measured: measure something else, or leave it out"
         for other in range(k):
             if abs(correlation[k, other]) > CORRELATED:
                 yield f"{names[other]} and {name} cannot be told apart (correlation {correlation[k, other]:.2f}): fit one of them"
-    for curve, values in zip(curves, computed):
-        if (along := autocorrelation(curve.values - values)) > AUTOCORRELATED:
-            yield f"what is left of {curve.column} is no noise (autocorrelation {along:.2f}): the scene differs from the machine in something else, and the intervals may be too narrow"
-        if curve.share < SHORT:
-            yield f"{curve.column} is measured over {curve.share:.0%} of the turns of the run: see that the angle is in the unit of its column"
     if not found.success:
         yield "the search ended before it converged; start again from these values"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from calibration_curves import TURN, columns
+from calibration_curves import TURN, ZERO_REACH, columns
 from failure import Mistake
 
 # Share of measured heights that has to lie on settled wire.
@@ -24,15 +24,25 @@ class Model:
     def __init__(self, command, scene, sets, names, curves, folder):
         self.command, self.scene, self.sets = command, scene, sets
         self.names, self.curves, self.folder = names, curves, Path(folder)
+        # Files whose angle has an unknown zero. What lies so near to an end of the run that it might be beyond it is left out.
+        self.zeros, self.room = [], 0.0
         self.runs = 0
         self.going, self.stopped, self.lock = set(), False, threading.Lock()
         listed = subprocess.run([command, "variables", "--json"], capture_output=True, text=True, check=True).stdout
         self.table = {row["name"]: row for row in json.loads(listed)}
 
-    def wind(self, values):
-        """Computed curves with these values of the parameters."""
+    def wind(self, values, zeros=()):
+        """Computed curves with these values of the parameters, and these zeros (rad) of the files that have one."""
+        out, zero = self.run(values), dict(zip(self.zeros, zeros))
+        return [self.compare(curve, out, zero.get(curve.source, 0.0)) for curve in self.curves]
+
+    def turned(self, values, zeros):
+        """Computed curves as they would be measured with each of these zeros (rad) of the angle."""
         out = self.run(values)
-        return [self.compare(curve, out) for curve in self.curves]
+        return [[self.compare(curve, out, zero) for curve in self.curves] for zero in zeros]
+
+    def fit_zeros(self):
+        self.zeros, self.room = list(dict.fromkeys(curve.source for curve in self.curves)), ZERO_REACH
 
     def settings(self):
         """The scene with its settings, as a run leaves it."""
@@ -75,7 +85,7 @@ class Model:
             for child in self.going:
                 child.kill()
 
-    def compare(self, curve, out):
+    def compare(self, curve, out, zero=0.0):
         if curve.quantity == "height":
             angle, values = columns(out / "stations.csv", "angle", "height")
         else:
@@ -87,14 +97,15 @@ class Model:
                     raise Mistake("no wire has settled; wind more turns to compare resistances")
                 values = values * product["resistance_ohm"] / product["wire_length_m"]
         angle = np.abs(angle)
-        covered = (curve.angle >= angle[0] - 1e-6) & (curve.angle <= angle[-1] + 1e-6) if angle.size > 1 else np.zeros(1, bool)
+        covered = within(curve.angle, angle, self.room)
         # How much wire settles depends on the parameters a little; what has not counts for nothing.
-        if np.mean(covered) < (SETTLED if curve.quantity == "height" else 1.0):
+        if np.mean(covered) < (SETTLED if curve.quantity == "height" or self.room else 1.0):
             low, high = (angle[0], angle[-1]) if angle.size else (0.0, 0.0)
             raise Mistake(
                 f"{curve.source}: {curve.column} is measured from {curve.angle[0] / TURN:.2f} to {curve.angle[-1] / TURN:.2f} turns, "
                 f"{'settled wire of the run goes' if curve.quantity == 'height' else 'the run goes'} from {low / TURN:.2f} to "
                 f"{high / TURN:.2f}; wind more with --set spindle.turns=N, or cut the file"
+                f"{f'; {np.degrees(self.room):.0f} degrees at either end are left out' if self.room else ''}"
             )
         curve.share = np.ptp(curve.angle) / np.ptp(angle)
         if curve.share < FOREIGN_ANGLE:
@@ -102,4 +113,10 @@ class Model:
                 f"{curve.source}: {curve.column} is measured over {np.ptp(curve.angle) / TURN:.3g} of the {np.ptp(angle) / TURN:.3g} turns of the run; "
                 "is the angle in the unit of its column (angle_deg, angle_rad, turns)? If so, wind less with --set spindle.turns=N"
             )
-        return np.where(covered, np.interp(curve.angle, angle, values), np.nan)
+        at = curve.angle - zero
+        return np.where(covered & within(at, angle), np.interp(at, angle, values), np.nan)
+
+
+def within(at, angle, room=0.0):
+    """Which of these places lie within a run, so far from its ends."""
+    return (at >= angle[0] + room - 1e-6) & (at <= angle[-1] - room + 1e-6) if angle.size > 1 else np.zeros(at.size, bool)

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from calibration_noise import distances
+
 # How far the runs of a surface go from its middle, in standard deviations, and how many there are on an axis.
 WIDE, RUNS = 2.5, 9
 # Least and most of that way, in the logarithms of the parameters: twice what a run scatters over, and a factor of 1.8.
@@ -71,7 +73,7 @@ def spread(jacobian, residual, sizes, freedom):
     between, ends = jacobian.T @ jacobian, np.cumsum(sizes)[:-1]
     for slopes, rest in zip(np.split(jacobian, ends), np.split(residual, ends)):
         power = np.sum(rest**2)
-        most = min(2 * int(4.0 * (rest.size / 100.0) ** (2.0 / 9.0)), rest.size - 1) if power > 0.0 else 0
+        most = min(distances(rest.size), rest.size - 1) if power > 0.0 else 0
         for lag in range(1, most + 1):
             weight = (1.0 - lag / (most + 1)) * np.sum(rest[lag:] * rest[:-lag]) / power
             shifted = slopes[lag:].T @ slopes[:-lag]

@@ -27,8 +27,9 @@ class Ringing:
 
     def __init__(self, curve, scatter):
         self.curves, self.scatter, self.stopped, self.names = [curve], scatter, False, ["damping"]
+        self.zeros = []
 
-    def wind(self, values):
+    def wind(self, values, zeros=()):
         damping = float(values[0])
         dies = np.exp(-6.0 * damping * (TURNS - 0.3))
         seed = int(np.float64(damping).view(np.uint64)) % 2**32
