@@ -13,7 +13,8 @@ turns) and one or more of
 
 Every parameter starts from the value behind its name, or from the scene's, and stays within a factor of ten of it. Least
 squares in the logarithms of the parameters, with derivatives by central differences, then on a quadratic response surface as
-wide as the intervals; each run is `coilwind run` and all cores work. DIR gets calibration.json, residuals.csv and residuals.png. After Ctrl-C and SIGTERM they hold the best parameters so far.
+wide as the intervals; each run is `coilwind run` and all cores work. Where what is left of a curve is no noise, values are doubtful
+and a warning says why. --fit-angle-zero also fits where the angle of each file is zero. DIR gets calibration.json, residuals.csv and residuals.png. After Ctrl-C and SIGTERM they hold the best parameters so far.
 
 Exit codes: 0 fitted, 1 nothing is fitted: a parameter ended at an end of its range, or the measurement does not determine it,
 2 a mistake that can be mended, 3 a full disk, 130 stopped.
