@@ -167,10 +167,13 @@ def tell(args, model, starts, answer, rests):
     for sentence in told_of:
         print(f"warning: {sentence}")
     reasons = []
-    if ends:
-        which = ", ".join(f"{name} ended at the {end} end of its range" for name, end in ends.items())
+    for name in angles:
+        if name in ends:
+            reasons.append(f"{name} ended at the {ends[name]} end of its range of {reach:.0f} degrees; shift the angles of that file")
+    if any(name in ends for name in names):
+        which = ", ".join(f"{name} ended at the {ends[name]} end of its range" for name in names if name in ends)
         reasons.append(
-            f"{which}, a factor of {REACH:g} from its start{f' or {reach:.0f} degrees' if angles else ''}; do the columns have the units of their names "
+            f"{which}, a factor of {REACH:g} from its start; do the columns have the units of their names "
             "(angle_deg, angle_rad, turns)? If so, give another start with --fit NAME=START"
         )
     if open_:

@@ -50,7 +50,7 @@ class Rest:
         curve, wrong = self.curve, "fitted values and intervals may be wrong"
         if self.turn < LEVEL:
             yield (
-                f"{curve.column} looks as if its angle were {abs(np.degrees(self.zero)):.0f} degrees too {'large' if self.zero > 0.0 else 'small'} "
+                f"{curve.column} looks as if its angle were some {abs(np.degrees(self.zero)):.0f} deg too {'large' if self.zero > 0.0 else 'small'} "
                 f"(noise does so with a chance of {self.turn:.1g}), and {wrong}: check where the angle is zero, or fit that with --fit-angle-zero"
             )
         if self.repeats < LEVEL:

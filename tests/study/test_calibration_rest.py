@@ -86,7 +86,7 @@ def test_an_angle_that_is_off_is_told(ahead, calibrate, measured, tmp_path):
     """A mass and a damping far from the machine's were told with narrow intervals and no word of warning."""
     _, said, result = calibrate(tmp_path, measured(tmp_path / "m.csv", ahead=ahead))
     way = "large" if ahead > 0.0 else "small"
-    assert any("looks as if its angle were" in text and f"degrees too {way}" in text and "--fit-angle-zero" in text for text in result["warnings"]), said
+    assert any("looks as if its angle were some" in text and f"deg too {way}" in text and "--fit-angle-zero" in text for text in result["warnings"]), said
     assert result["doubtful"] and result["curves"]["tension_N"]["chances_of_noise"]["turned"] < 1e-6, said
     assert "doubtful" in said or "no fit" in said, said
 
@@ -120,6 +120,13 @@ def test_an_angle_that_is_off_can_be_fitted_for_each_file(calibrate, measured, t
         got = result["angle_zeros"][str(path)]
         assert got["low_deg"] < truth < got["high_deg"] < got["low_deg"] + 1.0 and got["determined"], said
         assert f"zero of {path}" in said
+
+
+def test_an_angle_that_is_off_by_more_than_is_looked_for_is_no_fit(calibrate, measured, tmp_path):
+    path = measured(tmp_path / "m.csv", ahead=16.0)
+    code, said, result = calibrate(tmp_path, path, words=["--fit-angle-zero"])
+    assert code == 1 and not result["fitted"] and result["angle_zeros"][str(path)]["at_end"] == "upper", said
+    assert f"zero of {path} ended at the upper end of its range of 15 degrees; shift the angles of that file" in said and "wind with" not in said, said
 
 
 @pytest.mark.parametrize("count", [10, 30, 128, 400])
