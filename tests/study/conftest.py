@@ -36,3 +36,11 @@ def script():
 @pytest.fixture(scope="session")
 def root():
     return ROOT
+
+
+@pytest.fixture(scope="module")
+def scene(request, tmp_path_factory):
+    """The scene that the module holds as SCENE, in a file."""
+    path = tmp_path_factory.mktemp("scene") / "machine.toml"
+    path.write_text(request.module.SCENE, encoding="utf-8")
+    return path

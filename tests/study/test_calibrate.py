@@ -38,13 +38,6 @@ NOISE = {"tension_N": 0.05, "height_mm": 0.003}
 
 
 @pytest.fixture(scope="module")
-def scene(tmp_path_factory):
-    path = tmp_path_factory.mktemp("scene") / "machine.toml"
-    path.write_text(SCENE, encoding="utf-8")
-    return path
-
-
-@pytest.fixture(scope="module")
 def measured(scene, command, script):
     run, path = scene.parent / "run", scene.parent / "measured.csv"
     sets = [word for name, value in TRUTH.items() for word in ("--set", f"{name}={value}")]

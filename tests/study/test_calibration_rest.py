@@ -34,13 +34,6 @@ DEGREES = np.arange(40.0, 445.0, 3.3)
 
 
 @pytest.fixture(scope="module")
-def scene(tmp_path_factory):
-    path = tmp_path_factory.mktemp("scene") / "machine.toml"
-    path.write_text(SCENE, encoding="utf-8")
-    return path
-
-
-@pytest.fixture(scope="module")
 def measured(scene, command):
     """A file of the machine's tension, with what is wrong with the sensors."""
     run = scene.parent / "run"
