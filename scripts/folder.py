@@ -16,6 +16,8 @@ COMMAND_BUILD, FMU_BUILD = "cargo build --release", "scripts/build_fmu.sh"
 # Options of a run that are no part of its scene, at the head of its file.
 WITH = "# wound with:"
 CHECKPOINT = "checkpoint.bin"
+# What an ensemble is, until it has ended, and how many members it may have; as in src/cli/ensemble.rs.
+ENSEMBLE, MOST = "ensemble.bin", 1000
 # By what a folder is known, and which files belong to it; those of runs and sweeps as in src/cli/folder.rs.
 SIGNS = {
     "another run": ["summary.json", "history.csv", "scene.toml", CHECKPOINT],
@@ -39,6 +41,15 @@ def refuse_occupied(folder, force, *allowed):
     for holds, names in SIGNS.items():
         if not force and holds not in allowed and any(has(folder, name) for name in names):
             raise Mistake(f"{folder} holds {holds}; add --force to overwrite it, or --out for another folder")
+    held = [name for names in SIGNS.values() for name in names if has(folder, name)]
+    if not force and not held and (has(folder, ENSEMBLE) or members(folder)):
+        raise Mistake(f"{folder} holds an ensemble; add --force to overwrite it, or --out for another folder")
+
+
+def members(folder):
+    """The folders of the members of an ensemble that hold runs."""
+    numbered = (folder / str(member) for member in range(1, MOST + 1))
+    return [member for member in numbered if any(has(member, name) for name in SIGNS["another run"])]
 
 
 def has(folder, name):

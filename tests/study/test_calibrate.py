@@ -225,3 +225,12 @@ def test_a_wrong_measurement_is_told_in_a_line(text, words, complaint, calibrate
     assert complaint in said, said
     assert len(said.splitlines()) == 1, said
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["ensemble.bin", "1/summary.json", "3/history.csv"])
+def test_the_folder_of_an_ensemble_is_refused(tmp_path, name):
+    (tmp_path / name).parent.mkdir(exist_ok=True)
+    (tmp_path / name).write_text("{}")
+    code = "import sys; sys.path.insert(0, 'scripts'); import folder, pathlib; folder.refuse_occupied(pathlib.Path(sys.argv[1]), False)"
+    said = subprocess.run([sys.executable, "-c", code, tmp_path], capture_output=True, text=True, check=False).stderr
+    assert "holds an ensemble; add --force" in said
