@@ -300,6 +300,25 @@ fn a_break_tells_where_the_wire_parted() {
     );
 }
 
+/// A break at the clamp told the place 0, as whole wire does, and the wire kept its tension.
+#[test]
+fn wire_that_parts_at_the_clamp_tells_a_place_and_pulls_no_more() {
+    let mut run = Simulation::new(&fig8(&[])).expect("starts");
+    let pulled = Inputs {
+        tension_setpoint: 1e3,
+        ..run.inputs()
+    };
+    while !run.outputs().defect_break {
+        run.advance(pulled, 1e-5).expect("goes on");
+    }
+    let (o, wire) = (run.outputs(), run.centreline());
+    let after = wire.arc.partition_point(|arc| *arc <= o.break_position);
+    let between = wire.arc[after - 1] + wire.arc[after];
+    assert!((o.break_position - 0.5 * between).abs() < 1e-12);
+    // the edge that parted begins at the node before the break
+    assert!(wire.tension[after - 1..].iter().all(|t| *t == 0.0));
+}
+
 /// The history says that nothing pulls at the nozzle, and so do `coil.vtp` and the frames.
 #[test]
 fn wire_that_parted_carries_no_tension_from_there_on() {

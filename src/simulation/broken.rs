@@ -46,9 +46,9 @@ impl Winding {
         let arc0 = self.sys.state.arc0;
         let mut before = 0.0;
         let pulled = self.sys.state.rod.rest.iter().take_while(|rest| {
-            let pulled = parted == 0.0 || arc0 + before < parted;
             before += **rest;
-            pulled
+            // (an edge that parts within itself pulls no more)
+            parted == 0.0 || arc0 + before <= parted
         });
         pulled.count().min(self.lift_off())
     }

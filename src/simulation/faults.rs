@@ -54,6 +54,12 @@ impl Winding {
         self.note_end_at(kind, angle, place, text);
     }
 
+    /// A live edge has parted under tension: in its middle, as far as the mesh tells.
+    pub(super) fn note_parted(&mut self, edge: usize, text: String) {
+        self.note_end(DefectKind::Break, edge, text);
+        self.run.outputs.break_position += 0.5 * self.sys.state.rod.rest[edge];
+    }
+
     /// The same of what happened at an angle along the wire from the clamp, rad, at a place in the core frame, m.
     pub(super) fn note_end_at(&mut self, kind: DefectKind, angle: f64, place: V3, text: String) {
         self.keep_fault(kind, angle, place);

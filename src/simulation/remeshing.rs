@@ -512,12 +512,13 @@ impl Winding {
             .tension
             .iter()
             .enumerate()
-            .find(|(_, t)| **t > strength)
+            .filter(|(_, t)| **t > strength)
+            .max_by(|(_, a), (_, b)| a.total_cmp(b))
         {
             let text = format!(
                 "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N; lower tension_setpoint or the spindle's acceleration"
             );
-            self.note_end(DefectKind::Break, j, text);
+            self.note_parted(j, text);
         } else if let Some((i, radius)) = self.kink() {
             let text = format!(
                 "the wire broke: it is kinked at live node {i}, bent to a radius of {:.3} mm and itself {:.3} mm thick; keep it under tension there",
