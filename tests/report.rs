@@ -222,6 +222,9 @@ fn a_folder_without_a_whole_run_is_named_with_what_to_do() {
     std::fs::write(out.join("1/summary.json"), "{}").unwrap();
     refused(out.join("1").to_str().unwrap());
     std::fs::write(out.join("sweep.json"), "{}").unwrap();
+    // a sweep over one variable has no page
+    refused("sweep.csv");
+    std::fs::write(out.join("map.html"), "").unwrap();
     refused("map.html");
     std::fs::remove_dir_all(&out).unwrap();
     wind(&out, &["--no-report"]);

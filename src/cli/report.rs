@@ -78,10 +78,15 @@ fn refuse_unfinished(directory: &Path) -> Result<(), Failure> {
 fn other_results(directory: &Path) -> Option<Failure> {
     let member = directory.join("1");
     let reason = if directory.join("sweep.json").exists() {
-        format!(
-            "holds a sweep; its page is {}",
-            directory.join("map.html").display()
-        )
+        let page = directory.join("map.html");
+        // (a page is made of a sweep over two variables)
+        match page.exists() {
+            true => format!("holds a sweep; its page is {}", page.display()),
+            false => format!(
+                "holds a sweep; its runs are the rows of {}",
+                directory.join("sweep.csv").display()
+            ),
+        }
     } else if member.join("summary.json").exists() {
         format!(
             "holds an ensemble; name a member, such as {}",
