@@ -125,3 +125,16 @@ fn inputs_whose_first_time_is_not_0_are_told_with_what_holds() {
     );
     assert!(!run("0,5,12\n3e-4,5,12\n", &[]).contains("first time"));
 }
+
+/// A negative number was an unknown argument, and its range was not told.
+#[test]
+fn a_negative_number_is_told_its_range() {
+    for (option, range) in [
+        ("--stop-time", "a number above 0"),
+        ("--frames", "0..=4294967295"),
+    ] {
+        let told = finished(&["run", "fig8", option, "-1"], 2);
+        assert!(told.contains(range), "{told}");
+        assert!(!told.contains("unexpected argument"), "{told}");
+    }
+}

@@ -57,7 +57,12 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "S", default_value_t = CHECKPOINT_EVERY, value_parser = positive)]
     checkpoint_every: f64,
     /// Keep this many frames of the wire on the way, in DIR/frames; ParaView opens them as DIR/frames.pvd
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        allow_negative_numbers = true
+    )]
     pub(super) frames: u32,
     /// Leave coil.vtp, core.vtp, coil.png and report.html out: many short runs spend most of their time on them
     #[arg(long, conflicts_with = "frames")]
@@ -70,10 +75,10 @@ pub(super) struct RunArgs {
     #[arg(long, value_name = "FILE", requires = "step")]
     pub(super) inputs: Option<PathBuf>,
     /// Communication step for --inputs, s
-    #[arg(long, value_name = "H", requires = "inputs", value_parser = positive)]
+    #[arg(long, value_name = "H", requires = "inputs", value_parser = positive, allow_negative_numbers = true)]
     pub(super) step: Option<f64>,
     /// Simulated time at which to stop, s; default: end of the programme or of the inputs
-    #[arg(long, value_name = "T", value_parser = positive)]
+    #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     pub(super) stop_time: Option<f64>,
     /// Exit with 1 if a defect was found
     #[arg(long)]
