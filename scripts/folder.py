@@ -16,7 +16,7 @@ COMMAND_BUILD, FMU_BUILD = "cargo build --release", "scripts/build_fmu.sh"
 # Options of a run that are no part of its scene, at the head of its file.
 WITH = "# wound with:"
 CHECKPOINT = "checkpoint.bin"
-# What an ensemble is, until it has ended, and how many members it may have; as in src/cli/ensemble.rs.
+# What an ensemble is, until it has ended, and how many members it may have; as in src/cli/ensemble_files.rs.
 ENSEMBLE, MOST = "ensemble.bin", 1000
 # By what a folder is known, and which files belong to it; those of runs and sweeps as in src/cli/folder.rs.
 SIGNS = {

@@ -38,6 +38,13 @@ fn resume(out: &Path) -> Command {
     command
 }
 
+fn refused(command: &mut Command, part: &str) {
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert_eq!(said(&output).lines().count(), 1, "{}", said(&output));
+    assert!(said(&output).contains(part), "{part}: {}", said(&output));
+}
+
 /// The files of a run but for what the clock writes.
 fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let frames = std::fs::read_dir(folder.join("frames"))
@@ -360,12 +367,6 @@ fn a_folder_without_a_whole_run_says_what_to_do() {
     }
     child.kill().unwrap();
     child.wait().unwrap();
-    let refused = |command: &mut Command, part: &str| {
-        let output = command.output().unwrap();
-        assert_eq!(output.status.code(), Some(2));
-        assert_eq!(said(&output).lines().count(), 1, "{}", said(&output));
-        assert!(said(&output).contains(part), "{part}: {}", said(&output));
-    };
     let report = || {
         let mut command = coilwind();
         command.arg("report").arg(&out).stderr(Stdio::piped());
@@ -418,6 +419,8 @@ fn an_ensemble_that_is_stopped_goes_on_to_the_same_bytes() {
     );
     assert!(said(&output).contains(&command), "{}", said(&output));
     assert!(!out.join("3").exists());
+    // the same command again named the first member alone
+    refused(&mut run(&out), &format!("--resume '{}'", out.display()));
     let mut again = coilwind();
     again.args(["run", "--resume"]).arg(&out);
     let output = again.output().unwrap();
@@ -430,6 +433,44 @@ fn an_ensemble_that_is_stopped_goes_on_to_the_same_bytes() {
     for directory in [&whole, &out] {
         assert_eq!(std::fs::read_dir(directory).unwrap().count(), 3);
     }
+}
+
+/// A run wound into the folder of an ensemble, and a smaller ensemble kept a member of the larger one.
+#[test]
+fn an_ensemble_is_not_overwritten_and_leaves_no_member_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let mut command = short(&out);
+        command.args(["--set", "spindle.turns=0.3"]).args(more);
+        command
+    };
+    assert!(run(&["--ensemble", "3"]).status().unwrap().success());
+    refused(&mut run(&[]), "holds an ensemble; add --force");
+    refused(&mut run(&["--ensemble", "2"]), "holds an ensemble");
+    let mut sweep = coilwind();
+    sweep.args([
+        "sweep",
+        "fig8",
+        "--quiet",
+        "--over",
+        "spindle.speed=60:120:2",
+        "--out",
+    ]);
+    refused(sweep.arg(&out), "holds an ensemble");
+    let names = || {
+        let entries = std::fs::read_dir(&out).unwrap();
+        let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
+        let mut names: Vec<_> = entries.map(name).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(), ["1", "2", "3"]);
+    let smaller = run(&["--ensemble", "2", "--force"]).status();
+    assert!(smaller.unwrap().success());
+    assert_eq!(names(), ["1", "2"]);
+    assert!(run(&["--force"]).status().unwrap().success());
+    assert!(!out.join("1").exists() && out.join("summary.json").is_file());
 }
 
 /// A full disk was bad input, and nothing said that the run could go on.

@@ -2,6 +2,7 @@
 
 use super::checkpoint::{self, Plan};
 use super::drive::Drive;
+use super::ensemble_files::FILE;
 use super::failure::Failure;
 use super::folder;
 use super::members;
@@ -18,8 +19,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
-/// What an ensemble is, in its folder until all members have ended.
-const FILE: &str = "ensemble.bin";
 /// Changes whenever the layout does.
 const MAGIC: &[u8; 8] = b"coilwen1";
 
@@ -81,11 +80,6 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     folder::clear_all(&directory)?;
     checkpoint::write_checked(&directory.join(FILE), MAGIC, &ensemble)?;
     wind(args, &directory, all)
-}
-
-/// Whether a folder holds an ensemble that could go on.
-pub(super) fn is_in(directory: &Path) -> bool {
-    directory.join(FILE).is_file()
 }
 
 /// Goes on with the members of a folder that were stopped, and winds those that have not begun.

@@ -1,6 +1,7 @@
 //! The folder of a run: made, kept from being overwritten by mistake, and held by one run at a time.
 
 use super::checkpoint;
+use super::ensemble_files;
 use super::failure::Failure;
 use super::frames;
 use super::shell::SCENE;
@@ -8,7 +9,7 @@ use super::sweep_files;
 use coilwind::output::PARTIAL;
 use coilwind::settings::SceneSettings;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Files by which a folder is known to hold a run.
 const SIGNS: [&str; 4] = ["summary.json", "history.csv", SCENE, checkpoint::FILE];
@@ -43,18 +44,25 @@ pub(super) fn refuse_occupied(directory: &Path, force: bool) -> Result<(), Failu
     Err(Failure::Occupied {
         directory: directory.display().to_string(),
         holds,
-        can_go_on: has(directory, checkpoint::FILE),
+        can_go_on: has(directory, checkpoint::FILE) || ensemble_files::is_in(directory),
     })
 }
 
-/// What a folder holds, in words; `None` where that is neither a run nor a sweep.
+/// What a folder holds, in words; `None` where that is no run, sweep or ensemble.
 pub(super) fn held(directory: &Path) -> Option<&'static str> {
     let any = |names: &[&str]| names.iter().any(|name| has(directory, name));
     match (any(&SIGNS), any(&sweep_files::SIGNS)) {
         (true, _) => Some("another run"),
         (_, true) => Some("a sweep"),
-        _ => None,
+        _ if ensemble_files::is_in(directory) => Some("an ensemble"),
+        _ => members(directory).next().map(|_| "an ensemble"),
     }
+}
+
+/// The folders of the members of an ensemble that hold runs. Of one that was stopped, those before may be missing.
+fn members(directory: &Path) -> impl Iterator<Item = PathBuf> {
+    let all = (1..=ensemble_files::MOST).map(|member| directory.join(member.to_string()));
+    all.filter(|member| SIGNS.iter().any(|name| has(member, name)))
 }
 
 /// Whether a folder has this file, with something in it.
@@ -74,8 +82,14 @@ pub(super) fn begin(directory: &Path, settings: &SceneSettings, note: &str) -> R
     fs::write(&path, text).map_err(|e| Failure::write(&path, e))
 }
 
-/// Removes the results of a run, but for its history and its scene.
+/// Removes the results of a run, but for its history and its scene, and the members of an ensemble.
 fn clear(directory: &Path) -> Result<(), Failure> {
+    for member in members(directory) {
+        clear_run(&member)?;
+        // With files of somebody else in it, it stays.
+        let _ = fs::remove_dir(member);
+    }
+    remove(directory, &[ensemble_files::FILE])?;
     let folder = directory.join("frames");
     let frames = fs::read_dir(&folder).into_iter().flatten();
     let frames = frames.filter_map(|entry| Some(entry.ok()?.path()));
@@ -96,8 +110,10 @@ fn clear(directory: &Path) -> Result<(), Failure> {
 
 /// An error where this scene lies in the folder as that of an earlier run, so that making room there would remove it.
 pub(super) fn refuse_own_scene(directory: &Path, scene: &str) -> Result<(), Failure> {
-    let own = fs::canonicalize(directory.join("scene.toml")).ok();
-    match own.is_some() && own == fs::canonicalize(scene).ok() {
+    let given = fs::canonicalize(scene).ok();
+    let mut kept = members(directory).chain([directory.to_owned()]);
+    let is_given = |folder: PathBuf| fs::canonicalize(folder.join(SCENE)).ok() == given;
+    match given.is_some() && kept.any(is_given) {
         true => Err(Failure::Resume {
             directory: directory.display().to_string(),
             reason: "the scene lies in this folder and would be removed with the run in it; copy the scene, or --out for another folder".to_owned(),

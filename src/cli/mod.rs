@@ -6,6 +6,7 @@ mod checkpoint;
 mod choice;
 mod drive;
 mod ensemble;
+mod ensemble_files;
 mod failure;
 mod folder;
 mod frames;
@@ -85,7 +86,7 @@ pub(crate) fn main() -> ExitCode {
     let result = match cli.command {
         Command::Run(args) => match (args.ensemble, &args.resume) {
             (Some(count), _) => ensemble::run(&args, count),
-            (None, Some(directory)) if ensemble::is_in(directory) => {
+            (None, Some(directory)) if ensemble_files::is_in(directory) => {
                 ensemble::resume(&args, directory)
             }
             _ => run::run(&args),
