@@ -1,5 +1,6 @@
 """Folders of results: where what is built stands, what a folder holds, and files that are whole or absent."""
 
+import json
 import os
 import shlex
 from pathlib import Path
@@ -16,12 +17,13 @@ COMMAND_BUILD, FMU_BUILD = "cargo build --release", "scripts/build_fmu.sh"
 # Options of a run that are no part of its scene, at the head of its file.
 WITH = "# wound with:"
 CHECKPOINT = "checkpoint.bin"
-# What an ensemble is, until it has ended, and how many members it may have; as in src/cli/ensemble_files.rs.
-ENSEMBLE, MOST = "ensemble.bin", 1000
+# How many members an ensemble has, and what it is until it has ended; as in src/cli/ensemble_files.rs.
+ENSEMBLE = "ensemble.json"
 # By what a folder is known, and which files belong to it; those of runs and sweeps as in src/cli/folder.rs.
 SIGNS = {
     "another run": ["summary.json", "history.csv", "scene.toml", CHECKPOINT],
     "another sweep": ["sweep.json", "sweep.csv", "times.csv"],
+    "an ensemble": [ENSEMBLE, "ensemble.bin"],
     "another calibration": ["calibration.json", "residuals.csv", "residuals.png"],
 }
 RESULTS = [
@@ -41,15 +43,15 @@ def refuse_occupied(folder, force, *allowed):
     for holds, names in SIGNS.items():
         if not force and holds not in allowed and any(has(folder, name) for name in names):
             raise Mistake(f"{folder} holds {holds}; add --force to overwrite it, or --out for another folder")
-    held = [name for names in SIGNS.values() for name in names if has(folder, name)]
-    if not force and not held and (has(folder, ENSEMBLE) or members(folder)):
-        raise Mistake(f"{folder} holds an ensemble; add --force to overwrite it, or --out for another folder")
 
 
 def members(folder):
-    """The folders of the members of an ensemble that hold runs."""
-    numbered = (folder / str(member) for member in range(1, MOST + 1))
-    return [member for member in numbered if any(has(member, name) for name in SIGNS["another run"])]
+    """The folders of the members of the ensemble in a folder, made or not."""
+    try:
+        count = json.loads((folder / ENSEMBLE).read_text(encoding="utf-8"))["members"]
+    except (OSError, ValueError, KeyError):
+        count = 0
+    return [folder / str(member) for member in range(1, count + 1)]
 
 
 def has(folder, name):
@@ -67,12 +69,22 @@ def make(folder):
 
 
 def clear(folder):
-    """Removes the run and the sweep that the folder holds. Files of other names stay."""
-    for name in [*SIGNS["another run"], *SIGNS["another sweep"], *RESULTS]:
+    """Removes the run, the sweep and the ensemble that the folder holds. Files of other names stay."""
+    for member in members(folder):
+        clear(member)
+        remove_empty(member)
+    for name in [*SIGNS["another run"], *SIGNS["another sweep"], *SIGNS["an ensemble"], *RESULTS]:
         if (folder / name).is_file():
             (folder / name).unlink()
     for path in (folder / "frames").glob("frame_*.vtp"):
         path.unlink()
+    remove_empty(folder / "frames")
+
+
+def remove_empty(folder):
+    """Removes a folder with nothing in it."""
+    if folder.is_dir() and not any(folder.iterdir()):
+        folder.rmdir()
 
 
 def write_whole(path, write):

@@ -431,8 +431,11 @@ fn an_ensemble_that_is_stopped_goes_on_to_the_same_bytes() {
         assert_same(&whole.join(member), &out.join(member), member);
     }
     for directory in [&whole, &out] {
-        assert_eq!(std::fs::read_dir(directory).unwrap().count(), 3);
+        // the members, and what came of them
+        assert_eq!(std::fs::read_dir(directory).unwrap().count(), 4);
     }
+    let told = |directory: &Path| std::fs::read(directory.join("ensemble.json")).unwrap();
+    assert_eq!(told(&whole), told(&out));
 }
 
 /// A run wound into the folder of an ensemble, and a smaller ensemble kept a member of the larger one.
@@ -465,12 +468,20 @@ fn an_ensemble_is_not_overwritten_and_leaves_no_member_behind() {
         names.sort();
         names
     };
-    assert_eq!(names(), ["1", "2", "3"]);
+    assert_eq!(names(), ["1", "2", "3", "ensemble.json"]);
+    let told: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("ensemble.json")).unwrap()).unwrap();
+    assert_eq!(told["members"], 3);
+    let verdicts = told["verdicts"].as_object().unwrap().values();
+    assert_eq!(verdicts.map(|n| n.as_u64().unwrap()).sum::<u64>(), 3);
+    // runs that somebody wound into folders with numbers are no members
+    std::fs::rename(out.join("2"), out.join("4")).unwrap();
     let smaller = run(&["--ensemble", "2", "--force"]).status();
     assert!(smaller.unwrap().success());
-    assert_eq!(names(), ["1", "2"]);
+    assert_eq!(names(), ["1", "2", "4", "ensemble.json"]);
     assert!(run(&["--force"]).status().unwrap().success());
     assert!(!out.join("1").exists() && out.join("summary.json").is_file());
+    assert!(out.join("4/summary.json").is_file());
 }
 
 /// A full disk was bad input, and nothing said that the run could go on.

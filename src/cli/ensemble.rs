@@ -2,7 +2,7 @@
 
 use super::checkpoint::{self, Plan};
 use super::drive::Drive;
-use super::ensemble_files::FILE;
+use super::ensemble_files::{PLAN, Summary};
 use super::failure::Failure;
 use super::folder;
 use super::members;
@@ -78,7 +78,10 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     };
     folder::prepare(&directory, args.force)?;
     folder::clear_all(&directory)?;
-    checkpoint::write_checked(&directory.join(FILE), MAGIC, &ensemble)?;
+    checkpoint::write_checked(&directory.join(PLAN), MAGIC, &ensemble)?;
+    let verdicts = BTreeMap::new();
+    let members = count;
+    Summary { members, verdicts }.write(&directory)?;
     wind(args, &directory, all)
 }
 
@@ -87,12 +90,12 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
 /// # Errors
 /// Those of [`run`], and a plan that cannot be read.
 pub(super) fn resume(args: &RunArgs, directory: &Path) -> Result<(), Failure> {
-    let path = directory.join(FILE);
+    let path = directory.join(PLAN);
     let bytes = std::fs::read(&path).map_err(|e| Failure::write(&path, e))?;
     let ensemble: Ensemble =
         checkpoint::read_checked(&bytes, MAGIC).map_err(|what| Failure::Resume {
             directory: directory.display().to_string(),
-            reason: format!("{FILE} {what}; go on with each member, or begin again with --force"),
+            reason: format!("{PLAN} {what}; go on with each member, or begin again with --force"),
         })?;
     ensemble.plan.check_inputs()?;
     let all: Result<Vec<Member>, Failure> = (1..=ensemble.members)
@@ -204,10 +207,17 @@ fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failur
     let ended: Vec<Result<Judged, Failure>> = ended.into_iter().flatten().collect();
     let stuck = |one: &Result<Judged, Failure>| matches!(one, Err(Failure::Stuck { .. }));
     if !ended.iter().any(stuck) {
-        let path = directory.join(FILE);
+        let path = directory.join(PLAN);
         std::fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
     }
-    let words = words(&ended);
+    let counts = counts(&ended);
+    let verdicts = counts.iter().map(|(key, count)| (word(key), *count));
+    Summary {
+        members: ended.len() as u32,
+        verdicts: verdicts.collect(),
+    }
+    .write(directory)?;
+    let words = words(&counts);
     let defective = ended.iter().flatten().any(|judged| judged.defect);
     let place = directory.display();
     if !args.quiet {
@@ -234,21 +244,31 @@ fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failur
     }
 }
 
-/// The share of each verdict, the gravest last: `aligned 6 of 8 (75 %), gap 2 of 8 (25 %)`.
-fn words(ended: &[Result<Judged, Failure>]) -> String {
-    let mut counts = BTreeMap::new();
+/// Runs by verdict, the gravest last; those without one come after those with one.
+type Counts = BTreeMap<(bool, Option<Verdict>), u32>;
+
+fn counts(ended: &[Result<Judged, Failure>]) -> Counts {
+    let mut counts = Counts::new();
     for one in ended {
-        let key = one.as_ref().ok().map(|judged| judged.verdict);
-        // Runs without a verdict come after those with one.
-        *counts.entry((key.is_none(), key)).or_insert(0) += 1;
+        let verdict = one.as_ref().ok().map(|judged| judged.verdict);
+        *counts.entry((verdict.is_none(), verdict)).or_insert(0) += 1;
     }
-    let all = ended.len();
-    let share = |((_, verdict), count): (_, usize)| {
-        let word = Option::map_or(verdict, "failed", Verdict::as_str);
-        let percent = 100.0 * count as f64 / all as f64;
-        format!("{word} {count} of {all} ({percent:.0} %)")
+    counts
+}
+
+/// The verdict of a count.
+fn word((_, verdict): &(bool, Option<Verdict>)) -> String {
+    verdict.map_or("failed", Verdict::as_str).to_owned()
+}
+
+/// The share of each verdict: `aligned 6 of 8 (75 %), gap 2 of 8 (25 %)`.
+fn words(counts: &Counts) -> String {
+    let all: u32 = counts.values().sum();
+    let share = |(key, count): (_, &u32)| {
+        let percent = 100.0 * f64::from(*count) / f64::from(all);
+        format!("{} {count} of {all} ({percent:.0} %)", word(key))
     };
-    counts.into_iter().map(share).collect::<Vec<_>>().join(", ")
+    counts.iter().map(share).collect::<Vec<_>>().join(", ")
 }
 
 fn bar(quiet: bool, count: u64) -> ProgressBar {

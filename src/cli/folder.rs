@@ -44,7 +44,7 @@ pub(super) fn refuse_occupied(directory: &Path, force: bool) -> Result<(), Failu
     Err(Failure::Occupied {
         directory: directory.display().to_string(),
         holds,
-        can_go_on: has(directory, checkpoint::FILE) || ensemble_files::is_in(directory),
+        can_go_on: has(directory, checkpoint::FILE) || ensemble_files::can_go_on(directory),
     })
 }
 
@@ -54,15 +54,8 @@ pub(super) fn held(directory: &Path) -> Option<&'static str> {
     match (any(&SIGNS), any(&sweep_files::SIGNS)) {
         (true, _) => Some("another run"),
         (_, true) => Some("a sweep"),
-        _ if ensemble_files::is_in(directory) => Some("an ensemble"),
-        _ => members(directory).next().map(|_| "an ensemble"),
+        _ => ensemble_files::is_in(directory).then_some("an ensemble"),
     }
-}
-
-/// The folders of the members of an ensemble that hold runs. Of one that was stopped, those before may be missing.
-fn members(directory: &Path) -> impl Iterator<Item = PathBuf> {
-    let all = (1..=ensemble_files::MOST).map(|member| directory.join(member.to_string()));
-    all.filter(|member| SIGNS.iter().any(|name| has(member, name)))
 }
 
 /// Whether a folder has this file, with something in it.
@@ -84,12 +77,12 @@ pub(super) fn begin(directory: &Path, settings: &SceneSettings, note: &str) -> R
 
 /// Removes the results of a run, but for its history and its scene, and the members of an ensemble.
 fn clear(directory: &Path) -> Result<(), Failure> {
-    for member in members(directory) {
+    for member in ensemble_files::members(directory) {
         clear_run(&member)?;
         // With files of somebody else in it, it stays.
         let _ = fs::remove_dir(member);
     }
-    remove(directory, &[ensemble_files::FILE])?;
+    remove(directory, &ensemble_files::ALL)?;
     let folder = directory.join("frames");
     let frames = fs::read_dir(&folder).into_iter().flatten();
     let frames = frames.filter_map(|entry| Some(entry.ok()?.path()));
@@ -111,7 +104,8 @@ fn clear(directory: &Path) -> Result<(), Failure> {
 /// An error where this scene lies in the folder as that of an earlier run, so that making room there would remove it.
 pub(super) fn refuse_own_scene(directory: &Path, scene: &str) -> Result<(), Failure> {
     let given = fs::canonicalize(scene).ok();
-    let mut kept = members(directory).chain([directory.to_owned()]);
+    let members = ensemble_files::members(directory).into_iter();
+    let mut kept = members.chain([directory.to_owned()]);
     let is_given = |folder: PathBuf| fs::canonicalize(folder.join(SCENE)).ok() == given;
     match given.is_some() && kept.any(is_given) {
         true => Err(Failure::Resume {

@@ -86,7 +86,7 @@ pub(crate) fn main() -> ExitCode {
     let result = match cli.command {
         Command::Run(args) => match (args.ensemble, &args.resume) {
             (Some(count), _) => ensemble::run(&args, count),
-            (None, Some(directory)) if ensemble_files::is_in(directory) => {
+            (None, Some(directory)) if ensemble_files::can_go_on(directory) => {
                 ensemble::resume(&args, directory)
             }
             _ => run::run(&args),

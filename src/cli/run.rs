@@ -109,11 +109,9 @@ impl RunArgs {
         if self.frames > 0 {
             words += &format!(" --frames {}", self.frames);
         }
-        words += if self.no_geometry {
-            " --no-geometry"
-        } else {
-            ""
-        };
+        if self.no_geometry {
+            words += " --no-geometry";
+        }
         words
     }
 

@@ -227,10 +227,23 @@ def test_a_wrong_measurement_is_told_in_a_line(text, words, complaint, calibrate
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("name", ["ensemble.bin", "1/summary.json", "3/history.csv"])
+def in_folder(call, folder):
+    code = f"import sys; sys.path.insert(0, 'scripts'); import folder, pathlib; folder.{call}"
+    return subprocess.run([sys.executable, "-c", code, folder], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("name", ["ensemble.bin", "ensemble.json"])
 def test_the_folder_of_an_ensemble_is_refused(tmp_path, name):
-    (tmp_path / name).parent.mkdir(exist_ok=True)
     (tmp_path / name).write_text("{}")
-    code = "import sys; sys.path.insert(0, 'scripts'); import folder, pathlib; folder.refuse_occupied(pathlib.Path(sys.argv[1]), False)"
-    said = subprocess.run([sys.executable, "-c", code, tmp_path], capture_output=True, text=True, check=False).stderr
+    said = in_folder("refuse_occupied(pathlib.Path(sys.argv[1]), False)", tmp_path).stderr
     assert "holds an ensemble; add --force" in said
+
+
+def test_no_member_of_an_ensemble_stays_behind(tmp_path):
+    (tmp_path / "ensemble.json").write_text('{"members": 2, "verdicts": {}}')
+    for run, name in [("1", "summary.json"), ("2", "mine.txt"), ("2", "history.csv"), ("3", "summary.json")]:
+        (tmp_path / run).mkdir(exist_ok=True)
+        (tmp_path / run / name).write_text("{}")
+    assert in_folder("clear(pathlib.Path(sys.argv[1]))", tmp_path).returncode == 0
+    left = sorted(str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*"))
+    assert left == ["2", "2/mine.txt", "3", "3/summary.json"]
