@@ -2,6 +2,7 @@
 
 mod common;
 
+use coilwind::math::V3;
 use coilwind::signals::{EventKind, Inputs};
 use coilwind::simulation::Simulation;
 use common::fig8;
@@ -35,6 +36,24 @@ fn a_profile_run_that_fails_stands_at_the_last_good_step() {
         0.0,
         "nothing drives on"
     );
+}
+
+/// Where a step failed, all derivatives by time were 0, whatever turned.
+#[test]
+fn a_step_that_fails_leaves_the_derivatives_of_its_last_instant() {
+    let mut sim = too_long_a_step();
+    let mut inputs = sim.inputs();
+    while sim.advance(inputs, 1e-3).is_ok() {
+        inputs.spindle_speed += 2.0;
+        inputs.nozzle_position += 1e-5;
+    }
+    let (rates, o) = (sim.output_rates(), sim.outputs());
+    assert_eq!(rates.spindle_angle, inputs.spindle_speed);
+    assert_eq!(rates.fed_length, o.feed_speed);
+    assert!(rates.fed_length > 0.1, "{}", rates.fed_length);
+    assert_eq!(rates.tensioner_position, o.tensioner_speed);
+    assert!((rates.nozzle_y - 0.01).abs() < 1e-6, "{}", rates.nozzle_y);
+    assert!(sim.system().state.support[1].velocity == V3::zeros());
 }
 
 #[test]

@@ -149,11 +149,13 @@ impl Parameters {
     pub(crate) fn effect_of_tolerance(&self) -> Option<String> {
         let row = by_name(SOLVER_TOLERANCE)?;
         let tolerance = self.tolerance?;
-        let (is, scene) = (in_use(&self.settings), in_use(&self.base));
+        let mut without = self.settings.clone();
+        without.solver.tolerance = self.base.solver.tolerance;
+        let (is, scene) = (in_use(&self.settings), in_use(&without));
         (is != scene && !self.explicit.contains_key(&row.reference)).then(|| {
             let least = scene * (tolerance / DEFAULT_TOLERANCE) < FINEST;
             format!(
-                "the experiment's tolerance {} makes {SOLVER_TOLERANCE} {} m{}; the scene has {} m, which {} stands for; \
+                "the experiment's tolerance {} makes {SOLVER_TOLERANCE} {} m{}; without it there were {} m, which {} stands for; \
                  set {SOLVER_TOLERANCE} to overrule the experiment",
                 Value::Real(tolerance),
                 Value::Real(is),

@@ -161,11 +161,11 @@ impl Simulation {
         } else {
             Ok(())
         };
-        winding.sys.end_drive();
         if gone.is_err() {
             winding.stop_short();
             return gone;
         }
+        winding.sys.end_drive();
         winding.stand_at(&served);
         Ok(())
     }
@@ -364,7 +364,6 @@ impl Simulation {
             };
             if let Err(error) = stepped {
                 let winding = self.pool.own(&mut self.now);
-                winding.sys.end_drive();
                 winding.stop_short();
                 (self.talk.served, self.talk.course) = (None, None);
                 return Err(error);

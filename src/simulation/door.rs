@@ -2,7 +2,7 @@
 
 use super::nozzle_place::nozzle_of;
 use super::outputs::raise_as;
-use super::rates::rates_of;
+use super::rates::{rates_of, speeds_of};
 use super::{SimError, WORTH_A_STEP, Winding};
 use crate::integrate::SolverStatistics;
 use crate::signals::{EventKind, Inputs, Outputs};
@@ -116,11 +116,11 @@ impl Winding {
             }
         };
         self.tell_of_trouble(statistics_before);
-        self.sys.end_drive();
         if gone.is_err() {
             self.stop_short();
             return gone;
         }
+        self.sys.end_drive();
         if let Source::Inputs { inputs, rates } = &source {
             let end = inputs.after(rates, dt);
             self.sys.state.spindle.speed = end.spindle_speed;
@@ -200,14 +200,18 @@ impl Winding {
     }
 
     /// Ends a step in which the method gave up: what can be read is what was reached, or what was there before
-    /// if that is no state of a wire.
+    /// if that is no state of a wire. Rates are those of the last instant.
     pub(super) fn stop_short(&mut self) {
-        let rod = &self.sys.state.rod;
-        if rod.x.iter().chain(&rod.v).flatten().all(|x| x.is_finite()) {
+        let (rod, nozzle) = (&self.sys.state.rod, self.sys.state.support[1]);
+        let reached = rod.x.iter().chain(&rod.v).flatten().all(|x| x.is_finite());
+        self.sys.end_drive();
+        self.run.rates = Outputs::default();
+        if reached {
             (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
             self.finish();
+            self.run.rates = speeds_of(&self.run.outputs, self.sys.state.spindle.speed);
+            self.run.rates.nozzle_y = nozzle.velocity.y;
         }
-        self.run.rates = Outputs::default();
     }
 
     /// Reports how often since `before` the solver shortened a step because Newton's method failed.

@@ -55,9 +55,18 @@ impl Winding {
     }
 
     /// A live edge has parted under tension: in its middle, as far as the mesh tells.
-    pub(super) fn note_parted(&mut self, edge: usize, text: String) {
+    pub(super) fn note_parted(&mut self, edge: usize) {
+        let rest = &self.sys.state.rod.rest;
+        let half = 0.5 * rest[edge];
+        let before_nozzle = rest[edge..].iter().sum::<f64>() - half;
+        let text = format!(
+            "the wire broke {:.1} mm before the nozzle: {} N is above its strength of {} N; lower tension_setpoint or the spindle's acceleration",
+            1e3 * before_nozzle,
+            four_digits(self.sys.state.load.tension[edge]),
+            four_digits(self.scene.wire.strength),
+        );
         self.note_end(DefectKind::Break, edge, text);
-        self.run.outputs.break_position += 0.5 * self.sys.state.rod.rest[edge];
+        self.run.outputs.break_position += half;
     }
 
     /// The same of what happened at an angle along the wire from the clamp, rad, at a place in the core frame, m.
@@ -211,4 +220,9 @@ impl Winding {
         let faults = self.run.faults.iter().map(|fault| fault.kind.into());
         faults.fold(self.coil.verdict(), Verdict::max)
     }
+}
+
+/// A number to four significant digits.
+fn four_digits(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
 }

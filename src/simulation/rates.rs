@@ -15,20 +15,32 @@ pub(super) fn rates_of(
     dt: f64,
     speed: f64,
 ) -> Outputs {
-    let mut rates = Outputs {
-        spindle_angle: speed,
-        nozzle_y: (after.nozzle_y - before.nozzle_y) / dt,
-        ..Outputs::default()
-    };
+    let nozzle_y = (after.nozzle_y - before.nozzle_y) / dt;
     if winding.run.over || winding.is_quiescent() {
-        return rates;
+        return Outputs {
+            spindle_angle: speed,
+            nozzle_y,
+            ..Outputs::default()
+        };
     }
-    rates.fed_length = after.feed_speed;
-    rates.tensioner_position = after.tensioner_speed;
+    let mut rates = Outputs {
+        nozzle_y,
+        ..speeds_of(after, speed)
+    };
     // More wire laid than was fed: a stretch landed at once, which says nothing about the next step.
     let laid = (after.wire_length - before.wire_length).abs();
     if laid <= LANDED * (after.fed_length - before.fed_length).abs() {
         rates.free_length = (after.free_length - before.free_length) / dt;
     }
     rates
+}
+
+/// Slopes that an instant tells by itself, of its outputs and the spindle's speed, rad/s: those of what has a speed.
+pub(super) fn speeds_of(outputs: &Outputs, spindle: f64) -> Outputs {
+    Outputs {
+        spindle_angle: spindle,
+        fed_length: outputs.feed_speed,
+        tensioner_position: outputs.tensioner_speed,
+        ..Outputs::default()
+    }
 }

@@ -505,7 +505,7 @@ impl Winding {
             return Ok(());
         }
         let strength = self.scene.wire.strength;
-        if let Some((j, t)) = self
+        if let Some((j, _)) = self
             .sys
             .state
             .load
@@ -515,10 +515,7 @@ impl Winding {
             .filter(|(_, t)| **t > strength)
             .max_by(|(_, a), (_, b)| a.total_cmp(b))
         {
-            let text = format!(
-                "the wire broke: {t:.1} N at live edge {j} is above its strength of {strength:.1} N; lower tension_setpoint or the spindle's acceleration"
-            );
-            self.note_parted(j, text);
+            self.note_parted(j);
         } else if let Some((i, radius)) = self.kink() {
             let text = format!(
                 "the wire broke: it is kinked at live node {i}, bent to a radius of {:.3} mm and itself {:.3} mm thick; keep it under tension there",

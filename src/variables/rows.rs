@@ -274,8 +274,8 @@ table! {
     flag(107, defect_slack, "tension fell to zero");
     count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16, double turn 32, skipped groove 64, early layer jump 128, late layer jump 256, loose turn 512, overstretch 1024, collision 2048, runaway 4096");
     count(Output, 109, defect_count, "defects of coil and wire, of every kind");
-    output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect");
-    output(111, defect_angle, "rad", "deg", -1e7, 1e7, 1.0, "polar angle of the last defect within its turn");
+    output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect, where it was found");
+    output(111, defect_angle, "rad", "deg", -1e7, 1e7, 1.0, "polar angle of the last defect within its turn, where it was found");
     output(112, bulge_height, "m", "mm", -10.0, 10.0, 1e-3, "largest height over the core or the layer below, last settled turn");
     output(113, gap_width, "m", "mm", -10.0, 10.0, 1e-4, "widest gap to the neighbouring turn, last settled turn");
     output(114, overlap_depth, "m", "mm", -10.0, 10.0, 1e-4, "deepest overlap with the neighbouring turn, last settled turn");
@@ -300,11 +300,11 @@ table! {
     count(Output, 132, defect_count_break, "breaks so far");
     count(Output, 133, defect_count_slack, "how often the wire went slack so far");
     count(Output, 134, defect_kind, "kind of the last defect, as in defect_code; 0: none so far");
-    output(135, defect_time, "s", "", -1e9, 1e9, 1.0, "time of the last defect since the start of the run");
-    output(136, defect_size, "m", "mm", -10.0, 10.0, 1e-4, "size of the last defect where it was found; 0 for what befalls the wire: slack, break, collision, runaway");
+    output(135, defect_time, "s", "", -1e9, 1e9, 1.0, "time since the start of the run at which the wire of the last defect came to rest; for slack and break when it happened. It is found later, when the wire beside it is at rest too");
+    output(136, defect_size, "m", "mm", -10.0, 10.0, 1e-4, "size of the last defect where it was found; 0 for what befalls the wire (slack, break, collision, runaway) and for a turn that is loose by its tension alone");
     output(137, tensioner_position, "m", "mm", -1e6, 1e6, 0.1, "wire let go by the tensioner since the start");
     output(138, tensioner_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire at the tensioner");
-    output(139, nozzle_angle, "rad", "deg", -1.6, 1.6, 0.1, "angle at the nozzle between the free span and the plane across the axis; positive towards larger y");
+    output(139, nozzle_angle, "rad", "deg", -1.6, 1.6, 0.1, "angle at the nozzle between the free span and the plane across the axis; positive where the wire on its way from the nozzle to the core goes towards larger y");
     output(140, wire_length, "m", "", 0.0, 1e6, 1.0, "wire from the clamp to where it meets the coil, unstretched");
 
     output(141, nozzle_y, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis: that of nozzle_position, or of the law of traverse.mode");

@@ -154,11 +154,14 @@ def test_no_asynchronous_step_is_ever_pending(slave):
 def test_directional_derivatives_are_of_outputs_by_inputs(slave):
     slave.start()
     tension, speed = (slave.references([name]) for name in ("wire_tension", "spindle_speed"))
-    flag, diameter = (slave.references([name]) for name in ("defect_gap", "wire.diameter"))
+    flag, diameter, local = (slave.references([name]) for name in ("defect_gap", "wire.diameter", "energy_residual"))
     derivative = slave.fmu.getDirectionalDerivative
     assert "knowns are inputs" in refused(slave, derivative, tension, diameter, [1.0])
     assert "knowns are inputs" in refused(slave, derivative, tension, tension, [1.0])
     assert "unknowns are outputs" in refused(slave, derivative, speed, speed, [1.0])
+    # a result that is no output had the derivative 0
+    assert "unknowns are outputs" in refused(slave, derivative, local, speed, [1.0])
+    assert "it is not an output" in refused(slave, slave.fmu.getRealOutputDerivatives, local, [1])
     assert "finite" in refused(slave, derivative, tension, speed, [math.nan])
     assert refused(slave, derivative, flag, speed, [1.0])
     still_steps(slave)

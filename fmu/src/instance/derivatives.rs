@@ -6,9 +6,9 @@ use crate::error::Error;
 use crate::lifecycle::State;
 use crate::message::Message;
 use crate::scalar::{find, wrong_type};
-use coilwind::signals::Inputs;
+use coilwind::signals::{Inputs, Outputs};
 use coilwind::simulation::Simulation;
-use coilwind::variables::{Access, Causality, Value};
+use coilwind::variables::{Access, Causality, Value, Variable};
 
 /// Share by which slopes over changes of different sizes may part before the importer is told. Chosen.
 const APART: f64 = 0.1;
@@ -78,14 +78,12 @@ impl Instance {
         let both = references.iter().zip(orders);
         both.map(|(reference, order)| {
             let variable = find::<f64>(*reference)?;
-            match (variable.access, order) {
-                (Access::Output(get), 1) => match get(run.simulation.output_rates()) {
+            match (output(variable), order) {
+                (Some(get), 1) => match get(run.simulation.output_rates()) {
                     Value::Real(rate) => Ok(rate),
                     _ => Err(wrong_type::<f64>(variable)),
                 },
-                (Access::Output(_), _) => {
-                    Err(no_derivative(variable.name, *order, "outputs have order 1"))
-                }
+                (Some(_), _) => Err(no_derivative(variable.name, *order, "outputs have order 1")),
                 _ => Err(no_derivative(variable.name, *order, "it is not an output")),
             }
         })
@@ -127,9 +125,9 @@ impl Instance {
         let mut asked = Vec::with_capacity(unknowns.len());
         for reference in unknowns {
             let variable = find::<f64>(*reference)?;
-            match variable.access {
-                Access::Output(get) => asked.push((variable, get)),
-                _ => return Err(no_derivative(variable.name, 1, "unknowns are outputs")),
+            match output(variable) {
+                Some(get) => asked.push((variable, get)),
+                None => return Err(no_derivative(variable.name, 1, "unknowns are outputs")),
             }
         }
         if asked.is_empty() || direction == Inputs::HELD {
@@ -176,6 +174,14 @@ impl Instance {
             self.messages.push(Message::about_derivative(text));
         }
         Ok(values)
+    }
+}
+
+/// How an output is read; `None` for other variables, also for results that are local.
+fn output(variable: &Variable) -> Option<fn(&Outputs) -> Value> {
+    match variable.access {
+        Access::Output(get) if variable.causality == Causality::Output => Some(get),
+        _ => None,
     }
 }
 
