@@ -1,34 +1,15 @@
 //! Runs that are stopped and go on: to the same bytes as those that were not, and never over another run.
 #![cfg(unix)]
 
+#[path = "common/stopping.rs"]
+mod stopping;
+
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::time::Duration;
-
-fn coilwind() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_coilwind"))
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
-
-/// Twelve turns without pictures, which take longer than all else.
-fn short(out: &Path) -> Command {
-    let mut command = coilwind();
-    command.args(["run", "fig8", "--quiet", "--no-geometry"]);
-    for setting in [
-        "spindle.turns=12",
-        "spindle.speed=100",
-        "solver.spacing_near_mm=0.8",
-    ] {
-        command.args(["--set", setting]);
-    }
-    command.arg("--out").arg(out);
-    command
-}
+use stopping::{assert_same, coilwind, files, refused, said, short, wait_for_checkpoint};
 
 fn resume(out: &Path) -> Command {
     let mut command = coilwind();
@@ -36,50 +17,6 @@ fn resume(out: &Path) -> Command {
         .args(["run", "--quiet", "--checkpoint-every", "0.02", "--resume"])
         .arg(out);
     command
-}
-
-fn refused(command: &mut Command, part: &str) {
-    let output = command.output().unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert_eq!(said(&output).lines().count(), 1, "{}", said(&output));
-    assert!(said(&output).contains(part), "{part}: {}", said(&output));
-}
-
-/// The files of a run but for what the clock writes.
-fn files(folder: &Path) -> Vec<(String, Vec<u8>)> {
-    let frames = std::fs::read_dir(folder.join("frames"))
-        .into_iter()
-        .flatten();
-    let entries = std::fs::read_dir(folder).unwrap().chain(frames);
-    let mut found: Vec<(String, Vec<u8>)> = entries
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.is_file() && !path.ends_with("report.html"))
-        .map(|path| {
-            let name = path.file_name().unwrap().to_string_lossy().into_owned();
-            let mut bytes = std::fs::read(&path).unwrap();
-            if name == "summary.json" {
-                let text = String::from_utf8(bytes).unwrap();
-                let timeless = text
-                    .lines()
-                    .filter(|line| !line.contains("wall_s") && !line.contains("real_time_factor"));
-                bytes = timeless.collect::<Vec<_>>().join("\n").into_bytes();
-            }
-            (name, bytes)
-        })
-        .collect();
-    found.sort();
-    found
-}
-
-fn assert_same(whole: &Path, stopped: &Path, what: &str) {
-    let (a, b) = (files(whole), files(stopped));
-    let names = |files: &[(String, Vec<u8>)]| -> Vec<String> {
-        files.iter().map(|(name, _)| name.clone()).collect()
-    };
-    assert_eq!(names(&a), names(&b), "{what}");
-    for ((name, a), (_, b)) in a.iter().zip(&b) {
-        assert!(a == b, "{what}: {name} differs");
-    }
 }
 
 /// Kills a run at random instants until it has ended; returns how often.
@@ -107,12 +44,6 @@ fn killed_until_it_ends(first: &mut Command, out: &Path, random: &mut ChaCha8Rng
                 .spawn()
                 .unwrap()
         };
-    }
-}
-
-fn wait_for_checkpoint(out: &Path) {
-    while !out.join("checkpoint.bin").exists() {
-        std::thread::sleep(Duration::from_millis(5));
     }
 }
 
@@ -390,98 +321,49 @@ fn a_folder_without_a_whole_run_says_what_to_do() {
     std::fs::write(out.join("history.csv"), "time\n0\n").unwrap();
     refused(&mut resume(&out), "history.csv is not the one");
 }
-
-/// Members that had not begun were named, and no command wound them.
+/// A run went on along another table than it had begun with, without a word.
 #[test]
-fn an_ensemble_that_is_stopped_goes_on_to_the_same_bytes() {
+fn a_table_that_has_changed_is_not_the_motion_of_the_run() {
     let folder = tempfile::tempdir().unwrap();
-    let run = |out: &Path| {
-        let mut command = short(out);
-        command
-            .args(["--ensemble", "3", "--set", "spindle.turns=6"])
-            .env("RAYON_NUM_THREADS", "1");
-        command
-    };
-    let whole = folder.path().join("whole");
-    assert!(run(&whole).status().unwrap().success());
-    let out = folder.path().join("two words");
-    let child = run(&out).stderr(Stdio::piped()).spawn().unwrap();
-    wait_for_checkpoint(&out.join("1"));
-    let kill = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status();
-    assert!(kill.unwrap().success());
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
-    let command = format!(
-        "0 of 3 members are done; go on with: coilwind run --resume '{}'",
-        out.display()
-    );
-    assert!(said(&output).contains(&command), "{}", said(&output));
-    assert!(!out.join("3").exists());
-    // the same command again named the first member alone
-    refused(&mut run(&out), &format!("--resume '{}'", out.display()));
-    let mut again = coilwind();
-    again.args(["run", "--resume"]).arg(&out);
-    let output = again.output().unwrap();
-    assert!(output.status.success(), "{}", said(&output));
-    let told = String::from_utf8(output.stdout).unwrap();
-    assert!(told.contains("3 of 3 (100 %)"), "{told}");
-    for member in ["1", "2", "3"] {
-        assert_same(&whole.join(member), &out.join(member), member);
-    }
-    for directory in [&whole, &out] {
-        // the members, and what came of them
-        assert_eq!(std::fs::read_dir(directory).unwrap().count(), 4);
-    }
-    let told = |directory: &Path| std::fs::read(directory.join("ensemble.json")).unwrap();
-    assert_eq!(told(&whole), told(&out));
-}
-
-/// A run wound into the folder of an ensemble, and a smaller ensemble kept a member of the larger one.
-#[test]
-fn an_ensemble_is_not_overwritten_and_leaves_no_member_behind() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    let run = |more: &[&str]| {
+    for (key, table, other) in [
+        (
+            "traverse",
+            "turns,y_mm\n0,0\n20,8\n",
+            "turns,y_mm\n0,0\n20,9\n",
+        ),
+        (
+            "spindle",
+            "turns,share\n0,1\n20,0.5\n",
+            "turns,share\n0,1\n20,0.4\n",
+        ),
+    ] {
+        let (out, file) = (folder.path().join(key), folder.path().join("table.csv"));
+        std::fs::write(&file, table).unwrap();
         let mut command = short(&out);
-        command.args(["--set", "spindle.turns=0.3"]).args(more);
-        command
-    };
-    assert!(run(&["--ensemble", "3"]).status().unwrap().success());
-    refused(&mut run(&[]), "holds an ensemble; add --force");
-    refused(&mut run(&["--ensemble", "2"]), "holds an ensemble");
-    let mut sweep = coilwind();
-    sweep.args([
-        "sweep",
-        "fig8",
-        "--quiet",
-        "--over",
-        "spindle.speed=60:120:2",
-        "--out",
-    ]);
-    refused(sweep.arg(&out), "holds an ensemble");
-    let names = || {
-        let entries = std::fs::read_dir(&out).unwrap();
-        let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
-        let mut names: Vec<_> = entries.map(name).collect();
-        names.sort();
-        names
-    };
-    assert_eq!(names(), ["1", "2", "3", "ensemble.json"]);
-    let told: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(out.join("ensemble.json")).unwrap()).unwrap();
-    assert_eq!(told["members"], 3);
-    let verdicts = told["verdicts"].as_object().unwrap().values();
-    assert_eq!(verdicts.map(|n| n.as_u64().unwrap()).sum::<u64>(), 3);
-    // runs that somebody wound into folders with numbers are no members
-    std::fs::rename(out.join("2"), out.join("4")).unwrap();
-    let smaller = run(&["--ensemble", "2", "--force"]).status();
-    assert!(smaller.unwrap().success());
-    assert_eq!(names(), ["1", "2", "4", "ensemble.json"]);
-    assert!(run(&["--force"]).status().unwrap().success());
-    assert!(!out.join("1").exists() && out.join("summary.json").is_file());
-    assert!(out.join("4/summary.json").is_file());
+        let mode = if key == "traverse" {
+            "table"
+        } else {
+            "by-angle"
+        };
+        for setting in [
+            format!("traverse.mode={mode}"),
+            format!("{key}.file={}", file.display()),
+        ] {
+            command.args(["--set", &setting]);
+        }
+        command.args(["--checkpoint-every", "0.02"]);
+        let mut child = command.spawn().unwrap();
+        wait_for_checkpoint(&out);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        std::fs::write(&file, other).unwrap();
+        refused(
+            &mut resume(&out),
+            "the table of traverse.file or spindle.file has changed",
+        );
+        std::fs::write(&file, table).unwrap();
+        assert!(resume(&out).status().unwrap().success());
+    }
 }
 
 /// A full disk was bad input, and nothing said that the run could go on.

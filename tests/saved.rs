@@ -229,10 +229,13 @@ fn no_other_bytes_are_taken() {
     let mut newer = good.clone();
     newer[0] += 1;
     let error = Simulation::from_bytes(&scene, &newer).expect_err("another version");
-    assert!(error.to_string().contains("version 23"), "{error}");
+    assert!(error.to_string().contains("version 24"), "{error}");
     let wider = fig8(&[("core.width_x_mm", "14")]);
     let error = Simulation::from_bytes(&wider, &good).expect_err("another core");
     assert!(matches!(error, RestoreError::OtherCore), "{error}");
+    let faster = fig8(&[("spindle.ramp_turns", "0.3")]);
+    let error = Simulation::from_bytes(&faster, &good).expect_err("another motion");
+    assert!(matches!(error, RestoreError::OtherMotion), "{error}");
     let verlet = fig8(&[("solver.integrator", "verlet")]);
     let error = Simulation::from_bytes(&verlet, &good).expect_err("another method");
     assert!(matches!(error, RestoreError::Impossible(_)), "{error}");

@@ -52,6 +52,14 @@ impl Coil {
         false
     }
 
+    /// True where no defect of this kind counts, by now, in the settled wire of the station `at`, though the run may still grow. Wire
+    /// that is not settled leaves that open.
+    pub(crate) fn counts_no_more(&self, kind: DefectKind, at: usize) -> bool {
+        let runs = self.counted_runs(kind, at);
+        let there = |run: &CountedRun| (run.first..=run.last).contains(&at);
+        at < self.records.len() && !runs.iter().any(there)
+    }
+
     /// Runs of a kind that are long enough to count and reach the station `from` or beyond, along the wire.
     pub(crate) fn counted_runs(&self, kind: DefectKind, from: usize) -> Vec<CountedRun> {
         let run_at = |index: usize| self.records[index].runs[kind as usize];

@@ -26,6 +26,19 @@ impl MotionProfile {
         }
     }
 
+    /// Tells profiles apart whose scene is the same: the file of a table may have changed.
+    pub(super) fn checksum(&self) -> u32 {
+        let pieces = self.nozzle.pieces().iter();
+        let pieces = pieces.flat_map(|piece| [piece.from, piece.y, piece.travel]);
+        let stretches = self.spindle.stretches().iter();
+        let stretches = stretches.flat_map(|one| [one.start, one.speed, one.gain, one.duration]);
+        let mut sum = crc32fast::Hasher::new();
+        for x in pieces.chain(stretches) {
+            sum.update(&x.to_bits().to_le_bytes());
+        }
+        sum.finalize()
+    }
+
     /// Angle turned at a time, rad (with the sign of the speed).
     pub fn angle(&self, time: f64) -> f64 {
         self.spindle.angle(time) * self.sense

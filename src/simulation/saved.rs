@@ -19,7 +19,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 23;
+const VERSION: u32 = 24;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -43,8 +43,15 @@ pub enum RestoreError {
     #[error("the state contradicts itself: {0}")]
     Impossible(&'static str),
     /// the scene's mesh file has changed since
-    #[error("the core's surface is not the one that the state was saved with")]
+    #[error(
+        "the core's surface is not the one that the state was saved with; put the file of the mesh back to go on"
+    )]
     OtherCore,
+    /// the file of a table has changed since
+    #[error(
+        "the motion is not the one that the state was saved with: the table of traverse.file or spindle.file has changed; put it back to go on"
+    )]
+    OtherMotion,
     /// the scene does not start
     #[error("the scene of the state does not start: {0}")]
     Scene(#[from] super::SimError),
@@ -55,6 +62,8 @@ pub enum RestoreError {
 struct Saved<'a> {
     /// over vertices and triangles of the core
     core: u32,
+    /// over the scene's own motion
+    motion: u32,
     sys: Cow<'a, State>,
     coil: SavedCoil,
     /// of the implicit method: next step and the one that the error asks for, s, and what it took so far
@@ -107,6 +116,9 @@ impl Simulation {
         if saved.winding.core != winding.core_checksum() {
             return Err(RestoreError::OtherCore);
         }
+        if saved.winding.motion != winding.motion_profile.checksum() {
+            return Err(RestoreError::OtherMotion);
+        }
         winding
             .take_over(saved.winding)
             .map_err(RestoreError::Impossible)?;
@@ -138,6 +150,7 @@ impl Winding {
     fn saved(&self) -> Saved<'_> {
         Saved {
             core: self.core_checksum(),
+            motion: self.motion_profile.checksum(),
             sys: Cow::Borrowed(&self.sys.state),
             coil: self.coil.saved(),
             implicit: match &self.stepper {

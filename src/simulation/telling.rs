@@ -1,7 +1,7 @@
 //! What is told of settled wire: turns at rest, and each defect once.
 
 use super::Winding;
-use crate::measure::{CountedRun, DefectKind, STATION_STEP, STATIONS_PER_TURN, SettledNode};
+use crate::measure::{Coil, CountedRun, DefectKind, STATION_STEP, STATIONS_PER_TURN, SettledNode};
 use crate::signals::EventKind;
 
 /// Stations within which defects that are found at once are told in one line. Chosen: about what a node settles.
@@ -37,7 +37,10 @@ impl Winding {
             self.keep_last_defect();
             self.tell_of_defects(from);
         }
-        self.tell_of_withdrawn(changed.map_or(MEASURED_ANEW, |_| STEPPED));
+        self.tell_of_withdrawn(
+            changed.map_or(MEASURED_ANEW, |_| STEPPED),
+            Coil::has_come_to_nothing,
+        );
     }
 
     /// Takes the last `count` nodes back that have come to rest. A turn is told again once all of it was taken back: a part of it may come
@@ -52,14 +55,20 @@ impl Winding {
     /// any more.
     pub(super) fn tell_of_changes(&mut self, because: &str) {
         self.tell_of_defects(0);
-        self.tell_of_withdrawn(because);
+        self.tell_of_withdrawn(because, Coil::has_come_to_nothing);
     }
 
-    /// Tells of each defect that was told and that the wire there, which is at rest, does not have any more: `because` says what has
+    /// The limits of defects have changed: tells of defects that are new by them, and of those told before that do not count by now.
+    pub(super) fn tell_of_limits(&mut self) {
+        self.tell_of_defects(0);
+        self.tell_of_withdrawn("the limits of defects have changed", Coil::counts_no_more);
+    }
+
+    /// Tells of each defect that was told and is `gone` from the wire there, which is at rest: `because` says what has
     /// come to pass. Wire that was unwound is not there to be asked.
-    fn tell_of_withdrawn(&mut self, because: &str) {
+    fn tell_of_withdrawn(&mut self, because: &str, gone: fn(&Coil, DefectKind, usize) -> bool) {
         let coil = &self.coil;
-        let gone = |(kind, at): &mut (DefectKind, usize)| coil.has_come_to_nothing(*kind, *at);
+        let gone = |(kind, at): &mut (DefectKind, usize)| gone(coil, *kind, *at);
         let withdrawn: Vec<_> = self.run.told_defects.extract_if(.., gone).collect();
         for (kind, at) in withdrawn {
             let (place, name) = (place(at), kind.words());
@@ -262,6 +271,29 @@ mod tests {
             gone,
             [format!("no longer a defect {place}: {MEASURED_ANEW}")]
         );
+    }
+
+    /// A run of stations that could still grow until it counts was told neither when larger limits took it out nor when it came back.
+    #[test]
+    fn a_defect_that_goes_on_is_told_to_count_no_more_where_limits_change() {
+        let (mut winding, d, start) = started();
+        for node in six_turns(start, |turn| d * (turn + 0.5 * (turn - 3.0).max(0.0))) {
+            winding.settle_and_tell(node);
+        }
+        let told = defects_told(&mut winding);
+        assert!(told.len() == 1 && told[0].contains("(gap)"), "{told:?}");
+        let limits = winding.scene.defects;
+        let mut longer = winding.scene.clone();
+        longer.defects.gap_fraction = 1.0;
+        // (a run is two turns long)
+        winding.coil_mut().unsettle(2 * 72 + 36);
+        winding.retune(&longer);
+        let gone = defects_told(&mut winding);
+        assert!(gone.len() == 1 && gone[0].contains("no longer"), "{gone:?}");
+        assert_eq!(winding.coil.defect_count(), 0);
+        longer.defects = limits;
+        winding.retune(&longer);
+        assert_eq!(defects_told(&mut winding), told);
     }
 
     /// Wire beside a flange that has left its row for certain was on its way since it stood on the turn before, and is judged there.

@@ -122,7 +122,7 @@ impl Winding {
             self.scene.defects = scene.defects;
             self.coil_mut().set_limits(scene.defects);
             self.count_defects();
-            self.tell_of_changes("the limits of defects have changed");
+            self.tell_of_limits();
         }
         if let Some(law) = self.sys.model.contact.law_mut() {
             law.mu_static = scene.friction.static_;

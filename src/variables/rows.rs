@@ -288,7 +288,7 @@ table! {
     output(121, fed_length, "m", "", -1e6, 1e6, 0.1, "wire that has left the nozzle since the start");
     output(122, free_length, "m", "mm", -1.0, 1e3, 5e-2, "wire between lift-off and nozzle");
     output(123, layon_position, "m", "mm", -10.0, 10.0, 1e-2, "where the wire meets the coil, along y");
-    output(124, layon_angle, "rad", "deg", -1e7, 1e7, 1.0, "where the wire meets the coil, polar angle in the core frame");
+    output(124, layon_angle, "rad", "deg", -1e7, 1e7, 1.0, "where the wire meets the coil: angle along the turns from the clamp, in the frame of the core; it grows whichever way the spindle turns");
     output(125, coil_width, "m", "mm", -1.0, 10.0, 1e-3, "extent of the settled wire along y");
     output(126, mean_pitch, "m", "mm", -10.0, 10.0, 1e-3, "mean axial advance per turn of the settled wire");
     output(127, fill_factor, "1", "", 0.0, 10.0, 1.0, "wire section over the winding section it takes up, settled wire");

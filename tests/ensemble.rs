@@ -1,0 +1,102 @@
+//! Ensembles of runs: stopped and gone on with, and never over what is there.
+#![cfg(unix)]
+
+#[path = "common/stopping.rs"]
+mod stopping;
+
+use std::path::Path;
+use std::process::{Command, Stdio};
+use stopping::{assert_same, coilwind, refused, said, short, wait_for_checkpoint};
+
+/// Members that had not begun were named, and no command wound them.
+#[test]
+fn an_ensemble_that_is_stopped_goes_on_to_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |out: &Path| {
+        let mut command = short(out);
+        command
+            .args(["--ensemble", "3", "--set", "spindle.turns=6"])
+            .env("RAYON_NUM_THREADS", "1");
+        command
+    };
+    let whole = folder.path().join("whole");
+    assert!(run(&whole).status().unwrap().success());
+    let out = folder.path().join("two words");
+    let child = run(&out).stderr(Stdio::piped()).spawn().unwrap();
+    wait_for_checkpoint(&out.join("1"));
+    let kill = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(kill.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", said(&output));
+    let command = format!(
+        "0 of 3 members are done; go on with: coilwind run --resume '{}'",
+        out.display()
+    );
+    assert!(said(&output).contains(&command), "{}", said(&output));
+    assert!(!out.join("3").exists());
+    // the same command again named the first member alone
+    refused(&mut run(&out), &format!("--resume '{}'", out.display()));
+    let mut again = coilwind();
+    again.args(["run", "--resume"]).arg(&out);
+    let output = again.output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("3 of 3 (100 %)"), "{told}");
+    for member in ["1", "2", "3"] {
+        assert_same(&whole.join(member), &out.join(member), member);
+    }
+    for directory in [&whole, &out] {
+        // the members, and what came of them
+        assert_eq!(std::fs::read_dir(directory).unwrap().count(), 4);
+    }
+    let told = |directory: &Path| std::fs::read(directory.join("ensemble.json")).unwrap();
+    assert_eq!(told(&whole), told(&out));
+}
+
+/// A run wound into the folder of an ensemble, and a smaller ensemble kept a member of the larger one.
+#[test]
+fn an_ensemble_is_not_overwritten_and_leaves_no_member_behind() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let mut command = short(&out);
+        command.args(["--set", "spindle.turns=0.3"]).args(more);
+        command
+    };
+    assert!(run(&["--ensemble", "3"]).status().unwrap().success());
+    refused(&mut run(&[]), "holds an ensemble; add --force");
+    refused(&mut run(&["--ensemble", "2"]), "holds an ensemble");
+    let mut sweep = coilwind();
+    sweep.args([
+        "sweep",
+        "fig8",
+        "--quiet",
+        "--over",
+        "spindle.speed=60:120:2",
+        "--out",
+    ]);
+    refused(sweep.arg(&out), "holds an ensemble");
+    let names = || {
+        let entries = std::fs::read_dir(&out).unwrap();
+        let name = |entry: std::io::Result<std::fs::DirEntry>| entry.unwrap().file_name();
+        let mut names: Vec<_> = entries.map(name).collect();
+        names.sort();
+        names
+    };
+    assert_eq!(names(), ["1", "2", "3", "ensemble.json"]);
+    let told: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(out.join("ensemble.json")).unwrap()).unwrap();
+    assert_eq!(told["members"], 3);
+    let verdicts = told["verdicts"].as_object().unwrap().values();
+    assert_eq!(verdicts.map(|n| n.as_u64().unwrap()).sum::<u64>(), 3);
+    // runs that somebody wound into folders with numbers are no members
+    std::fs::rename(out.join("2"), out.join("4")).unwrap();
+    let smaller = run(&["--ensemble", "2", "--force"]).status();
+    assert!(smaller.unwrap().success());
+    assert_eq!(names(), ["1", "2", "4", "ensemble.json"]);
+    assert!(run(&["--force"]).status().unwrap().success());
+    assert!(!out.join("1").exists() && out.join("summary.json").is_file());
+    assert!(out.join("4/summary.json").is_file());
+}
