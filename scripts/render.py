@@ -182,6 +182,14 @@ def frames_of(run):
         raise broken(run, series.name, error, "--frames", "100") from None
 
 
+def whole_steps(low, high):
+    """Upper end and labels of a scale of whole numbers from `low` up to `high` or little above: at most six labels, with even steps."""
+    span = max(1, round(high - low))
+    step = -(-span // 5)
+    steps = -(-span // step)
+    return low + step * steps, steps + 1
+
+
 class Coil:
     """What does not change in a film: core, camera and colours."""
 
@@ -215,14 +223,14 @@ class Coil:
         reach = np.nanmin(shown), np.nanmax(shown)
         if not counted and (reach[0] < low or reach[1] > high):
             title += f"\nvalues from\n{reach[0]:.3g} to {reach[1]:.3g}"
-        high = max(high, low + (1.0 if counted else 1e-9))
+        high, labels = whole_steps(low, high) if counted else (max(high, low + 1e-9), 5)
         width, share = self.size[0], self.bar_share()
         small = min(1.0, share * width / BAR + 0.1)
         bar = {
             # An empty line keeps the title clear of the number at the top of the bar.
             "title": f"{title}\n", "color": "black", "vertical": True, "position_x": 1.0 - 0.65 * share, "position_y": 0.15, "width": 0.35 * share,
             "height": 0.65, "title_font_size": round(20 * small), "label_font_size": round(18 * small), "fmt": "%.0f" if counted else "%.3g",
-            "n_labels": int(min(high - low + 1, 6)) if counted else 5,
+            "n_labels": labels,
         }
         return {"scalars": "shown", "clim": (low, high), "cmap": "viridis", "nan_color": "#c9c9c9", "scalar_bar_args": bar}
 

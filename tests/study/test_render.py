@@ -59,6 +59,26 @@ print(np.mean(red > blue + 40), np.mean((abs(red - blue) < 40) & (red < 235)), n
     assert copper > 0.01 and grey > 0.05 and paper > 0.2, (copper, grey, paper)
 
 
+def test_labels_of_counted_colours_have_even_whole_steps(root):
+    """Ten turns had the labels 1 3 5 6 8 10: even steps that were rounded."""
+    said = render_python(f"""
+import sys; sys.path.insert(0, r"{root / 'scripts'}")
+import numpy as np, render
+from types import SimpleNamespace
+for turns in [1, 2, 6, 7, 10, 12, 27, 360]:
+    end = {{"turn": np.arange(1, turns + 1)}}
+    coil = SimpleNamespace(args=SimpleNamespace(colour="turn"), end=end, rest=np.full(turns, True), size=(640, 480), bar_share=lambda: 0.2)
+    colours = render.Coil.colours(coil)
+    low, high = colours["clim"]
+    labels = np.linspace(low, high, colours["scalar_bar_args"]["n_labels"])
+    assert low == 1 and labels.size <= 6, labels
+    assert np.all(labels == np.round(labels)), f"{{turns}} turns: {{labels}}"
+    assert max(turns, 2) <= high < max(turns, 2) + (labels[1] - labels[0]), labels
+print("even")
+""")
+    assert said == "even\n"
+
+
 def test_a_wire_is_one_smooth_tube(root):
     """Each edge was a tube of its own, and every node a dark seam."""
     said = render_python(f"""
