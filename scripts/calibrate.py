@@ -16,8 +16,8 @@ squares in the logarithms of the parameters, with derivatives by central differe
 wide as the intervals; each run is `coilwind run` and all cores work. Where what is left of a curve is no noise, values are doubtful
 and a warning says why. --fit-angle-zero also fits where the angle of each file is zero. DIR gets calibration.json, residuals.csv and residuals.png. After Ctrl-C and SIGTERM they hold the best parameters so far.
 
-Exit codes: 0 fitted, 1 nothing is fitted: a parameter ended at an end of its range, or the measurement does not determine it,
-2 a mistake that can be mended, 3 a full disk, 130 stopped.
+Exit codes: 0 fitted, also where values are doubtful, 1 nothing is fitted: a parameter ended at an end of its range, or the measurement
+does not determine it; also doubtful values with --fail-on-doubt, 2 a mistake that can be mended, 3 a full disk, 130 stopped.
 """
 
 import argparse
@@ -72,6 +72,7 @@ def main():
     parser.add_argument("--out", type=Path, default=Path("calibration"), metavar="DIR", help="where results go (default: calibration)")
     parser.add_argument("--confidence", type=float, default=0.95, metavar="P", help="of the intervals (default: 0.95)")
     parser.add_argument("--threads", type=int, default=os.cpu_count(), metavar="N", help="runs at a time (default: all cores)")
+    parser.add_argument("--fail-on-doubt", action="store_true", help="exit with 1 if what is left of a curve is no noise, so that the values are doubtful")
     parser.add_argument("--force", action="store_true", help="write into a DIR that holds a calibration, a run or a sweep")
     parser.add_argument("--command", type=Path, default=folders.COMMAND, help=argparse.SUPPRESS)
     args = parser.parse_args()
@@ -109,7 +110,7 @@ def starts_of(model, wanted):
 
 def set_of(model, name):
     """The --set of this parameter, in whatever unit; `None` without one."""
-    keys = {name, *(f"{name}_{unit}" for unit in model.table[name]["keySuffixes"])}
+    keys = model.keys_of(name)
     return next((text for text in model.sets if text.partition("=")[0] in keys), None)
 
 
@@ -208,6 +209,9 @@ def tell(args, model, starts, answer, rests):
     }
     write(args, model, result, answer.computed, rests)
     print(f"{model.runs} runs; residuals: {args.out / 'residuals.png'}")
+    if doubtful and args.fail_on_doubt and not reasons:
+        print("calibrate.py: the fitted values are doubtful; the warnings say why", file=sys.stderr)
+        return 1
     return 1 if reasons else 0
 
 
@@ -236,6 +240,7 @@ def go_on(args, model, best):
     ):
         words += [str(word) for value in values for word in (option, value)]
     words += ["--fit-angle-zero"] if args.fit_angle_zero else []
+    words += ["--fail-on-doubt"] if args.fail_on_doubt else []
     return shlex.join([sys.executable, sys.argv[0], *words, "--force"])
 
 

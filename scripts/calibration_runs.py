@@ -48,11 +48,18 @@ class Model:
         """The scene with its settings, as a run leaves it."""
         return tomllib.loads((self.run([]) / "scene.toml").read_text(encoding="utf-8"))
 
+    def keys_of(self, name):
+        """The names under which --set takes this parameter, in whatever unit."""
+        return {name, *(f"{name}_{unit}" for unit in self.table[name]["keySuffixes"])}
+
     def run(self, values):
         """The folder of a run."""
         out = Path(tempfile.mkdtemp(dir=self.folder))
         words = [f"{name}={value!r}" for name, value in zip(self.names, map(float, values))]
-        words = [word for setting in [*self.sets, *words] for word in ("--set", setting)]
+        # What is fitted takes the place of its --set, which was its start.
+        fitted = {key for name, _ in zip(self.names, values) for key in self.keys_of(name)}
+        known = [text for text in self.sets if text.partition("=")[0].strip() not in fitted]
+        words = [word for setting in [*known, *words] for word in ("--set", setting)]
         files = ["--no-geometry", "--no-report", "--quiet", "--force", "--out", out]
         code, said = self.start([self.command, "run", self.scene, *words, *files])
         self.runs += 1

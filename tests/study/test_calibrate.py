@@ -99,6 +99,21 @@ def test_what_does_not_show_is_told(calibrate, short, tmp_path):
     assert not result["fitted"] and not result["parameters"]["friction.slip_speed"]["determined"]
 
 
+@pytest.mark.parametrize(("words", "expected"), [([], 0), (["--fail-on-doubt"], 1)])
+def test_doubtful_values_fail_where_asked(words, expected, calibrate, short, tmp_path):
+    """A script could not tell them from others by the exit code."""
+    head, *rows = short.read_text(encoding="utf-8").splitlines()
+    cells = [row.split(",") for row in rows]
+    path = tmp_path / "more.csv"
+    path.write_text("\n".join([head, *(f"{turns},{float(pull) + 0.5}" for turns, pull in cells)]) + "\n", encoding="utf-8")
+    known = [word for name, value in TRUTH.items() if name != "tensioner.mass" for word in ("--set", f"{name}={value}")]
+    code, said = calibrate(path, *SHORT, *known, "--fit", "tensioner.mass", "--out", tmp_path / "out", *words)
+    assert code == expected, said
+    assert ", doubtful" in said and ("the fitted values are doubtful" in said) == bool(expected), said
+    result = json.loads((tmp_path / "out/calibration.json").read_text(encoding="utf-8"))
+    assert result["fitted"] and result["doubtful"]
+
+
 def test_a_setting_far_off_is_no_fit(calibrate, short, tmp_path):
     """A mass of 2 kg was told as fitted, from 0 to inf. It shows in how far the line yields, and no mass near it is right."""
     code, said = calibrate(short, *SHORT, "--set", "tensioner.mass=2", "--fit", "tensioner.mass", "--out", tmp_path)
