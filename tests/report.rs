@@ -253,3 +253,72 @@ fn a_folder_without_a_whole_run_is_named_with_what_to_do() {
         Some(0)
     );
 }
+
+/// The page that compares two runs, made in a folder.
+fn compared(one: &Path, other: &Path) -> Value {
+    let page = one.join("compare.html");
+    let output = coilwind(&["report", one.to_str().unwrap(), other.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    data(&page)
+}
+
+/// Names and values of what differs.
+fn differing(data: &Value) -> Vec<(&str, [&str; 2])> {
+    fn text(value: &Value) -> &str {
+        value.as_str().unwrap()
+    }
+    let all = data["differences"].as_array().unwrap().iter();
+    all.map(|d| (text(&d["name"]), [0, 1].map(|run| text(&d["values"][run]))))
+        .collect()
+}
+
+/// Such runs were told to have the same scene, and nothing more.
+#[test]
+fn options_that_differ_are_told_in_a_comparison() {
+    let folder = tempfile::tempdir().unwrap();
+    let [whole, cut, led] = ["whole", "cut", "led"].map(|name| folder.path().join(name));
+    let table = folder.path().join("my motion.csv");
+    std::fs::write(&table, "time,spindle_speed\n0,10\n0.004,10\n").unwrap();
+    let table = std::path::absolute(&table).unwrap();
+    let table = table.to_str().unwrap();
+    wind(&whole, &["--no-geometry"]);
+    wind(&cut, &["--no-report", "--stop-time", "0.004"]);
+    wind(
+        &led,
+        &["--no-geometry", "--inputs", table, "--step", "0.002"],
+    );
+    let data = compared(&whole, &cut);
+    assert_eq!(differing(&data), [("--stop-time", ["", "0.004 s"])]);
+    let data = compared(&cut, &led);
+    let expected = [
+        ("--inputs", ["", table]),
+        ("--step", ["", "0.002 s"]),
+        ("--stop-time", ["0.004 s", ""]),
+    ];
+    assert_eq!(differing(&data), expected);
+    assert!(differing(&compared(&led, &led)).is_empty());
+    // How far each was wound, for the words of the page.
+    let wound: Vec<&Value> = data["runs"].as_array().unwrap().iter().collect();
+    assert_eq!(wound[0]["wound_to"], "wound until --stop-time 0.004 s");
+    assert_eq!(wound[1]["wound_to"], "wound to the end of its inputs");
+}
+
+/// A run that was cut short was told to be wound to its end.
+#[test]
+fn a_run_that_was_cut_short_is_told_so() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, more, told) in [
+        ("whole", &[][..], "wound to its end"),
+        ("late", &["--stop-time", "1000"], "wound to its end"),
+        (
+            "cut",
+            &["--stop-time", "0.004"],
+            "wound until --stop-time 0.004 s",
+        ),
+    ] {
+        let out = folder.path().join(name);
+        wind(&out, more);
+        let data = data(&out.join("report.html"));
+        assert_eq!(data["runs"][0]["wound_to"], told, "{name}");
+    }
+}

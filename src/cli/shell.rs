@@ -1,5 +1,6 @@
 //! Commands that messages name, as a shell takes them.
 
+use coilwind::output::WOUND_WITH;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -28,15 +29,14 @@ pub(super) fn begin_again(directory: &Path) -> String {
 
 /// The scene of a run in its folder.
 pub(super) const SCENE: &str = "scene.toml";
-/// Begins a comment at the head of that file with the options of the run that are no part of the scene.
-const WITH: &str = "# wound with:";
 
-/// That comment with these options, a blank before each, and its end of line; empty where there are none.
+/// The comment at the head of that file with these options, which are no part of the scene, a blank before each. It has its end of
+/// line, and is empty where there are none.
 pub(super) fn note(options: &str) -> String {
     // A name of two lines would end the comment in its middle.
     match options.is_empty() || options.contains(char::is_control) {
         true => String::new(),
-        false => format!("{WITH}{options}\n"),
+        false => format!("{WOUND_WITH}{options}\n"),
     }
 }
 
@@ -44,5 +44,8 @@ pub(super) fn note(options: &str) -> String {
 fn wound_with(directory: &Path) -> String {
     let text = std::fs::read_to_string(directory.join(SCENE)).unwrap_or_default();
     let first = text.lines().next().unwrap_or_default();
-    first.strip_prefix(WITH).unwrap_or_default().to_owned()
+    first
+        .strip_prefix(WOUND_WITH)
+        .unwrap_or_default()
+        .to_owned()
 }

@@ -39,7 +39,7 @@ const MODE: &str = "traverse.mode";
 const PER_TURN: &str = "traverse.per_turn";
 
 /// All keys that depend on a choice.
-const KEYS_OF_CHOICES: [KeysOf; 11] = [
+static KEYS_OF_CHOICES: [KeysOf; 11] = [
     keys_of(
         SHAPE,
         &["rounded-box"],
@@ -238,15 +238,8 @@ impl Reader<'_> {
                 });
             }
         };
-        for of in &KEYS_OF_CHOICES {
+        for (of, now) in unread(settings) {
             let choice = of.choice;
-            let now = match choice {
-                SHAPE => settings.core.shape.as_str(),
-                _ => settings.traverse.mode.as_str(),
-            };
-            if of.values.contains(&now) {
-                continue;
-            }
             let others = of.values.join(" or ");
             let keys = of.keys.iter().filter(|key| by_law || **key != PER_TURN);
             for &key in keys {
@@ -263,7 +256,35 @@ impl Reader<'_> {
     }
 }
 
+/// The groups of keys that the choices of a scene leave unread, and what was chosen instead.
+fn unread(settings: &SceneSettings) -> impl Iterator<Item = (&'static KeysOf, &str)> {
+    let chosen = |of: &'static KeysOf| match of.choice {
+        SHAPE => (of, settings.core.shape.as_str()),
+        _ => (of, settings.traverse.mode.as_str()),
+    };
+    let all = KEYS_OF_CHOICES.iter().map(chosen);
+    all.filter(|(of, now)| !of.values.contains(now))
+}
+
 impl SceneSettings {
+    /// Keys that nothing reads in a run of the scene's own motion, given or not. Of a scene that is refused, those that its choices
+    /// leave unread.
+    pub fn idle_keys(&self) -> BTreeSet<&'static str> {
+        let mut keys: BTreeSet<_> = unread(self).flat_map(|(of, _)| of.keys).copied().collect();
+        let follows = NozzleFollows::Law;
+        if let Ok((scene, _)) = self.build_for(follows) {
+            let reader = Reader {
+                settings: self,
+                integrator: scene.solver.integrator,
+                window: scene.window,
+                follows,
+            };
+            let lacks = KEYS_OF_PARTS.iter().filter(|part| (part.lacks)(&reader));
+            keys.extend(lacks.flat_map(|part| part.keys));
+        }
+        keys
+    }
+
     /// The error of a file that would be the core if the scene said so. What else is wrong may follow from that, and comes alone
     /// without the warnings.
     pub(super) fn file_of_no_mesh(&self) -> Option<SceneError> {

@@ -1,29 +1,51 @@
-//! What differs between the scenes of two runs, in the words of the variable table.
+//! What differs between the scenes and the options of two runs, in the words of the variable table.
 
+use super::options::{CoilOption, OF_COIL, Options};
 use crate::settings::SceneSettings;
 use crate::variables::{Access, Value, Variable, table, units};
 use serde::Serialize;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// A parameter that two scenes give other values.
+/// A parameter that two scenes give other values, or an option that two runs were given.
 #[derive(Debug, PartialEq, Serialize)]
 pub(super) struct Difference {
     name: &'static str,
     /// what the parameter is
     meaning: &'static str,
-    /// value and unit in each scene
+    /// value and unit in each scene; empty where an option was not given
     values: [String; 2],
 }
 
-/// Parameters that differ between the scenes in two folders, in the order of the table; `None` where a scene is missing or cannot
-/// be read. What a run writes, and where to, is no difference of coils.
+/// What a key has in place of a value where nothing reads it.
+const NO_EFFECT: &str = "no effect";
+
+/// Options and parameters that differ between the runs in two folders, in the order of the table; `None` where a scene is missing or
+/// cannot be read. What a run writes, and where to, is no difference of coils. Nor is a key that neither of them reads.
 pub(super) fn differences(one: &Path, other: &Path) -> Option<Vec<Difference>> {
     let scenes = [scene(one)?, scene(other)?];
+    let idle = scenes.each_ref().map(SceneSettings::idle_keys);
+    let options = [one, other].map(Options::read);
+    let of_options = OF_COIL.iter().filter_map(|of| of_option(of, &options));
     let coil = table()
         .iter()
         .filter(|row| !row.name.starts_with("output."));
-    Some(coil.filter_map(|row| difference(row, &scenes)).collect())
+    let of_scenes = coil.filter_map(|row| difference(row, &scenes, &idle));
+    Some(of_options.chain(of_scenes).collect())
+}
+
+fn of_option(of: &CoilOption, options: &[Options; 2]) -> Option<Difference> {
+    let [one, other] = options.each_ref().map(|options| options.value(of.name));
+    let shown = |value: Option<&str>| {
+        let text = format!("{} {}", value?, of.unit);
+        Some(text.trim_end().to_owned())
+    };
+    (one != other).then(|| Difference {
+        name: of.name,
+        meaning: of.meaning,
+        values: [one, other].map(|value| shown(value).unwrap_or_default()),
+    })
 }
 
 fn scene(directory: &Path) -> Option<SceneSettings> {
@@ -31,15 +53,24 @@ fn scene(directory: &Path) -> Option<SceneSettings> {
     SceneSettings::from_toml_str(&text, "scene.toml", directory).ok()
 }
 
-fn difference(row: &Variable, scenes: &[SceneSettings; 2]) -> Option<Difference> {
+fn difference(
+    row: &Variable,
+    scenes: &[SceneSettings; 2],
+    idle: &[BTreeSet<&str>; 2],
+) -> Option<Difference> {
     let Access::Parameter { get, .. } = row.access else {
         return None;
     };
-    let [one, other] = [get(&scenes[0]), get(&scenes[1])];
-    (row.name != "scene.file" && one != other).then(|| Difference {
+    let values = scenes.each_ref().map(get);
+    let idle = idle.each_ref().map(|keys| keys.contains(row.name));
+    let differs = row.name != "scene.file" && values[0] != values[1] && idle != [true, true];
+    differs.then(|| Difference {
         name: row.name,
         meaning: row.description,
-        values: [shown(row, &one), shown(row, &other)],
+        values: [0, 1].map(|run| match idle[run] {
+            true => NO_EFFECT.to_owned(),
+            false => shown(row, &values[run]),
+        }),
     })
 }
 
@@ -96,5 +127,30 @@ mod tests {
                 .starts_with("diameter of the bare round wire")
         );
         assert_eq!(differences(one.path(), one.path()), Some(Vec::new()));
+    }
+
+    /// Keys of a box stood among the differences from a cylinder, and those of a mesh too.
+    #[test]
+    fn a_key_that_only_one_shape_reads_is_told_as_such() {
+        let [one, other] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+        let put = |folder: &tempfile::TempDir, text: &str| {
+            fs::write(folder.path().join("scene.toml"), text).expect("a file");
+        };
+        put(&one, "[core]\nwidth_x = 0.013\nunit = \"m\"\n");
+        put(
+            &other,
+            "[core]\nshape = \"cylinder\"\nradius_mm = 9\nunit = \"mm\"\n",
+        );
+        let found = differences(one.path(), other.path()).expect("two scenes");
+        let told: Vec<_> = found
+            .iter()
+            .map(|d| (d.name, d.values.each_ref().map(String::as_str)))
+            .collect();
+        let expected = [
+            ("core.shape", ["rounded-box", "cylinder"]),
+            ("core.width_x", ["13 mm", NO_EFFECT]),
+            ("core.radius", [NO_EFFECT, "9 mm"]),
+        ];
+        assert_eq!(told, expected);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::array::Array;
 use super::error::ReportError;
+use super::options::Options;
 use super::read_vtp::{self, Arrays};
 use crate::output::vtp::SIDES;
 use serde::Serialize;
@@ -22,6 +23,8 @@ pub(super) struct Run {
     /// name of the folder
     pub(super) name: String,
     summary: serde_json::Value,
+    /// how far it was wound, in words, where it ended as it was to end
+    wound_to: String,
     history: Option<BTreeMap<&'static str, Array>>,
     stations: Option<BTreeMap<&'static str, Array>>,
     wire: Option<BTreeMap<&'static str, Array>>,
@@ -73,6 +76,8 @@ impl Run {
             name: place
                 .file_name()
                 .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+            wound_to: Options::read(directory)
+                .wound_to(summary["simulated_s"].as_f64().unwrap_or_default()),
             summary,
             history: history(&directory.join("history.csv"))?,
             stations: stations(&directory.join("stations.csv"))?,

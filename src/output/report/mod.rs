@@ -8,6 +8,7 @@ mod differences;
 mod error;
 mod folder;
 mod missing;
+mod options;
 mod read_vtp;
 
 use super::{OutputError, write_whole_bytes};
@@ -15,6 +16,7 @@ use differences::{Difference, differences};
 pub use error::ReportError;
 use folder::Run;
 pub use missing::missing_files;
+pub use options::WOUND_WITH;
 use serde::Serialize;
 use std::path::Path;
 

@@ -10,6 +10,7 @@ class Run {
   constructor(data) {
     this.name = data.name;
     this.summary = data.summary;
+    this.woundTo = data.wound_to;
     this.defects = data.summary.defects ?? [];
     this.diameter = data.summary.product.enamelled_diameter_m ?? data.summary.product.wire_diameter_m;
     this.enamelled = this.diameter > data.summary.product.wire_diameter_m;
@@ -103,7 +104,7 @@ function head(run) {
   const s = run.summary;
   const kind = GOOD.includes(s.verdict) ? "good" : s.verdict === "marginal" ? "fair" : BAD.includes(s.verdict) ? "bad" : "";
   const end = run.defects.find((defect) => ENDS.has(defect.kind));
-  const status = { done: end ? `winding ended with a ${plainName(end.kind)}` : "wound to its end", interrupted: "interrupted", failed: s.reasons ? "failed before its planned end" : `failed: ${s.reason}` }[s.status] ?? s.status;
+  const status = { done: end ? `winding ended with a ${plainName(end.kind)}` : run.woundTo, interrupted: "interrupted", failed: s.reasons ? "failed before its planned end" : `failed: ${s.reason}` }[s.status] ?? s.status;
   const rpm = (s.speed_rad_per_s * 30) / Math.PI;
   const meta = [status, `${fixed(s.turns_wound, 2)} turns wound, ${fixed(s.turns_settled, 2)} at rest`,
     `${duration(s.simulated_s)} simulated`, `d is the diameter of the wire${run.enamelled ? " over its enamel" : ""}, ${digits(1e3 * run.diameter)} mm`, `${digits(s.speed_rad_per_s)} rad/s (${Math.round(rpm)} rpm) at the end`, `folder ${run.name}`];
@@ -197,15 +198,15 @@ function sameWire(one, other) {
 /** Whether other runs on the page have scales of their own. */
 const apart = (sharing) => sharing.length < sharing[0].beside.length;
 
-/** What differs between the scenes of two runs, and what that means for the scales of the page. */
+/** What differs between the scenes and options of two runs, and what that means for the scales of the page. */
 function comparison() {
   const [differences, names] = [data.differences, runs.map((run, k) => `${["First", "Second"][k]}: ${run.name}`)];
   const scales = apart(runs[0].all) ? "The wires differ, so each run has its own scales of colours and curves."
     : "The wire is the same, so both runs share their scales of colours, tension and torque.";
   const what = differences == null ? "The scene of a run is missing (scene.toml), so what differs is not known."
-    : differences.length === 0 ? "The scenes are the same." : null;
+    : differences.length === 0 ? "The scenes and the options of the runs are the same." : null;
   const table = what ? null : el("div", { class: "scroll" }, el("table", { class: "words" },
-    el("thead", {}, el("tr", {}, ...["In the scene", ...names].map((name) => el("th", {}, name)))),
+    el("thead", {}, el("tr", {}, ...["In the scene or its options", ...names].map((name) => el("th", {}, name)))),
     el("tbody", {}, ...differences.map(({ name, meaning, values }) =>
       el("tr", {}, el("td", {}, meaning, " ", el("code", {}, name)), ...values.map((value) => el("td", {}, value || "–")))))));
   return el("section", { class: "card differences" }, el("div", { class: "bar" }, el("h2", {}, "What differs")),
