@@ -102,6 +102,10 @@ impl Drive {
         if end <= 0.0 {
             return Err(no_duration(path));
         }
+        // (a step that is as long but for rounding is none longer)
+        if *step > end * (1.0 + 1e-9) {
+            return Err(too_long(*step, end));
+        }
         let held = signals.before(0.0, scene.start_inputs());
         Ok(Self::Signals {
             held,
@@ -226,6 +230,13 @@ fn twice(path: &Path) -> Failure {
         reason: "column nozzle_position, while traverse.mode was set to a law of the core's angle; leave out one of them, \
                  or set traverse.mode = by-input"
             .to_owned(),
+    }
+}
+
+fn too_long(step: f64, end: f64) -> Failure {
+    Failure::Signals {
+        file: format!("--step {step}"),
+        reason: format!("longer than the run; allowed: up to its length, {end} s"),
     }
 }
 

@@ -37,6 +37,8 @@ mod verify;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
+use coilwind::scene::refuse_repeated;
+use failure::Failure;
 use std::process::ExitCode;
 
 /// Simulation of wire winding: an elastic-plastic rod on a turning core.
@@ -84,13 +86,7 @@ pub(crate) fn main() -> ExitCode {
     };
     terminal::outlive_file_limit();
     let result = match cli.command {
-        Command::Run(args) => match (args.ensemble, &args.resume) {
-            (Some(count), _) => ensemble::run(&args, count),
-            (None, Some(directory)) if ensemble_files::can_go_on(directory) => {
-                ensemble::resume(&args, directory)
-            }
-            _ => run::run(&args),
-        },
+        Command::Run(args) => wind(&args),
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Report(args) => report::report(&args),
         Command::Check(args) => check::check(&args),
@@ -106,6 +102,16 @@ pub(crate) fn main() -> ExitCode {
             eprintln!("coilwind: {failure}");
             failure.exit_code()
         }
+    }
+}
+
+/// Runs a scene or an ensemble of it, or goes on with one.
+fn wind(args: &run::RunArgs) -> Result<(), Failure> {
+    refuse_repeated(&args.set)?;
+    match (args.ensemble, &args.resume) {
+        (Some(count), _) => ensemble::run(args, count),
+        (None, Some(directory)) if ensemble_files::can_go_on(directory) => ensemble::resume(args, directory),
+        _ => run::run(args),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
-use coilwind::scene::{Scene, SceneError, Warning, assignment};
+use coilwind::scene::{Scene, SceneError, Warning, assignment, refuse_repeated};
 use coilwind::settings::{NozzleFollows, SceneSettings};
 
 /// A scene and what to change in it.
@@ -17,8 +17,9 @@ pub(super) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// Defaults, then the scene, then every `--set` in its order; and the scene that this makes.
+    /// Defaults, then the scene, then every `--set`; and the scene that this makes.
     pub(super) fn build(&self) -> Result<(SceneSettings, Scene, Vec<Warning>), SceneError> {
+        refuse_repeated(&self.set)?;
         SceneSettings::load_and_build(&self.scene, &self.set, |_| NozzleFollows::Law)
     }
 }

@@ -61,7 +61,7 @@ impl Signals {
         let mut samples = vec![Vec::new(); header.len()];
         let mut wrong = Vec::new();
         for record in reader.records() {
-            let record = record.map_err(|e| whole(unequal(&e)))?;
+            let record = record.map_err(|e| unequal(&e, &header, file))?;
             let line = record.position().map_or(0, csv::Position::line);
             for (column, cell) in record.iter().enumerate() {
                 let allowed =
@@ -205,14 +205,38 @@ fn foreign(header: &csv::StringRecord) -> Option<String> {
 const REMEDY: &str = "save it with commas between columns and points in numbers";
 
 /// What is wrong with a row that is not as long as the header.
-fn unequal(error: &csv::Error) -> String {
-    match error.kind() {
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } if len > expected_len => {
-            format!("{error}; if its numbers have decimal commas, {REMEDY}")
+fn unequal(error: &csv::Error, header: &csv::StringRecord, file: &str) -> Failure {
+    let csv::ErrorKind::UnequalLengths {
+        pos,
+        expected_len,
+        len,
+    } = error.kind()
+    else {
+        return Failure::Signals {
+            file: file.to_owned(),
+            reason: error.to_string(),
+        };
+    };
+    let place = pos.as_ref().map(|pos| format!(":{}", pos.line()));
+    let counted = |count: &u64, what: &str| match count {
+        1 => format!("1 {what}"),
+        n => format!("{n} {what}s"),
+    };
+    let names: Vec<&str> = header.iter().collect();
+    let remedy = match len > expected_len {
+        true => {
+            format!("leave out those beyond it, or, if its numbers have decimal commas, {REMEDY}")
         }
-        _ => error.to_string(),
+        false => "write the cells that are missing".to_owned(),
+    };
+    Failure::Signals {
+        file: format!("{file}{}", place.unwrap_or_default()),
+        reason: format!(
+            "{}, and the header has {} ({}); {remedy}",
+            counted(len, "cell"),
+            counted(expected_len, "column"),
+            names.join(", ")
+        ),
     }
 }
 
@@ -442,7 +466,7 @@ mod tests {
                 "time,spindle_speed\n1,1\n0.5,1\n",
                 &["in.csv:3", "backwards", "at least 1 s"],
             ),
-            ("time,spindle_speed\n0,1\n1\n", &["in.csv", "line: 3"]),
+            ("time,spindle_speed\n0,1\n1\n", &["in.csv:3: 1 cell, "]),
             (
                 "time;spindle_speed\n0;1,5\n",
                 &["in.csv: semicolons", "save it with commas", "0.5,30"],

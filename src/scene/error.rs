@@ -84,7 +84,7 @@ pub enum SceneError {
         /// the key with each of its units
         allowed: Box<str>,
     },
-    /// The same leaf given twice in one file, perhaps in two units.
+    /// The same leaf given twice in one file or by name, perhaps in two units.
     #[error(
         "{origin}: {key} = {value}: {leaf} was already given as {first}; allowed is one of the two"
     )]

@@ -1,8 +1,11 @@
 //! Keys as people write them: exact, with a unit, or nearly right.
 
 use super::SceneError;
+use super::problems::Problems;
 use crate::settings::Origin;
 use crate::variables::{Access, Kind, Scale, Variable, by_name, split_suffix, suffixes_of, table};
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// Similarity (Jaro-Winkler) from which a guess helps more than it misleads; chosen.
 const SIMILAR: f64 = 0.8;
@@ -206,6 +209,35 @@ pub fn unit_suffixes(variable: &Variable) -> Vec<&'static str> {
         return Vec::new();
     }
     suffixes_of(variable.unit).map(|s| s.0).collect()
+}
+
+/// An error where two of these names mean one leaf, in whatever units: the last would count, without a word. A name that means none
+/// is no matter of this.
+///
+/// # Errors
+/// All such names, each with the one that came first.
+pub fn refuse_repeated(set: &[(String, String)]) -> Result<(), SceneError> {
+    let mut problems = Problems::default();
+    let mut first = BTreeMap::new();
+    for (name, value) in set {
+        let Ok(key) = resolve(name, value, &Origin::Set) else {
+            continue;
+        };
+        let leaf = key.variable.name;
+        match first.entry(leaf) {
+            Entry::Vacant(place) => {
+                place.insert(format!("{name} = {value}"));
+            }
+            Entry::Occupied(place) => problems.add(SceneError::Repeated {
+                origin: Origin::Set,
+                key: name.as_str().into(),
+                value: value.as_str().into(),
+                leaf: leaf.into(),
+                first: place.get().as_str().into(),
+            }),
+        }
+    }
+    problems.finish()
 }
 
 /// Name and value of `NAME=VALUE`, as `--set` takes it.

@@ -40,7 +40,7 @@ pub use description::{
 pub use error::{SceneError, Warning};
 pub use file::packed_names;
 pub(crate) use impossible::si;
-pub use key::{assignment, unit_suffixes};
+pub use key::{assignment, refuse_repeated, unit_suffixes};
 pub use nozzle_law::{NozzleLaw, Piece};
 #[cfg(feature = "lab")]
 pub(crate) use spacing::spacing_at_edge;

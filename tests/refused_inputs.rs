@@ -1,0 +1,85 @@
+//! What is given to a run beside its scene and cannot be meant: it is refused with what would do.
+
+use std::path::Path;
+use std::process::Command;
+
+fn run(folder: &Path, more: &[&str]) -> Command {
+    let mut process = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    process.args(["run", "fig8", "--quiet", "--no-geometry", "--out"]);
+    process.arg(folder.join("out")).args(more);
+    process
+}
+
+/// What a command complains of that ends with this code.
+fn complaint(mut command: Command, code: i32) -> String {
+    let output = command.output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(code), "{said}");
+    said
+}
+
+/// Such a run took one step to the end of its inputs and was a success.
+#[test]
+fn a_step_longer_than_the_run_is_refused_with_the_longest() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("in.csv");
+    std::fs::write(&csv, "time,spindle_speed\n0,1\n0.002,1\n").unwrap();
+    let inputs = ["--inputs", csv.to_str().unwrap(), "--step"];
+    let stop = ["--stop-time", "0.001"];
+    for (more, longest) in [
+        (&["1"][..], "0.002 s"),
+        (&["0.0015", stop[0], stop[1]], "0.001 s"),
+    ] {
+        let said = complaint(run(folder.path(), &[&inputs, more].concat()), 2);
+        let step = format!("--step {}", more[0]);
+        assert!(said.contains(&step) && said.contains(longest), "{said}");
+        assert!(!folder.path().join("out").exists());
+    }
+    for more in [&["0.002"][..], &["0.001", stop[0], stop[1]]] {
+        let all = [&inputs, more, &["--force"]].concat();
+        complaint(run(folder.path(), &all), 0);
+    }
+}
+
+/// The reader's own words stood there: `CSV error: record 2 (line: 3, byte: 23)`.
+#[test]
+fn a_row_without_all_cells_is_told_with_its_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("in.csv");
+    let inputs = ["--inputs", csv.to_str().unwrap(), "--step", "0.001"];
+    for (row, parts) in [
+        ("0.1", &["1 cell", "write the cells that are missing"][..]),
+        ("0.1,1,2,3", &["4 cells", "decimal commas"]),
+    ] {
+        let text = format!("time,spindle_speed,tension_setpoint\n0,1,2\n{row}\n");
+        std::fs::write(&csv, text).unwrap();
+        let said = complaint(run(folder.path(), &inputs), 2);
+        assert!(!said.contains("CSV error"), "{said}");
+        let columns = "in.csv:3: ";
+        let wanted = "3 columns (time, spindle_speed, tension_setpoint)";
+        for part in parts.iter().chain(&[columns, wanted]) {
+            assert!(said.contains(part), "{part}: {said}");
+        }
+    }
+}
+
+/// The last one counted, without a word.
+#[test]
+fn a_parameter_that_is_set_twice_is_refused_with_both() {
+    let folder = tempfile::tempdir().unwrap();
+    for (one, other) in [
+        ("spindle.speed=60", "spindle.speed_rpm=600"),
+        ("spindle.speed=60", "spindle.speed=60"),
+        ("wire.diameter_mm=0.5", "wire.diameter=5e-4"),
+    ] {
+        let sets = ["--set", one, "--set", other];
+        let said = complaint(run(folder.path(), &sets), 2);
+        for part in [one.split_once('=').unwrap().0, &other.replace('=', " = ")] {
+            assert!(said.contains(part), "{part}: {said}");
+        }
+        assert_eq!(said.lines().count(), 1, "{said}");
+        let mut check = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+        check.args(["check", "fig8"]).args(sets);
+        complaint(check, 2);
+    }
+}
