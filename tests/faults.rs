@@ -161,6 +161,38 @@ fn sweeps_and_ensembles_say_how_to_go_on_after_a_full_disk() {
     assert!(told.trim_end().ends_with(&goes_on), "{told}");
 }
 
+/// A sweep that had no room for what it is ended as on bad input, without what to do.
+#[test]
+fn a_sweep_that_cannot_begin_on_a_full_disk_says_how_to_begin() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut inner = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    inner.args(["sweep", "fig8", "--over", "tensioner.tension=10:20:2"]);
+    inner.args([
+        "--set",
+        "spindle.turns=0.05",
+        "--set",
+        "spindle.ramp_turns=0.02",
+    ]);
+    inner.args(["--quiet", "--out"]).arg(&out);
+    let inner = as_typed(&inner);
+    let line = format!("ulimit -f 1; {inner}");
+    let output = Command::new("bash").args(["-c", &line]).output().unwrap();
+    let told = said(&output);
+    assert_eq!(output.status.code(), Some(3), "{told}");
+    let (_, words) = inner.split_once(' ').unwrap();
+    for part in [
+        "sweep.json",
+        "File too large",
+        &format!("make room, then go on with: coilwind {words}"),
+    ] {
+        assert!(told.contains(part), "{part}: {told}");
+    }
+    // With room, the command that was told is enough.
+    let output = Command::new("bash").args(["-c", &inner]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+}
+
 /// A command as one types it, for a shell to run under limits.
 fn as_typed(command: &Command) -> String {
     let words = std::iter::once(command.get_program()).chain(command.get_args());

@@ -4,6 +4,7 @@ use super::shell::{begin_again, resume_command};
 use coilwind::output::OutputError;
 use coilwind::scene::SceneError;
 use coilwind::simulation::SimError;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::process::ExitCode;
 use thiserror::Error;
@@ -203,6 +204,21 @@ impl Failure {
             path: path.as_ref().display().to_string(),
             source,
         }
+    }
+
+    /// A write that failed for want of room, on the disk or under a limit.
+    pub(super) fn is_without_room(&self) -> bool {
+        let kind = match self {
+            Self::Write { source, .. } | Self::Output(OutputError::Io { source, .. }) => {
+                source.kind()
+            }
+            Self::Output(OutputError::Json { source, .. }) => {
+                source.io_error_kind().unwrap_or(ErrorKind::Other)
+            }
+            _ => return false,
+        };
+        use ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull, WriteZero};
+        matches!(kind, FileTooLarge | QuotaExceeded | StorageFull | WriteZero)
     }
 
     /// Ranges or a folder of `sweep` that will not do.

@@ -74,7 +74,8 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         more.iter().for_each(|w| eprintln!("warning: {w}"));
     }
     folder::refuse_own_scene(&args.out, &args.scene.scene)?;
-    let ledger = Ledger::open(&args.out, &grid, args.find_max.is_some(), args.force)?;
+    let ledger = Ledger::open(&args.out, &grid, args.find_max.is_some(), args.force);
+    let ledger = ledger.map_err(|failure| stuck_at_start(failure, args.force))?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads)
         .build()
@@ -159,6 +160,19 @@ fn stuck(failure: Failure) -> Failure {
             next: format!("make room, then go on with: {}", again()),
         },
         other => other,
+    }
+}
+
+/// A failure before anything was wound, with what to do where it is room that was missing.
+fn stuck_at_start(failure: Failure, force: bool) -> Failure {
+    // What was to be overwritten may be half overwritten.
+    let forced = if force { " --force" } else { "" };
+    match failure.is_without_room() {
+        true => Failure::Stuck {
+            failure: Box::new(failure),
+            next: format!("make room, then go on with: {}{forced}", again()),
+        },
+        false => failure,
     }
 }
 

@@ -66,8 +66,11 @@ impl Ledger {
                     fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
                 }
             }
-            let text = format!("{plan:#}\n");
-            fs::write(&path, text).map_err(|e| Failure::write(&path, e))?;
+            // In the held file itself; a new one has it already.
+            if found.is_some() {
+                let text = format!("{plan:#}\n");
+                fs::write(&path, text).map_err(|e| Failure::write(&path, e))?;
+            }
         }
         let mut ledger = Self {
             directory: directory.to_owned(),
