@@ -282,6 +282,37 @@ fn what_is_wound_is_not_wound_again() {
     assert_eq!(rows(&table).len(), 1);
 }
 
+/// The page said 0 m where the tolerance was left to the program.
+#[test]
+fn the_map_tells_the_tolerance_that_was_used() {
+    let folder = tempfile::tempdir().unwrap();
+    let tension = ["--over", "tensioner.tension=10:15:2"];
+    let speed = ["--over", "spindle.speed=60:70:2"];
+    let width = ["--over", "wire.diameter_mm=0.6:0.7:2"];
+    for (name, over, more, told) in [
+        ("default", speed, &[][..], "2e-6 m"),
+        ("thin", speed, &["wire.diameter_mm=0.35"], "1e-6 m"),
+        ("given", speed, &["solver.tolerance=1e-5"], "1e-5 m"),
+        ("swept", width, &[], "1.71428571e-6 to 2e-6 m"),
+        ("explicit", speed, &["solver.integrator=rk4"], "not used"),
+    ] {
+        let out = folder.path().join(name);
+        let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+        sweep.args(["sweep", "fig8", "--quiet", "--set", "spindle.turns=0.02"]);
+        sweep.args(["--set", "spindle.ramp_turns=0.01"]);
+        sweep.args(["--set", "wire.material=copper"]);
+        sweep.args(tension).args(over);
+        more.iter().for_each(|set| {
+            sweep.args(["--set", set]);
+        });
+        sweep.arg("--out").arg(&out);
+        finished(sweep, 0);
+        let page = std::fs::read_to_string(out.join("map.html")).unwrap();
+        let (_, rest) = page.split_once("[\"solver.tolerance\",\"").unwrap();
+        assert!(rest.starts_with(told), "{name}: {}", &rest[..60]);
+    }
+}
+
 #[test]
 fn what_no_sweep_can_do_is_told_before_anything_is_wound() {
     let folder = tempfile::tempdir().unwrap();

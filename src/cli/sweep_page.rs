@@ -98,12 +98,30 @@ fn facts(grid: &Grid) -> Vec<[String; 2]> {
         ("ensemble", ensemble),
         (
             "solver.tolerance",
-            format!("{:e} m{}", base.solver.tolerance, swept("solver.tolerance")),
+            tolerance(grid) + &swept("solver.tolerance"),
         ),
         ("version", format!("coilwind {}", env!("CARGO_PKG_VERSION"))),
     ]
     .map(|(name, words)| [name.to_owned(), words])
     .into()
+}
+
+/// The error that a step was allowed, from the least to the most of all cells; it goes with the wire where none is given.
+fn tolerance(grid: &Grid) -> String {
+    if grid.base().idle_keys().contains("solver.tolerance") {
+        return "not used by an explicit method".to_owned();
+    }
+    let of = |point: usize| {
+        let settings = grid.settings(grid.runs_at(point).start).ok()?;
+        Some((settings.solver).tolerance_for(settings.wire.outer_diameter()))
+    };
+    let all = || (0..grid.points()).filter_map(of);
+    let least = rounded(all().fold(f64::INFINITY, f64::min), 9);
+    let most = rounded(all().fold(0.0, f64::max), 9);
+    match least < most {
+        true => format!("{least:e} to {most:e} m"),
+        false => format!("{most:e} m"),
+    }
 }
 
 /// Every setting that the scene or `--set` gives and the sweep does not: name, value, unit, and which of the two gave it.
