@@ -63,23 +63,55 @@ fn a_row_without_all_cells_is_told_with_its_columns() {
     }
 }
 
+/// Of two spacings the last one counted here too.
+#[test]
+fn a_solver_setting_of_verify_that_is_set_twice_is_refused() {
+    let mut verify = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    verify.args(["verify", "--set", "solver.spacing_near=1e-3"]);
+    verify.args(["--set", "solver.spacing_near_mm=2"]);
+    let said = complaint(verify, 2);
+    assert!(
+        said.contains("already given as solver.spacing_near"),
+        "{said}"
+    );
+}
+
 /// The last one counted, without a word.
 #[test]
 fn a_parameter_that_is_set_twice_is_refused_with_both() {
     let folder = tempfile::tempdir().unwrap();
     for (one, other) in [
         ("spindle.speed=60", "spindle.speed_rpm=600"),
-        ("spindle.speed=60", "spindle.speed=60"),
+        ("spindle.speed=60", "spindle.speed=70"),
         ("wire.diameter_mm=0.5", "wire.diameter=5e-4"),
     ] {
         let sets = ["--set", one, "--set", other];
-        let said = complaint(run(folder.path(), &sets), 2);
-        for part in [one.split_once('=').unwrap().0, &other.replace('=', " = ")] {
-            assert!(said.contains(part), "{part}: {said}");
+        let parts = [one.split_once('=').unwrap().0, &other.replace('=', " = ")];
+        for command in ["check", "bench"] {
+            let mut process = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+            let problem = if command == "bench" { "W" } else { "fig8" };
+            process.args([command, problem]).args(sets);
+            let said = complaint(process, 2);
+            assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+            assert_eq!(said.lines().count(), 1, "{said}");
         }
-        assert_eq!(said.lines().count(), 1, "{said}");
-        let mut check = Command::new(env!("CARGO_BIN_EXE_coilwind"));
-        check.args(["check", "fig8"]).args(sets);
-        complaint(check, 2);
+        if one.split('=').next() != other.split('=').next() {
+            let said = complaint(run(folder.path(), &sets), 2);
+            assert!(parts.iter().all(|part| said.contains(part)), "{said}");
+        }
     }
+}
+
+/// Of one name given twice the last counted here too.
+#[test]
+fn a_run_tells_which_of_two_values_of_a_name_does_not_count() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    run.args(["run", "fig8", "--no-geometry", "--set", "spindle.turns=9"]);
+    run.args(["--set", "spindle.ramp_turns=0.01"]);
+    run.args(["--set", "spindle.turns=0.02", "--out"]);
+    run.arg(folder.path().join("out"));
+    let said = complaint(run, 0);
+    let told = "warning: --set spindle.turns=9 does not count";
+    assert!(said.contains(told), "{said}");
 }

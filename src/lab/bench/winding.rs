@@ -8,7 +8,7 @@ use super::record::{Details, Outcome, WindingDetails};
 use super::setup::{COARSER, iterations, solver, turn_length};
 use super::watch::Watch;
 use crate::measure::STATIONS_PER_TURN;
-use crate::scene::Scene;
+use crate::scene::{Scene, refuse_repeated};
 use crate::settings::SceneSettings;
 use crate::simulation::{SimError, Simulation};
 use std::f64::consts::TAU;
@@ -44,6 +44,7 @@ pub(super) fn run(args: &BenchOptions) -> Result<Outcome, BenchError> {
     if let Some(omega) = args.omega {
         settings.spindle.speed = omega.copysign(settings.spindle.speed);
     }
+    refuse_repeated(&args.set)?;
     for (name, value) in &args.set {
         settings.set_text(name, value)?;
     }

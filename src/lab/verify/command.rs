@@ -4,7 +4,7 @@ use super::file::{Case, CaseFile, Check};
 use super::report::{Outcome, Record, judge, unknown};
 use super::side_by_side::side_by_side;
 use super::{Context, KINDS, Kind, Setup, VerifyError, WIND, Wind, inputs};
-use crate::scene::{Integrator, Preset};
+use crate::scene::{Integrator, Preset, refuse_repeated};
 use crate::settings::SceneSettings;
 use cpu_time::ThreadTime;
 use std::path::PathBuf;
@@ -86,6 +86,7 @@ impl VerifyOptions {
         let preset = self.preset;
         let mut settings = SceneSettings::default();
         let mut spacing = None;
+        let mut named = Vec::new();
         for text in &self.set {
             let bad = |problem: String| VerifyError::Setting {
                 text: text.clone(),
@@ -94,8 +95,9 @@ impl VerifyOptions {
             let (name, value) = text
                 .split_once('=')
                 .ok_or_else(|| bad("NAME=VALUE is wanted".to_owned()))?;
-            settings
-                .set_text(name, value)
+            named.push((name.to_owned(), value.to_owned()));
+            refuse_repeated(&named)
+                .and_then(|()| settings.set_text(name, value))
                 .map_err(|e| bad(e.to_string()))?;
             if name.starts_with("solver.spacing_near") {
                 let near = settings.solver.spacing_near;
