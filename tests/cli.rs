@@ -422,9 +422,9 @@ fn slack_that_has_passed_fails_where_asked() {
 #[test]
 fn an_interrupt_leaves_usable_files() {
     let folder = tempfile::tempdir().unwrap();
-    let mut run = coilwind(&["run", "fig8", "--quiet", "--set", "spindle.turns=500"]);
-    run.args(&SHORT[2..]).arg("--out").arg(folder.path());
-    let mut run = run.spawn().unwrap();
+    let mut run = short_run(folder.path(), &["--set", "spindle.turns=500", "--quiet"])
+        .spawn()
+        .unwrap();
     let history = folder.path().join("history.csv");
     let rows = || std::fs::read_to_string(&history).map_or(0, |text| text.lines().count());
     let patience = std::time::Instant::now();

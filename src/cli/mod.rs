@@ -107,20 +107,7 @@ pub(crate) fn main() -> ExitCode {
 
 /// Runs a scene or an ensemble of it, or goes on with one.
 fn wind(args: &run::RunArgs) -> Result<(), Failure> {
-    let is_last = |k: usize| {
-        args.set[k + 1..]
-            .iter()
-            .all(|(name, _)| *name != args.set[k].0)
-    };
-    let (last, before): (Vec<usize>, Vec<usize>) = (0..args.set.len()).partition(|&k| is_last(k));
-    let last: Vec<_> = last.into_iter().map(|k| args.set[k].clone()).collect();
-    refuse_repeated(&last)?;
-    // A run with the options of another and a value of its own: no mistake by itself.
-    for (name, value) in before.into_iter().map(|k| &args.set[k]) {
-        if !args.quiet {
-            eprintln!("warning: --set {name}={value} does not count: {name} is set again after it");
-        }
-    }
+    refuse_repeated(&args.set)?;
     match (args.ensemble, &args.resume) {
         (Some(count), _) => ensemble::run(args, count),
         (None, Some(directory)) if ensemble_files::can_go_on(directory) => ensemble::resume(args, directory),

@@ -17,7 +17,7 @@ pub(super) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// Defaults, then the scene, then every `--set`; and the scene that this makes.
+    /// Defaults, then the scene, then every `--set` in its order; and the scene that this makes.
     pub(super) fn build(&self) -> Result<(SceneSettings, Scene, Vec<Warning>), SceneError> {
         refuse_repeated(&self.set)?;
         SceneSettings::load_and_build(&self.scene, &self.set, |_| NozzleFollows::Law)

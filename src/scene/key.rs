@@ -211,14 +211,14 @@ pub fn unit_suffixes(variable: &Variable) -> Vec<&'static str> {
     suffixes_of(variable.unit).map(|s| s.0).collect()
 }
 
-/// An error where two of these names mean one leaf, in whatever units: the last would count, without a word. A name that means none
-/// is no matter of this.
+/// An error where one of these names means a leaf that another means in another unit: which counts would be no one's choice. Of one name
+/// twice the last counts, as of other options. A name that means no leaf is no matter of this.
 ///
 /// # Errors
 /// All such names, each with the one that came first.
 pub fn refuse_repeated(set: &[(String, String)]) -> Result<(), SceneError> {
     let mut problems = Problems::default();
-    let mut first = BTreeMap::new();
+    let mut first: BTreeMap<_, (&str, &str)> = BTreeMap::new();
     for (name, value) in set {
         let Ok(key) = resolve(name, value, &Origin::Set) else {
             continue;
@@ -226,14 +226,15 @@ pub fn refuse_repeated(set: &[(String, String)]) -> Result<(), SceneError> {
         let leaf = key.variable.name;
         match first.entry(leaf) {
             Entry::Vacant(place) => {
-                place.insert(format!("{name} = {value}"));
+                place.insert((name, value));
             }
+            Entry::Occupied(place) if place.get().0 == name => {}
             Entry::Occupied(place) => problems.add(SceneError::Repeated {
                 origin: Origin::Set,
                 key: name.as_str().into(),
                 value: value.as_str().into(),
                 leaf: leaf.into(),
-                first: place.get().as_str().into(),
+                first: format!("{} = {}", place.get().0, place.get().1).into(),
             }),
         }
     }

@@ -18,17 +18,11 @@ pub const SHORT: [&str; 10] = [
     "solver.tolerance=1e-5",
 ];
 
-/// The command on such a sweep or run, in a folder. What `more` sets takes the place of what [`SHORT`] sets.
+/// The command on such a sweep or run, in a folder.
 pub fn coilwind(command: &str, out: &Path, more: &[&str]) -> Command {
     let mut process = Command::new(env!("CARGO_BIN_EXE_coilwind"));
-    process.arg(command).args(&SHORT[..2]);
-    let key = |word: &str| word.split_once('=').map(|(key, _)| key.to_owned());
-    for set in SHORT[2..].chunks(2) {
-        if !more.iter().any(|word| key(word) == key(set[1])) {
-            process.args(set);
-        }
-    }
-    process.arg("--out").arg(out).args(more);
+    process.arg(command).args(SHORT).arg("--out").arg(out);
+    process.args(more);
     process
 }
 
