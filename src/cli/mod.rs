@@ -110,7 +110,9 @@ fn wind(args: &run::RunArgs) -> Result<(), Failure> {
     refuse_repeated(&args.set)?;
     match (args.ensemble, &args.resume) {
         (Some(count), _) => ensemble::run(args, count),
-        (None, Some(directory)) if ensemble_files::can_go_on(directory) => ensemble::resume(args, directory),
+        (None, Some(directory)) if ensemble_files::can_go_on(directory) => {
+            ensemble::resume(args, directory)
+        }
         _ => run::run(args),
     }
 }
