@@ -11,6 +11,7 @@ use super::vtp::{check_mesh, turns_of_nodes};
 use super::{OutputError, write_whole};
 use crate::math::V3;
 use crate::simulation::Centreline;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Pixels drawn per pixel shown, in each direction.
@@ -19,6 +20,8 @@ const SUPERSAMPLING: u32 = 2;
 const VIEW_ANGLE: f64 = 0.40;
 /// Angle between neighbouring triangles up to which the core is shaded as one round surface, rad.
 const CREASE: f64 = 0.6;
+/// Normals of the core's triangles that agree in so many parts of one in each component count as one. Chosen: a sixtieth of [`CREASE`].
+const DIRECTIONS: f64 = 100.0;
 /// Number of triangles that the wire's smoothness is kept to. More of them than pixels shows
 /// nothing.
 const WIRE_TRIANGLES: usize = 1_500_000;
@@ -258,20 +261,23 @@ impl Surface {
             .collect();
         // Files such as STL repeat a vertex per triangle: join those at the same place.
         let place = |p: &V3| [p.x, p.y, p.z].map(|c| (c * 1e9).round() as i64);
-        let mut around = std::collections::BTreeMap::<[i64; 3], Vec<usize>>::new();
+        let units: Vec<Option<V3>> = areas.iter().map(|area| area.try_normalize(0.0)).collect();
+        let direction = |n: &V3| [n.x, n.y, n.z].map(|c| (c * DIRECTIONS).round() as i32);
+        // Areas at a vertex by direction: a fan of thousands of triangles round one is as soon summed as drawn.
+        let mut around = BTreeMap::<[i64; 3], BTreeMap<[i32; 3], V3>>::new();
         for (index, t) in core.triangles.iter().enumerate() {
+            let Some(own) = units[index] else { continue };
             for p in corners(t) {
-                around.entry(place(&p)).or_default().push(index);
+                let areas_there = around.entry(place(&p)).or_default();
+                *areas_there.entry(direction(&own)).or_insert_with(V3::zeros) += areas[index];
             }
         }
         let cos_crease = libm::cos(CREASE);
         for (index, t) in core.triangles.iter().enumerate() {
-            let Some(own) = areas[index].try_normalize(0.0) else {
-                continue;
-            };
+            let Some(own) = units[index] else { continue };
             let points = corners(t);
             let normals = points.map(|p| {
-                let same = around[&place(&p)].iter().map(|&k| areas[k]);
+                let same = around[&place(&p)].values();
                 let smooth = same.filter(|area| area.dot(&own) > cos_crease * area.norm());
                 smooth.sum::<V3>().try_normalize(0.0).unwrap_or(own)
             });
