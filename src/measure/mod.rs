@@ -43,7 +43,7 @@ pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};
 pub use turn::{TurnMeasures, Verdict};
-pub use words::{UNJUDGED, left_out, reasons, reasons_doubted, reasons_unjudged};
+pub use words::{UNJUDGED, left_out, reasons, reasons_doubted, reasons_unjudged, unfinished};
 
 /// Polar stations per turn, one per degree.
 ///

@@ -85,6 +85,13 @@ pub fn left_out(wound: f64, settled: f64) -> Option<String> {
     })
 }
 
+/// How much of the planned layers is wound, where more than half a turn is missing. Counted in turns.
+pub fn unfinished(wound: f64, planned: f64) -> Option<String> {
+    (planned - wound > 0.5).then(|| {
+        format!("{wound:.2} of {planned:.0} turns of the planned layers are wound: the rest has no verdict")
+    })
+}
+
 /// How many turns stand on wire of the layer below instead of in its grooves, and which does most.
 fn out_of_grooves(turns: &[TurnMeasures]) -> Option<String> {
     let out = || turns.iter().filter(|turn| !turn.is_in_groove());
@@ -227,6 +234,16 @@ mod tests {
             size_d: Some(size_m / 0.7e-3),
             place_m: [0.0; 3],
         }
+    }
+
+    /// A coil of which two thirds were missing was aligned without a word of that.
+    #[test]
+    fn a_coil_that_is_not_finished_is_told_so() {
+        let said = unfinished(9.32, 30.0).expect("not finished");
+        let expected = "9.32 of 30 turns of the planned layers are wound: the rest has no verdict";
+        assert_eq!(said, expected);
+        // where the free span ends goes to and fro by a part of a turn
+        assert_eq!(unfinished(29.6, 30.0), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Faults of the wire itself: slack and break, kept as defects with their place, and the verdict on the run.
 
-use super::{SLACK, Winding};
+use super::Winding;
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
 use crate::measure::{Defect, DefectKind, DefectPlace, TurnMeasures, Verdict};
 use crate::signals::EventKind;
@@ -12,17 +12,26 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// lies between the corners of a core, each of which may jerk the wire again.
 const SAME_SLACK: f64 = FRAC_PI_2;
 
+/// Standard acceleration of free fall, m/s^2 (CGPM 1901).
+const GRAVITY: f64 = 9.80665;
+
 impl Winding {
     /// Keeps the extremes of the tension, and notes where the wire goes slack.
     pub(super) fn watch_tension(&mut self) {
         let t = self.wire_tension();
         self.run.outputs.meet_tension(t);
-        let slack = t < SLACK;
+        let slack = t < self.slack_tension();
         if slack {
             self.note_slack();
         }
         self.run.was_slack = slack;
         self.watch_yardstick();
+    }
+
+    /// Tension below which wire is slack, N: the weight of half the free span.
+    fn slack_tension(&self) -> f64 {
+        let weight = GRAVITY * self.scene.wire.mass_per_length();
+        weight * 0.5 * self.scene.nozzle.distance
     }
 
     fn note_slack(&mut self) {
@@ -39,7 +48,8 @@ impl Winding {
         self.report(
             EventKind::Slack,
             format!(
-                "the wire went slack at the nozzle (tension below {SLACK} N); raise the tension (tensioner.tension, or the input tension_setpoint) or change the spindle's speed more gently"
+                "the wire went slack at the nozzle (tension below {} N); raise the tension (tensioner.tension, or the input tension_setpoint) or change the spindle's speed more gently",
+                four_digits(self.slack_tension())
             ),
         );
     }

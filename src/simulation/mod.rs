@@ -75,9 +75,6 @@ pub use winding::Winding;
 /// In a second such wire moves by less than the error that one step may have.
 const QUIET: f64 = 1e-6;
 
-/// Tension below which wire is slack, N: the weight of 3 cm of 0.7 mm wire, half a free span.
-const SLACK: f64 = 1e-3;
-
 /// Time to which communication steps add up before the solver takes a step, s.
 ///
 /// It is the solver's own shortest step. In less time, wire at 5000 rpm moves by 20 nm at most, and

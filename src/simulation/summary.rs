@@ -2,9 +2,12 @@
 
 use super::Winding;
 use super::product::Product;
-use crate::measure::{BulgeLimit, Defect, STATIONS_PER_TURN, TurnMeasures, left_out, reasons};
+use crate::measure::{
+    BulgeLimit, Defect, STATIONS_PER_TURN, TurnMeasures, left_out, reasons, unfinished,
+};
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// What `summary.json` holds about the run itself.
 #[derive(Clone, Debug, Serialize)]
@@ -148,6 +151,8 @@ impl Winding {
         reasons.extend(self.thinned_wire());
         let outputs = &self.run.outputs;
         reasons.extend(left_out(outputs.turns_wound, outputs.turns_settled));
+        let full = self.scene.nozzle_law.full();
+        reasons.extend(full.and_then(|full| unfinished(outputs.turns_wound, full / TAU)));
         let limit = self.scene.window;
         let clearance = limit.and_then(|w| self.coil.clearance(w.height, w.taper));
         if let Some(beyond) = clearance.map(|clear| -clear).filter(|&beyond| beyond > 0.0) {
