@@ -316,3 +316,39 @@ fn slack_lies_in_the_layer_in_which_its_wire_came_to_rest() {
         "{compared:?}"
     );
 }
+
+/// Messages of a turn that came to rest all at once counted it twice, and named a turn that was not begun.
+#[test]
+fn messages_of_a_turn_that_comes_to_rest_at_once_name_the_turn_that_is_wound() {
+    let mut settings = SceneSettings::default();
+    for (name, value) in [
+        ("wire.material", "aluminium"),
+        ("wire.diameter_mm", "0.5"),
+        ("core.shape", "cylinder"),
+        ("core.radius_mm", "6"),
+        ("core.flange.inner_distance_mm", "4.3"),
+        ("core.flange.height_mm", "3"),
+        ("nozzle.distance_mm", "20"),
+        ("nozzle.y_start_mm", "-1.9"),
+        ("start.clamp_y_mm", "-1.9"),
+        ("tensioner.tension", "4"),
+        ("spindle.speed", "100"),
+        ("traverse.mode", "helical"),
+        ("traverse.lead_mm", "0.6"),
+        ("winding.layers", "2"),
+    ] {
+        settings.set_text(name, value).expect("a valid setting");
+    }
+    let scene = settings.build().expect("a valid scene");
+    let mut sim = Simulation::new(&scene).expect("starts");
+    while sim.time() < 0.62 {
+        let before = sim.outputs().turns_wound;
+        sim.advance_profile(1e-3).expect("goes on");
+        for event in sim.drain_events() {
+            // wire that goes slack leaves up to a turn of the coil within a step
+            let most = before.max(sim.outputs().turns_wound) + 0.2;
+            assert!(event.turn < most, "{event:?}, {most} turns wound");
+        }
+    }
+    assert!(sim.outputs().turns_settled > 9.0);
+}

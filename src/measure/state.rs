@@ -120,7 +120,8 @@ impl Coil {
         }
     }
 
-    /// Where the defect lies that shows at `index`: a jump where it was or should have been, a loose turn in its middle.
+    /// Where the defect lies that shows at `index`: a jump where it was or should have been, a loose turn where it stands
+    /// off most, or, for its tension alone, in its middle.
     fn place_of(&self, kind: DefectKind, index: usize) -> usize {
         let signs = &self.records[index].signs;
         let back = match kind {
@@ -129,7 +130,10 @@ impl Coil {
                 angle - signs.above_since.unwrap_or(angle)
             }
             DefectKind::LateJump => TAU * signs.late.unwrap_or(0.0),
-            DefectKind::LooseTurn => PI,
+            DefectKind::LooseTurn => match self.loosest(index) {
+                Some((place, _)) => return place,
+                None => PI,
+            },
             _ => 0.0,
         };
         index.saturating_sub((back / STATION_STEP).round() as usize)
@@ -147,19 +151,26 @@ impl Coil {
             DefectKind::EarlyJump => signs.early.map(|turns| turns * self.spec.diameter),
             DefectKind::LateJump => signs.late.map(|turns| turns * self.spec.diameter),
             // for its tension alone a turn has no size
-            DefectKind::LooseTurn => {
-                let start = &self.records[*turn().start()].signs;
-                let stations = turn().map(|k| &self.records[k].station);
-                let bulges = stations.filter(|s| s.measured).map(|s| s.bulge);
-                let by_place = self.looseness_by_place(start, signs) >= 1.0;
-                bulges.reduce(f64::max).filter(|_| by_place)
-            }
+            DefectKind::LooseTurn => self.loosest(index).map(|(_, bulge)| bulge),
             DefectKind::Overstretch => {
                 let arc = station.arc - self.records[*turn().start()].station.arc;
                 Some(signs.strain * arc)
             }
             _ => Some(station.bulge),
         }
+    }
+
+    /// Where the turn up to `index` stands off most, and how far, m; none where it is loose for its tension alone, if at all.
+    fn loosest(&self, index: usize) -> Option<(usize, f64)> {
+        let turn = index.saturating_sub(STATIONS_PER_TURN)..=index;
+        let start = &self.records[*turn.start()].signs;
+        let by_place = self.looseness_by_place(start, &self.records[index].signs) >= 1.0;
+        let stations = turn.map(|k| (k, &self.records[k].station));
+        let bulges = stations
+            .filter(|(_, s)| s.measured)
+            .map(|(k, s)| (k, s.bulge));
+        let most = bulges.reduce(|most, one| if one.1 > most.1 { one } else { most });
+        most.filter(|_| by_place)
     }
 
     /// Largest values of the last settled turn, without the neighbourhood of the clamp.

@@ -316,6 +316,7 @@ impl Winding {
         let spin = Spin::new(angle);
         let back = turn_about_y(-angle);
         let mut arc = self.sys.state.arc0;
+        let told = self.run.events.len();
         if let Some(mut l) = self.sys.line_contact() {
             l.go_on(None);
         }
@@ -341,6 +342,11 @@ impl Winding {
         self.run.watch.remove_front(count);
         self.join_frozen_to_live();
         self.sys.notice_laid(count);
+        if self.run.events.len() > told {
+            // A node that had settled counted as live as well: where a whole turn comes to rest at once, it was counted twice.
+            let turn = self.layon().angle.max(0.0) / TAU;
+            (self.run.events[told..].iter_mut()).for_each(|event| event.turn = turn);
+        }
     }
 
     /// Wire that comes off the core again: frozen wire thaws near lift-off, and what goes back into the

@@ -317,7 +317,8 @@ fn wire_that_hangs_loose_over_half_a_turn_is_a_loose_turn() {
         |node| node.height += 0.2 * D,
     );
     let turn = only(DefectKind::LooseTurn, &loose);
-    assert!(turn.turn == 3 || turn.turn == 4, "{turn:?}");
+    // where it stands off, from the start of its fourth turn on
+    assert!(turn.turn == 4 && turn.angle_deg < 220.0, "{turn:?}");
     assert!((turn.size_d.unwrap() - 0.2).abs() < 0.01, "{turn:?}");
     let short = altered(
         |turn| (3.0..3.4).contains(&turn),
@@ -347,6 +348,8 @@ fn wire_on_its_way_to_the_next_layer_is_not_loose() {
         panic!("a turn that hangs loose over its judged wire is");
     };
     assert!((turn.size_d.unwrap() - 0.4).abs() < 0.01, "{turn:?}");
+    // its middle was named with a size that is elsewhere
+    assert!((179.0..220.0).contains(&turn.angle_deg), "{turn:?}");
     assert_eq!(loose(3.65), [], "a quarter of a turn before is not judged");
 }
 
