@@ -138,3 +138,30 @@ fn a_negative_number_is_told_its_range() {
         assert!(!told.contains("unexpected argument"), "{told}");
     }
 }
+
+/// A peak of the tension that broke the wire in short steps was not seen in long ones, without a word.
+#[test]
+fn rows_between_points_that_a_run_does_not_see_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (inputs, out) = (path("inputs.csv"), path("out"));
+    let run = |rows: &str, step: &str| {
+        let table = format!("time,spindle_speed,tension_setpoint\n{rows}");
+        std::fs::write(&inputs, table).unwrap();
+        let own = ["run", "fig8", "--no-geometry", "--no-report", "--force"];
+        let by = ["--inputs", &inputs, "--step", step, "--out", &out];
+        finished(&[&own[..], &by].concat(), 0)
+    };
+    let peak = "0,5,12\n1.2e-3,5,12\n1.4e-3,6,14\n1.6e-3,7,20\n1.8e-3,8,12\n4e-3,8,12\n";
+    let told = format!(
+        "warning: {inputs}: 2 rows lie between points that are 0.001 s apart, and the run does not see them: most of all tension_setpoint = 20 N at 0.0016 s, where the run goes from 12 to 12 N; rows are at least 0.0002 s apart, and --step can be that"
+    );
+    let said = run(peak, "1e-3");
+    assert!(said.contains(&told), "{said}");
+    assert!(!run(peak, "2e-4").contains("does not see"));
+    // a ramp that ends between points, and a jump, which has a point of its own
+    let seen =
+        "0,5,12\n1.3e-3,8,12\n1.6e-3,8,12\n1.6e-3,8,14\n2.2e-3,8,14\n2.2e-3,8,12\n4e-3,8,12\n";
+    let said = run(seen, "1e-3");
+    assert!(!said.contains("does not see"), "{said}");
+}

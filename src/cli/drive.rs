@@ -119,7 +119,11 @@ impl Drive {
     /// What holds where the run begins before the inputs or goes on beyond them, in words.
     pub(super) fn warnings(&self) -> Vec<String> {
         let Self::Signals {
-            signals, end, file, ..
+            signals,
+            grid,
+            end,
+            file,
+            ..
         } = self
         else {
             return Vec::new();
@@ -139,6 +143,8 @@ impl Drive {
                 -first
             ));
         }
+        let missed = signals.missed(grid.step(), *end);
+        told.extend(missed.map(|missed| format!("{file}: {missed}")));
         if *end > last {
             told.push(format!(
                 "the inputs end at {last} s; until --stop-time {end} s speed and tension stay as in the last row, and the nozzle stands"

@@ -5,8 +5,10 @@
 //! value after the jump holds from there.
 
 use super::failure::Failure;
+use super::members::rounded;
 use coilwind::signals::Inputs;
 use coilwind::variables::{Access, Causality, Value, Variable, by_name, table};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// A column of samples.
@@ -25,6 +27,8 @@ pub(super) struct Signals {
     columns: Vec<Column>,
 }
 
+/// Share of all that an input goes through by which a sample may lie off what a run reads. Chosen: a hundredth, about a pixel of a plot.
+const SEEN: f64 = 1e-2;
 /// Wrong cells that are told, at most.
 const MOST_TOLD: usize = 20;
 
@@ -156,6 +160,52 @@ impl Signals {
             );
         }
         inputs
+    }
+
+    /// What a run in steps of `step`, s, does not see of the samples up to `end`, s, in words: those that lie off what is read at
+    /// the points before and after them by more than [`SEEN`] of all that the input goes through.
+    pub(super) fn missed(&self, step: f64, end: f64) -> Option<String> {
+        let mut most: Option<(f64, String)> = None;
+        let mut rows = BTreeSet::new();
+        for Column { name, values, .. } in &self.columns {
+            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let range = values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least;
+            for (row, (&time, &value)) in self.time.iter().zip(values).enumerate() {
+                // (a jump has a point of its own)
+                let beside = [row.checked_sub(1), Some(row + 1)].into_iter().flatten();
+                let jumps = beside.filter_map(|k| self.time.get(k)).any(|t| *t == time);
+                if !(0.0..=end).contains(&time) || jumps {
+                    continue;
+                }
+                let before = (time / step).floor() * step;
+                let [a, b] = [(before, true), ((before + step).min(end), false)]
+                    .map(|(at, after_jump)| self.interpolate(at, values, after_jump));
+                let off = (a.min(b) - value).max(value - a.max(b));
+                if off <= SEEN * range {
+                    continue;
+                }
+                rows.insert(row);
+                if most.as_ref().is_none_or(|(share, _)| off / range > *share) {
+                    let unit = by_name(name).map_or("", |variable| variable.unit);
+                    let there = format!(
+                        "{name} = {value} {unit} at {time} s, where the run goes from {a} to {b} {unit}"
+                    );
+                    most = Some((off / range, there));
+                }
+            }
+        }
+        let apart = self.time.windows(2).map(|pair| pair[1] - pair[0]);
+        let apart = apart.filter(|dt| *dt > 0.0).fold(f64::INFINITY, f64::min);
+        most.map(|(_, there)| {
+            format!(
+                "{} lie between points that are {step} s apart, and the run does not see them: most of all {there}; rows are at least {} s apart, and --step can be that",
+                match rows.len() {
+                    1 => "1 row".to_owned(),
+                    n => format!("{n} rows"),
+                },
+                rounded(apart, 6)
+            )
+        })
     }
 
     /// fmpy's `Input.interpolate`, operation by operation.
@@ -301,6 +351,11 @@ impl Grid {
             time: 0.0,
             count: 0,
         }
+    }
+
+    /// Time between two of its points, s, but for those at jumps.
+    pub(super) fn step(&self) -> f64 {
+        self.step
     }
 
     /// Time, s, and steps so far, for [`Self::go_on`].
