@@ -43,6 +43,19 @@ struct Layers {
 }
 
 impl Layers {
+    /// The least and the largest place of a turn along y, m.
+    fn range(&self) -> [f64; 2] {
+        let places = || {
+            self.layers
+                .iter()
+                .flat_map(|layer| [layer.first, layer.last])
+        };
+        [
+            places().fold(f64::INFINITY, f64::min),
+            places().fold(f64::NEG_INFINITY, f64::max),
+        ]
+    }
+
     /// Turns between which the wire climbs to each next layer, in a step that takes so many and comes so much later.
     fn jumps(&self, step: f64, delay: f64) -> Vec<[f64; 2]> {
         let mut done = 0.0;
@@ -151,16 +164,19 @@ impl SceneSettings {
             }
             "orthocyclic" => {
                 let layers = self.layers(diameter, extent, problems)?;
-                let places = self.orthocyclic(&layers);
-                if self.leads_trail() {
-                    // the wire stays in the window, the nozzle swings past its places
-                    self.check_way(&places, diameter, extent, of_way);
-                    let led = problems.note(self.led(&layers, wire?, extent))?;
-                    return Some(self.for_run(led));
-                }
-                places
+                // the wire stays in the window, and the nozzle may lead past its places
+                self.check_way(layers.range(), Some(layers.pitch), extent, of_way);
+                let law = match self.leads_trail() {
+                    true => problems.note(self.led(&layers, wire?, extent))?,
+                    false => self.orthocyclic(&layers),
+                };
+                return Some(self.for_run(law));
             }
-            "helical" => self.helical(&self.layers(diameter, extent, problems)?),
+            "helical" => {
+                let layers = self.layers(diameter, extent, problems)?;
+                self.check_way(layers.range(), Some(layers.pitch), extent, of_way);
+                return Some(self.for_run(self.helical(&layers)));
+            }
             // without inputs the nozzle goes with the core's angle
             _ => {
                 let travel = t.per_turn / TAU * self.spindle.speed.signum();
@@ -172,7 +188,7 @@ impl SceneSettings {
             }
         };
         // The places of all turns, also those that a nozzle ahead of them leaves out.
-        self.check_way(&law, diameter, extent, of_way);
+        self.check_way(law.range(), None, extent, of_way);
         Some(self.for_run(law))
     }
 
@@ -434,14 +450,22 @@ impl SceneSettings {
         }
     }
 
-    /// A layered way stays in the window; the nozzle may lead beyond it.
-    fn check_way(&self, law: &NozzleLaw, d: f64, extent: &Extent, problems: &mut Problems) {
+    /// Turns lie in the window from the least to the largest place, m. Without a pitch these are places of the nozzle, which may lead
+    /// beyond it.
+    fn check_way(
+        &self,
+        [least, largest]: [f64; 2],
+        pitch: Option<f64>,
+        extent: &Extent,
+        problems: &mut Problems,
+    ) {
+        let lead = pitch.map_or(self.traverse.lead.abs(), |_| 0.0);
+        let d = self.wire.outer_diameter();
         let (low, high) = match extent.window {
             Some(room) => (room.widest[0], room.widest[1]),
             None => (extent.y_min, extent.y_max),
         };
-        let (lead, rounding) = (self.traverse.lead.abs(), ROUNDING * (high - low));
-        let [least, largest] = law.range();
+        let rounding = ROUNDING * (high - low);
         let ends = [low + 0.5 * d - lead, high - 0.5 * d + lead];
         // (where the wire has no place at all, that has been told)
         let within = least >= ends[0] - rounding && largest <= ends[1] + rounding;
@@ -468,7 +492,7 @@ impl SceneSettings {
                 format!("positions from {} to {} m", si(ends[0]), si(ends[1]))
             }
             // a layer that fills the window leaves one place
-            true if places[0] == places[1] => match law.pitch().filter(|pitch| spread(*pitch)) {
+            true if places[0] == places[1] => match pitch.filter(|pitch| spread(*pitch)) {
                 Some(pitch) => format!(
                     "{} m, since winding.pitch = 0 spreads the turns over the whole window; or a winding.pitch from {} to below {} m",
                     places[0],

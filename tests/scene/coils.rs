@@ -352,6 +352,19 @@ fn a_clamp_beside_the_first_turn_is_told() {
     assert!(!keys("[traverse]\nmode = 'by-angle'\n").contains(&"start.clamp_y"));
 }
 
+/// A nozzle ahead of its wire made room for the first turn within a flange.
+#[test]
+fn a_lead_makes_no_room_in_a_flange() {
+    let text = BOBBIN.replace("y_start_mm = -6.9", "y_start_mm = -7.1");
+    for mode in ["helical", "orthocyclic"] {
+        let led = format!("{text}mode = '{mode}'\nlead_mm = 0.2\n");
+        assert_says(
+            &refused(&led),
+            &["nozzle.y_start", "past a flange", "-0.0069 m"],
+        );
+    }
+}
+
 /// A nozzle led 4 mm past a flange of 1 mm wound its wire over that flange until it broke, and nothing said so before the run.
 #[test]
 fn a_nozzle_far_past_a_flange_is_told() {
