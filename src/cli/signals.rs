@@ -17,6 +17,8 @@ struct Column {
     name: &'static str,
     set: fn(&mut Inputs, f64),
     values: Vec<f64>,
+    /// from the least to the largest value
+    range: f64,
 }
 
 /// Input signals over time.
@@ -106,7 +108,14 @@ impl Signals {
         for (row, values) in rows.into_iter().zip(samples) {
             match row.map(|v| (v.name, v.access)) {
                 Some((name, Access::Input { set, .. })) => {
-                    signals.columns.push(Column { name, set, values });
+                    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+                    let range = values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least;
+                    signals.columns.push(Column {
+                        name,
+                        set,
+                        values,
+                        range,
+                    });
                 }
                 _ => signals.time = values,
             }
@@ -162,50 +171,56 @@ impl Signals {
         inputs
     }
 
-    /// What a run in steps of `step`, s, does not see of the samples up to `end`, s, in words: those that lie off what is read at
-    /// the points before and after them by more than [`SEEN`] of all that the input goes through.
+    /// The samples up to `end`, s, that a run in steps of `step`, s, does not see, in words.
     pub(super) fn missed(&self, step: f64, end: f64) -> Option<String> {
-        let mut most: Option<(f64, String)> = None;
+        let mut worst = (0.0, String::new());
         let mut rows = BTreeSet::new();
-        for Column { name, values, .. } in &self.columns {
-            let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-            let range = values.iter().copied().fold(f64::NEG_INFINITY, f64::max) - least;
-            for (row, (&time, &value)) in self.time.iter().zip(values).enumerate() {
-                // (a jump has a point of its own)
-                let beside = [row.checked_sub(1), Some(row + 1)].into_iter().flatten();
-                let jumps = beside.filter_map(|k| self.time.get(k)).any(|t| *t == time);
-                if !(0.0..=end).contains(&time) || jumps {
+        for column in &self.columns {
+            for row in 0..self.time.len() {
+                let Some((share, [from, to])) = self.unseen(column, row, step, end) else {
                     continue;
-                }
-                let before = (time / step).floor() * step;
-                let [a, b] = [(before, true), ((before + step).min(end), false)]
-                    .map(|(at, after_jump)| self.interpolate(at, values, after_jump));
-                let off = (a.min(b) - value).max(value - a.max(b));
-                if off <= SEEN * range {
-                    continue;
-                }
+                };
                 rows.insert(row);
-                if most.as_ref().is_none_or(|(share, _)| off / range > *share) {
-                    let unit = by_name(name).map_or("", |variable| variable.unit);
+                if share > worst.0 {
+                    let unit = by_name(column.name).map_or("", |variable| variable.unit);
+                    let (name, value, time) = (column.name, column.values[row], self.time[row]);
                     let there = format!(
-                        "{name} = {value} {unit} at {time} s, where the run goes from {a} to {b} {unit}"
+                        "{name} = {value} {unit} at {time} s, where the run goes from {from} to {to} {unit}"
                     );
-                    most = Some((off / range, there));
+                    worst = (share, there);
                 }
             }
         }
+        let count = match rows.len() {
+            0 => return None,
+            1 => "1 row lies".to_owned(),
+            n => format!("{n} rows lie"),
+        };
         let apart = self.time.windows(2).map(|pair| pair[1] - pair[0]);
         let apart = apart.filter(|dt| *dt > 0.0).fold(f64::INFINITY, f64::min);
-        most.map(|(_, there)| {
-            format!(
-                "{} lie between points that are {step} s apart, and the run does not see them: most of all {there}; rows are at least {} s apart, and --step can be that",
-                match rows.len() {
-                    1 => "1 row".to_owned(),
-                    n => format!("{n} rows"),
-                },
-                rounded(apart, 6)
-            )
-        })
+        Some(format!(
+            "{count} between points that are {step} s apart, and the run does not see them: most of all {}; rows are at least {} s apart, and --step can be that",
+            worst.1,
+            rounded(apart, 6)
+        ))
+    }
+
+    /// By which share of all that its input goes through a sample lies off what is read before and after it, and these values.
+    /// `None` for up to [`SEEN`].
+    fn unseen(&self, column: &Column, row: usize, step: f64, end: f64) -> Option<(f64, [f64; 2])> {
+        let (time, values) = (self.time[row], &column.values);
+        // (a jump has a point of its own)
+        let beside = [row.checked_sub(1), Some(row + 1)].into_iter().flatten();
+        let jumps = beside.filter_map(|k| self.time.get(k)).any(|t| *t == time);
+        if !(0.0..=end).contains(&time) || jumps {
+            return None;
+        }
+        let before = (time / step).floor() * step;
+        let from = self.interpolate(before, values, true);
+        let to = self.interpolate((before + step).min(end), values, false);
+        let off = (from.min(to) - values[row]).max(values[row] - from.max(to));
+        let share = off / column.range;
+        (share > SEEN).then_some((share, [from, to]))
     }
 
     /// fmpy's `Input.interpolate`, operation by operation.
