@@ -366,6 +366,12 @@ impl Coil {
     /// the place `arc`, m of unstretched wire from there. See [`added_by_stretch`]. Wire behind the last node counts as
     /// stretched like the wire before it.
     pub fn added_by_stretch(&self, arc: f64) -> f64 {
+        let node = self.node_before(arc);
+        node.map_or(0.0, |node| node.added_by_stretch_to(arc))
+    }
+
+    /// The last node that is not beyond the place `arc`, m of unstretched wire from the clamp.
+    fn node_before(&self, arc: f64) -> Option<&Node> {
         let (mut before, mut after) = (0, self.nodes.len());
         while before < after {
             let middle = usize::midpoint(before, after);
@@ -374,8 +380,14 @@ impl Coil {
                 false => after = middle,
             }
         }
-        let node = before.checked_sub(1).map(|node| &self.nodes[node]);
-        node.map_or(0.0, |node| node.added_by_stretch_to(arc))
+        before.checked_sub(1).map(|node| &self.nodes[node])
+    }
+
+    /// Winding angle of the settled wire at the place `arc`, m of unstretched wire from the clamp, rad; `None` where wire lies too
+    /// near the clamp to be judged.
+    pub(crate) fn judged_angle(&self, arc: f64) -> Option<f64> {
+        let angle = self.node_before(arc)?.angle;
+        self.is_free_of_clamp(angle).then_some(angle)
     }
 
     /// Winding angle at which the pass of the wire at this winding angle begins, rad. A swing of the nozzle past its place is no pass.

@@ -33,6 +33,7 @@ mod remeshing;
 mod run;
 mod run_state;
 mod saved;
+mod sharp_bend;
 mod slipping;
 mod start;
 mod step_derivatives;

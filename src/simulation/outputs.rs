@@ -1,5 +1,6 @@
 //! What can be read of a run: outputs at a communication point, the coil, the wire's centreline.
 
+use super::sharp_bend::strain_outside;
 use super::{Centreline, Winding};
 use crate::math::{Spin, V3, turn_about_y};
 use crate::measure::{Coil, DefectKind, SettledNode};
@@ -247,8 +248,8 @@ impl Winding {
             tension: frozen.tension.clone(),
             frozen: frozen.len(),
         };
-        let radius = 0.5 * self.scene.wire.bare_diameter;
-        let largest = |stretch: f64, bend: f64| stretch.abs() + radius * bend;
+        let diameter = self.scene.wire.bare_diameter;
+        let largest = |stretch, bend| strain_outside(stretch, bend, diameter);
         let at_rest = frozen.plastic_strain.iter().zip(&frozen.plastic_bend);
         line.plastic_strain
             .extend(at_rest.map(|(stretch, bend)| largest(*stretch, *bend)));

@@ -149,6 +149,7 @@ impl Winding {
         reasons.extend(self.slipped_off());
         reasons.extend(self.wire_on_a_rim());
         reasons.extend(self.thinned_wire());
+        reasons.extend(self.sharply_bent());
         let outputs = &self.run.outputs;
         reasons.extend(left_out(outputs.turns_wound, outputs.turns_settled));
         let full = self.scene.nozzle_law.full();
