@@ -25,6 +25,8 @@ pub struct NozzleLaw {
     jumps: Arc<[[f64; 2]]>,
     /// angle at which the last layer is full, rad, where layers are planned
     full: Option<f64>,
+    /// turns that these layers hold
+    held: Option<f64>,
     /// way from turn to turn of a layer, m, where layers are planned
     pitch: Option<f64>,
     /// angle in which each turn steps to its next place, rad, where it does so in steps
@@ -44,6 +46,7 @@ impl NozzleLaw {
             turns,
             jumps: Arc::new([]),
             full: None,
+            held: None,
             pitch: None,
             crossover: None,
         }
@@ -72,6 +75,7 @@ impl NozzleLaw {
             turns: last[0],
             jumps: Arc::new([]),
             full: None,
+            held: None,
             pitch: None,
             crossover: None,
         }
@@ -97,13 +101,15 @@ impl NozzleLaw {
             turns: self.turns,
             jumps: self.jumps,
             full: self.full,
+            held: self.held,
             pitch: self.pitch,
             crossover: self.crossover,
         }
     }
 
-    /// The same law, with the turns between which wire is meant to climb to each next layer, and those after which the last is full.
-    pub(super) fn with_layers(self, jumps: &[[f64; 2]], full: f64) -> Self {
+    /// The same law, with the turns between which wire is meant to climb to each next layer, those after which the last is full, and
+    /// those that all layers hold.
+    pub(super) fn with_layers(self, jumps: &[[f64; 2]], full: f64, held: f64) -> Self {
         let jumps = jumps
             .iter()
             .map(|pair| pair.map(|turn| turn * TAU))
@@ -111,6 +117,7 @@ impl NozzleLaw {
         Self {
             jumps,
             full: Some(full * TAU),
+            held: Some(held),
             ..self
         }
     }
@@ -150,6 +157,11 @@ impl NozzleLaw {
     /// Angle at which the last layer is full, rad; none where layers are not planned.
     pub fn full(&self) -> Option<f64> {
         self.full
+    }
+
+    /// Turns that the planned layers hold; none where layers are not planned.
+    pub fn held(&self) -> Option<f64> {
+        self.held
     }
 
     /// The piece at an angle turned, rad.

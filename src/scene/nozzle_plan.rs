@@ -158,7 +158,7 @@ impl SceneSettings {
                     0.0 => law,
                     _ => {
                         let stacked = self.layers(diameter, extent, problems)?;
-                        law.with_layers(&stacked.jumps(0.0, 0.0), stacked.turns())
+                        law.with_layers(&stacked.jumps(0.0, 0.0), stacked.turns(), stacked.turns())
                     }
                 }
             }
@@ -205,13 +205,13 @@ impl SceneSettings {
     /// Turns that the planned layers hold, for wire of diameter `d`, m, where the scene has them.
     pub(super) fn turns_of_layers(&self, d: f64, extent: &Extent) -> Option<f64> {
         let planned = self.layers(d, extent, &mut Problems::default())?;
-        Some(
-            planned
-                .layers
-                .iter()
-                .map(|layer| f64::from(layer.turns))
-                .sum(),
-        )
+        Some(planned.turns())
+    }
+
+    /// Height of the planned layers of wire of diameter `d`, both in m, where the scene has them.
+    pub(super) fn height_of_layers(&self, d: f64, extent: &Extent) -> Option<f64> {
+        let planned = self.layers(d, extent, &mut Problems::default())?;
+        Some(d + (planned.layers.len() - 1) as f64 * planned.rise(d))
     }
 
     /// The layers that the nozzle winds, from the window between the flanges.
@@ -355,7 +355,11 @@ impl SceneSettings {
         }
         points.push([places.len() as f64, places[places.len() - 1].1]);
         NozzleLaw::through(&points)
-            .with_layers(&stacked.jumps(step, delay), stacked.turns() + delay)
+            .with_layers(
+                &stacked.jumps(step, delay),
+                stacked.turns() + delay,
+                stacked.turns(),
+            )
             .with_crossovers(stacked.pitch, self.traverse.crossover)
     }
 
@@ -386,13 +390,18 @@ impl SceneSettings {
         }
         points.push([places.len() as f64, places[places.len() - 1].1]);
         Ok(NozzleLaw::through(&points)
-            .with_layers(&stacked.jumps(step, delay), stacked.turns() + delay)
+            .with_layers(
+                &stacked.jumps(step, delay),
+                stacked.turns() + delay,
+                stacked.turns(),
+            )
             .with_crossovers(stacked.pitch, crossover))
     }
 
-    /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there; one that leads changes sides
-    /// meanwhile.
-    fn helical(&self, Layers { layers, pitch }: &Layers) -> NozzleLaw {
+    /// A pitch a turn, to and fro. The nozzle goes on to where the next layer begins and stands there until this one has its turns; one
+    /// that leads changes sides meanwhile.
+    fn helical(&self, stacked: &Layers) -> NozzleLaw {
+        let Layers { layers, pitch } = stacked;
         let (lead, dwell) = (self.traverse.lead, self.traverse.dwell_turns);
         let mut points = vec![[0.0, layers[0].first + layers[0].sense * lead]];
         let mut jumps = Vec::new();
@@ -405,14 +414,21 @@ impl SceneSettings {
             }
             turns + turned
         };
+        let mut begun = 0.0;
         for (number, layer) in layers.iter().enumerate() {
             let lead = layer.sense * lead;
             go_to(layer.last + lead, 0.0);
             match layers.get(number + 1) {
                 Some(next) => {
                     let from = go_to(next.first + lead, 0.0);
-                    let to = go_to(next.first - lead, dwell);
-                    jumps.push([from, to]);
+                    let missing = f64::from(layer.turns) - (from - begun);
+                    // (what rounding leaves of the dwell itself is none)
+                    let stands = match missing > dwell + ROUNDING {
+                        true => missing,
+                        false => dwell,
+                    };
+                    begun = go_to(next.first - lead, stands);
+                    jumps.push([from, begun]);
                 }
                 // the last turn has to be laid as well
                 None => drop(go_to(layer.last + lead, 1.0)),
@@ -420,7 +436,7 @@ impl SceneSettings {
         }
         let full = points[points.len() - 1][0];
         NozzleLaw::through(&points)
-            .with_layers(&jumps, full)
+            .with_layers(&jumps, full, stacked.turns())
             .with_pitch(*pitch)
     }
 

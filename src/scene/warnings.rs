@@ -152,8 +152,13 @@ impl SceneSettings {
                 true => self.winding.layers,
                 false => f64::from(law.passes(wire.diameter)),
             };
-            // each layer but the first lies in the grooves of the one below
-            let coil = wire.diameter * (1.0 + (layers - 1.0) * 0.75_f64.sqrt());
+            // each layer of a table but the first is taken to lie in the grooves of the one below
+            let in_grooves = || wire.diameter * (1.0 + (layers - 1.0) * 0.75_f64.sqrt());
+            let planned = match self.plans_layers() {
+                true => self.height_of_layers(wire.diameter, extent),
+                false => None,
+            };
+            let coil = planned.unwrap_or_else(in_grooves);
             // where turns are planned in layers, a nozzle that they meet is refused
             if table && extent.winding_radius + coil >= self.nozzle.distance {
                 let message = format!(
@@ -215,7 +220,7 @@ impl SceneSettings {
             if more > MORE {
                 let message = format!(
                     "the layers hold {} turns, and what is wound then has no place but on the last one; leave the key out, or plan more turns or layers",
-                    si(planned)
+                    si(law.held().unwrap_or(planned))
                 );
                 warn("spindle.turns", message);
             }

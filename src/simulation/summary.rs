@@ -7,7 +7,6 @@ use crate::measure::{
 };
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
-use std::f64::consts::TAU;
 
 /// What `summary.json` holds about the run itself.
 #[derive(Clone, Debug, Serialize)]
@@ -152,8 +151,8 @@ impl Winding {
         reasons.extend(self.sharply_bent());
         let outputs = &self.run.outputs;
         reasons.extend(left_out(outputs.turns_wound, outputs.turns_settled));
-        let full = self.scene.nozzle_law.full();
-        reasons.extend(full.and_then(|full| unfinished(outputs.turns_wound, full / TAU)));
+        let held = self.scene.nozzle_law.held();
+        reasons.extend(held.and_then(|held| unfinished(outputs.turns_wound, held)));
         let limit = self.scene.window;
         let clearance = limit.and_then(|w| self.coil.clearance(w.height, w.taper));
         if let Some(beyond) = clearance.map(|clear| -clear).filter(|&beyond| beyond > 0.0) {

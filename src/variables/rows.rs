@@ -408,7 +408,7 @@ table! {
     fixed(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
     fmu_text("by-input", 1602, "traverse.mode", (traverse.mode), ["by-input", "by-angle", "orthocyclic", "helical", "table"], "nozzle travel: as nozzle_position says; even with the core's angle, as without inputs too; layers with a straight part and a step in each turn; layers of even travel; from a table");
     fixed(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the step to the next turn");
-    fixed(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: turns that the nozzle stands at the end of a layer");
+    fixed(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: least turns that the nozzle stands at the end of a layer; it stays until the layer has its turns");
     text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file, set in the FMU relative to its resources or as given");
     fixed(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
     text(1607, "traverse.trail", (traverse.trail), ["free", "led"], "orthocyclic: what the law says; free: where the nozzle is, and the wire trails behind it; led: where the wire is laid, in smooth crossovers, and the nozzle swings ahead of it; on a cylinder");

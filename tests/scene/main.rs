@@ -3,6 +3,7 @@
 mod choices;
 mod coils;
 mod common;
+mod helical;
 mod meshes;
 mod reading;
 mod refusals;
