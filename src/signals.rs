@@ -214,6 +214,11 @@ impl Outputs {
         self.wire_tension_min = self.wire_tension_min.min(tension);
         self.wire_tension_max = self.wire_tension_max.max(tension);
     }
+
+    /// Takes a depth of contact, m, into the extreme.
+    pub(crate) fn meet_depth(&mut self, depth: f64) {
+        self.penetration_max = self.penetration_max.max(depth);
+    }
 }
 
 /// What kind of thing happened.

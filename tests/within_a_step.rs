@@ -276,3 +276,32 @@ fn slopes_predict_better_than_the_value_held() {
         assert!(led <= most * held, "{name}: {:.3}", (led / held).sqrt());
     }
 }
+
+/// The deepest contact "since the last communication point" was that of the whole run: it never fell.
+#[test]
+fn the_deepest_contact_is_that_of_the_last_step() {
+    for integrator in ["implicit", "verlet"] {
+        let text = format!(
+            "[spindle]\nramp_turns = 0.1\n[solver]\nintegrator = '{integrator}'\n[core]\nshape = 'cylinder'\nradius_mm = 8\n[nozzle]\ndistance_mm = 25\n"
+        );
+        let settings =
+            SceneSettings::from_toml_str(&text, "scene.toml", std::path::Path::new("")).unwrap();
+        let mut sim = Simulation::new(&settings.build().unwrap()).unwrap();
+        let mut inputs = sim.inputs();
+        let mut deepest = Vec::new();
+        for k in 0..30 {
+            inputs.spindle_speed = (30.0 * f64::from(k)).min(150.0);
+            inputs.nozzle_position += 0.7e-3 * inputs.spindle_speed * 1e-3 / TAU;
+            sim.advance(inputs, 1e-3).unwrap();
+            deepest.push(sim.outputs().penetration_max);
+        }
+        let most = sim.winding().summary().penetration.largest_m;
+        let largest = deepest.iter().copied().fold(0.0, f64::max);
+        assert!(
+            most > 0.0 && largest <= most,
+            "{integrator}: {largest} {most}"
+        );
+        assert!(largest > 0.9 * most, "{integrator}: {largest} {most}");
+        assert!(!deepest.is_sorted(), "{integrator}: {deepest:?}");
+    }
+}

@@ -76,6 +76,7 @@ impl Winding {
         let o = &mut self.run.outputs;
         o.wire_tension_max = o.wire_tension_max.max(told.wire_tension_max);
         o.wire_tension_min = o.wire_tension_min.min(told.wire_tension_min);
+        o.meet_depth(told.penetration_max);
         raise_as(o, &told);
         Ok(())
     }

@@ -20,6 +20,7 @@ impl Winding {
     pub(super) fn watch_tension(&mut self) {
         let t = self.wire_tension();
         self.run.outputs.meet_tension(t);
+        self.run.outputs.meet_depth(self.sys.state.depth);
         let slack = t < self.slack_tension();
         if slack {
             self.note_slack();

@@ -28,6 +28,7 @@ impl Winding {
         };
         let mut outputs = self.run.outputs;
         (outputs.wire_tension_min, outputs.wire_tension_max) = (t, t);
+        outputs.penetration_max = self.sys.state.depth;
         self.lower_flags(&mut outputs);
         self.run.outputs = outputs;
     }
@@ -185,7 +186,6 @@ impl Winding {
         let statistics = self.stepper.statistics();
         o.solver_rejects = (statistics.rejects + statistics.newton_failures) as f64;
         o.live_nodes = rod.nodes() as i32;
-        o.penetration_max = self.sys.state.deepest;
         o.energy_residual = residual;
         self.watch_for_doubt(residual);
     }
@@ -285,6 +285,7 @@ pub(super) fn raise_as(o: &mut Outputs, other: &Outputs) {
 /// Gives `o` the extremes and flags that a master was told of.
 pub(super) fn keep_told(o: &mut Outputs, told: &Outputs) {
     (o.wire_tension_min, o.wire_tension_max) = (told.wire_tension_min, told.wire_tension_max);
+    o.penetration_max = told.penetration_max;
     (o.defect_bulge, o.defect_gap) = (told.defect_bulge, told.defect_gap);
     (o.defect_overlap, o.defect_slack) = (told.defect_overlap, told.defect_slack);
     o.defect_code = told.defect_code;

@@ -144,12 +144,14 @@ impl Served {
         self.time = next;
         let o = &mut self.outputs;
         (o.wire_tension_min, o.wire_tension_max) = (o.wire_tension, o.wire_tension);
+        o.penetration_max = now.sys.state.depth;
         now.lower_flags(o);
     }
 
     /// Takes note of the end of a step within the communication step.
     pub(super) fn pass(&mut self, winding: &Winding) {
         self.outputs.meet_tension(winding.run.outputs.wire_tension);
+        self.outputs.meet_depth(winding.sys.state.depth);
         raise_as(&mut self.outputs, &winding.run.outputs);
     }
 

@@ -10,11 +10,15 @@ impl System {
     /// frames and friction anchors move on and the energy balance grows by what happens in `dt`.
     pub fn evaluate(&mut self, commit: Option<f64>) {
         self.internal(commit.is_some());
+        if commit.is_some() {
+            self.state.depth = 0.0;
+        }
         let spin = Spin::new(self.state.spindle.angle);
         let torque_from_contact = self.contact_forces(spin, commit);
         self.live_forces(spin, commit);
         self.state.torque_on_core = torque_from_contact + self.clamp_torque();
         if let Some(dt) = commit {
+            self.state.deepest = self.state.deepest.max(self.state.depth);
             let nodal = self.state.contact.as_nodal();
             let touch = nodal.map_or(Default::default(), |n| n.loss);
             let live = nodal.and_then(|n| n.live.as_ref());
@@ -141,7 +145,7 @@ impl System {
                 self.state.load.force[i] += f;
                 moment -= x.z * f.x - x.x * f.z;
                 if commit.is_some() {
-                    self.state.deepest = self.state.deepest.max(contact.state.nodes[i].depth());
+                    self.state.depth = self.state.depth.max(contact.state.nodes[i].depth());
                 }
             }
             if i < self.state.rod.edges() {
@@ -198,7 +202,7 @@ impl System {
             }
         }
         if commit.is_some() {
-            self.state.deepest = self.state.deepest.max(live.deepest);
+            self.state.depth = self.state.depth.max(live.deepest);
         }
     }
 }

@@ -157,6 +157,7 @@ impl System {
             let step = if h > 0.0 { h } else { f64::INFINITY };
             line.scratch.accepted.clear();
             if commit {
+                line.state.deepest = 0.0;
                 line.commit_left(
                     |k| spin.to_core(ContactPoint::of_number(k).place(&rod.x)),
                     |k| ContactPoint::of_number(k).length(rod),
@@ -185,8 +186,11 @@ impl System {
                 moment -= p.z * f.x - p.x * f.z;
                 point.weights().spread(&f, force);
             }
-            self.state.deepest = self.state.deepest.max(line.state.deepest);
             moment += between_forces(&mut line, rod, force, &self.state.past, spin, step, commit);
+            if commit {
+                self.state.depth = line.state.deepest;
+                self.state.deepest = self.state.deepest.max(line.state.deepest);
+            }
             let pairs = line.state.self_contact.as_ref();
             let pairs = pairs.map(|pairs| pairs.loss).unwrap_or_default();
             self.state.balance.friction = line.state.loss.friction + pairs.friction;

@@ -43,6 +43,8 @@ pub struct State {
     pub balance: EnergyBalance,
     /// deepest penetration met, m
     pub deepest: f64,
+    /// that at the last accepted instant, m
+    pub depth: f64,
     /// moment of the wire on the core about +y at the last evaluation, N m
     pub torque_on_core: f64,
     /// moment that turns the wire's mass, as the last implicit step has it, N m
@@ -77,6 +79,7 @@ impl State {
             joined_away: 0.0,
             balance: EnergyBalance::default(),
             deepest: 0.0,
+            depth: 0.0,
             torque_on_core: 0.0,
             turning: None,
             unbalanced: 0.0,
@@ -104,6 +107,7 @@ impl State {
             joined_away,
             balance,
             deepest,
+            depth,
             torque_on_core,
             turning,
             unbalanced,
@@ -122,7 +126,8 @@ impl State {
         (self.set_tension, self.set_rate) = (*set_tension, *set_rate);
         (self.arc0, self.joined_away) = (*arc0, *joined_away);
         self.balance = *balance;
-        (self.deepest, self.torque_on_core) = (*deepest, *torque_on_core);
+        (self.deepest, self.depth) = (*deepest, *depth);
+        self.torque_on_core = *torque_on_core;
         (self.turning, self.unbalanced) = (*turning, *unbalanced);
         self.time = *time;
         self.load.copy_from(load);

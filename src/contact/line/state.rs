@@ -23,7 +23,7 @@ pub struct LineState {
     pub(super) points: Vec<Box<PointState>>,
     /// totals of what was lost
     pub loss: ContactLoss,
-    /// depth of the deepest touch at any accepted instant, m
+    /// depth of the deepest touch at the last accepted instant, m
     pub deepest: f64,
     /// frozen wire lies within this distance of the core, m; wire that thawed counts as well
     pub height: f64,
