@@ -169,6 +169,9 @@ fn live_wire_holds_live_wire_off() {
         "centre distance less the diameter: {gap:.2e} m"
     );
     assert!(sim.summary().penetration.largest_over_d < 0.05);
+    // "wind more turns" was the advice
+    let told = sim.summary().reasons.remove(0);
+    assert!(told.contains("freeze.enabled = false"), "{told}");
     assert!(
         sim.energy().residual_over_dissipated.abs() < 0.01,
         "{:?}",

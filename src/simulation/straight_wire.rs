@@ -111,18 +111,30 @@ pub(super) fn check_way(
         let (low, high) = (clamp.y.min(last), clamp.y.max(last));
         // a nozzle that leads begins elsewhere than its key says
         let ahead = nozzle.y - scene.nozzle.y_start;
-        match scene.traverse.lead != 0.0 && nozzle.y == scene.nozzle_law.position(0.0) {
-            true => format!(
+        let leads = scene.traverse.lead != 0.0 && nozzle.y == scene.nozzle_law.position(0.0);
+        if leads && scene.nozzle_law.pitch().is_some() {
+            // the first turn has its place in the layers
+            let sense = scene.nozzle_law.sense();
+            let lead = |y: f64| scene.traverse.lead + sense * (y - nozzle.y);
+            let (one, other) = (lead(low), lead(high));
+            format!(
+                "set traverse.lead between {} and {} m",
+                si(one.min(other)),
+                si(one.max(other))
+            )
+        } else if leads {
+            format!(
                 "begin with nozzle.y_start between {} and {} m, or with a smaller traverse.lead, which has the nozzle {} m from there",
                 si(low - ahead),
                 si(high - ahead),
                 si(ahead)
-            ),
-            false => format!(
+            )
+        } else {
+            format!(
                 "begin with the nozzle (nozzle.y_start, or the input nozzle_position) between {} and {} m",
                 si(low),
                 si(high)
-            ),
+            )
         }
     } else {
         "move the clamp (start.clamp_y)".to_owned()
@@ -183,6 +195,32 @@ mod tests {
         let least = rest.split(' ').next().and_then(|y| y.parse::<f64>().ok());
         start(1e3 * least.expect("a number") + 1e-3).expect("a place in that range");
         assert!(told.contains("traverse.lead"), "{told}");
+    }
+
+    /// Places of the nozzle were advised that a plan of layers refuses, since its first turn has one place.
+    #[test]
+    fn a_nozzle_that_leads_in_layers_is_told_its_lead() {
+        let start = |lead_mm: f64| {
+            let text = format!(
+                "[wire]\ndiameter_mm = 0.6\n[core]\nshape = 'cylinder'\nradius_mm = 6\n[core.flange]\ninner_distance_mm = 4\nheight_mm = 3\n\
+                 [nozzle]\ndistance_mm = 20\ny_start_mm = -1.7\n[start]\nclamp_y_mm = -1.7\n[winding]\nlayers = 2\n\
+                 [traverse]\nmode = 'helical'\nlead_mm = {lead_mm}"
+            );
+            let settings =
+                SceneSettings::from_toml_str(&text, "scene.toml", Path::new("")).expect("reads");
+            let started = Simulation::new(&settings.build().expect("a scene"));
+            started.map(|_| ()).map_err(|error| error.to_string())
+        };
+        let told = start(-1.5).expect_err("wire through a flange");
+        assert!(!told.contains("y_start between"), "{told}");
+        let (_, rest) = told
+            .split_once("set traverse.lead between ")
+            .expect("a range");
+        let least = rest.split(' ').next().and_then(|y| y.parse::<f64>().ok());
+        let least = 1e3 * least.expect("a number");
+        assert!((-1.0..-0.8).contains(&least), "{told}");
+        start(least + 1e-3).expect("a lead in that range");
+        start(least - 2e-2).expect_err("a lead beyond it");
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::Winding;
 use super::product::Product;
 use crate::measure::{
-    BulgeLimit, Defect, STATIONS_PER_TURN, TurnMeasures, left_out, reasons, unfinished,
+    BulgeLimit, Defect, STATIONS_PER_TURN, TurnMeasures, Verdict, left_out, reasons, unfinished,
 };
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
@@ -145,6 +145,11 @@ impl Winding {
             self.bulge_limit(),
             diameter,
         );
+        if !self.scene.freeze.enabled && self.verdict() == Verdict::Unsettled {
+            reasons = vec![
+                "No wire is judged, since freeze.enabled = false lets none come to rest".to_owned(),
+            ];
+        }
         reasons.extend(self.slipped_off());
         reasons.extend(self.wire_on_a_rim());
         reasons.extend(self.thinned_wire());
