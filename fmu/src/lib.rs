@@ -53,3 +53,5 @@ mod scalar;
 #[cfg(test)]
 mod sequences;
 mod state;
+#[cfg(test)]
+mod told;

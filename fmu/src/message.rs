@@ -2,6 +2,7 @@
 
 use crate::ffi::Status;
 use coilwind::signals::{Event, EventKind};
+use coilwind::simulation::SolverStatistics;
 use coilwind_model_description::Category;
 use std::fmt::Display;
 
@@ -15,7 +16,7 @@ pub(crate) struct Message {
 
 impl Message {
     /// Returns the message about an event of a simulation that began at `start`, s of the experiment.
-    pub(crate) fn of_event(event: &Event, start: f64) -> Self {
+    fn of_event(event: &Event, start: f64) -> Self {
         let (status, category) = match event.kind {
             EventKind::Turn | EventKind::Defect | EventKind::Note => (Status::Ok, Category::Events),
             EventKind::Solver => (Status::Ok, Category::Solver),
@@ -34,6 +35,55 @@ impl Message {
                 ..event.clone()
             }
             .to_string(),
+        }
+    }
+
+    /// Returns the messages about the events of one communication step. What the solver had to do in it is one message, however often
+    /// it had to.
+    pub(crate) fn of_events(events: &[Event], start: f64) -> Vec<Self> {
+        let of_solver = |event: &&Event| event.kind == EventKind::Solver;
+        let (count, last) = (
+            events.iter().filter(of_solver).count(),
+            events.iter().rfind(of_solver),
+        );
+        let mut told = false;
+        let mut messages = Vec::new();
+        for event in events {
+            let again = of_solver(&event) && std::mem::replace(&mut told, true);
+            if again {
+                continue;
+            }
+            let mut message = Self::of_event(event, start);
+            if let Some(last) = last.filter(|_| of_solver(&event) && count > 1) {
+                let (more, time) = (count - 1, start + last.time);
+                message.text += &format!(
+                    "; {more} more such in this communication step, up to t = {time:.6} s"
+                );
+            }
+            messages.push(message);
+        }
+        messages
+    }
+
+    /// Returns what the solver did up to `time`, s of the experiment, in all.
+    pub(crate) fn of_solver(counts: &SolverStatistics, time: f64) -> Self {
+        let SolverStatistics {
+            steps,
+            rejects,
+            newton_failures,
+            forced,
+            ..
+        } = counts;
+        let mut text = format!(
+            "t = {time:.6} s: the solver took {steps} steps, and gave up {rejects} for their error and {newton_failures} after a search in vain"
+        );
+        if *forced > 0 {
+            text += &format!("; {forced} of those taken have an error above solver.tolerance");
+        }
+        Self {
+            status: Status::Ok,
+            category: Category::Solver,
+            text,
         }
     }
 

@@ -7,7 +7,7 @@ pub enum Category {
     Events,
     /// The slopes of a directional derivative over small and smaller changes disagree.
     Derivatives,
-    /// How the solver went on where it had to shorten a step. There is nothing to do about it.
+    /// Where the solver had to search long for a step, and what it did in all.
     Solver,
     /// A call was served, and something about scene, wire or files needs a look.
     Warning,
@@ -36,7 +36,7 @@ pub(crate) const CATEGORIES: [(Category, &str, &str); 8] = [
     (
         Category::Solver,
         "logSolver",
-        "Steps that the solver had to shorten; there is nothing to do about them",
+        "Steps that the solver had to search long for; at the end what it did in all",
     ),
     (
         Category::Warning,

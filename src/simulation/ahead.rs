@@ -49,11 +49,8 @@ impl Winding {
     pub(super) fn step_along(&mut self, course: &Course, first: bool) -> Result<(), SimError> {
         self.take_course(course, first);
         self.reset_extremes();
-        let before = self.statistics();
         let most = course.ahead_of(self.run.time).min(self.longest_return());
-        let stepped = self.step(most);
-        self.tell_of_trouble(before);
-        stepped?;
+        self.step(most)?;
         (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
         self.update_outputs();
         Ok(())

@@ -400,21 +400,15 @@ impl Winding {
     /// Goes along `course` for `duration`, s, and no farther.
     fn go_along(&mut self, course: &Course, duration: f64) -> Result<(), SimError> {
         let drive = course.drive(self.run.time, duration);
-        let before = self.statistics();
         self.begin_drive(&drive);
-        let gone = self.through(&drive);
-        self.tell_of_trouble(before);
-        gone
+        self.through(&drive)
     }
 
     /// Goes along the scene's own motion for `duration`, s, and no farther.
     fn go_along_scene(&mut self, duration: f64) -> Result<(), SimError> {
         let (profile, start) = (self.motion_profile.clone(), self.run.time);
-        let before = self.statistics();
         let mut drives = profile.drives(start, start + duration, self.sys.state.set_tension);
-        let gone = drives.try_for_each(|drive| self.follow(&drive));
-        self.tell_of_trouble(before);
-        gone
+        drives.try_for_each(|drive| self.follow(&drive))
     }
 
     /// The scene's own motion from the winding's time to its next kink or its end, where the inputs are those of `now`.

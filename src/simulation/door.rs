@@ -4,8 +4,7 @@ use super::nozzle_place::nozzle_of;
 use super::outputs::raise_as;
 use super::rates::{rates_of, speeds_of};
 use super::{SimError, WORTH_A_STEP, Winding};
-use crate::integrate::SolverStatistics;
-use crate::signals::{EventKind, Inputs, Outputs};
+use crate::signals::{Inputs, Outputs};
 use crate::system::{Drive, NozzleDrive};
 
 /// Where the motion of the machine over a communication step comes from.
@@ -96,7 +95,6 @@ impl Winding {
             self.run.quiet = 0.0;
         }
         self.reset_extremes();
-        let statistics_before = self.statistics();
         let gone = match &source {
             Source::Inputs { inputs, rates } => {
                 // (its mean over the step)
@@ -116,7 +114,6 @@ impl Winding {
                 drives.try_for_each(|drive| self.follow(&drive))
             }
         };
-        self.tell_of_trouble(statistics_before);
         if gone.is_err() {
             self.stop_short();
             return gone;
@@ -212,24 +209,6 @@ impl Winding {
             self.finish();
             self.run.rates = speeds_of(&self.run.outputs, self.sys.state.spindle.speed);
             self.run.rates.nozzle_y = nozzle.velocity.y;
-        }
-    }
-
-    /// Reports how often since `before` the solver shortened a step because Newton's method failed.
-    ///
-    /// Steps shortened for their error are ordinary and are not reported.
-    pub(super) fn tell_of_trouble(&mut self, before: SolverStatistics) {
-        let newton_failures = self.statistics().newton_failures - before.newton_failures;
-        if newton_failures > 0 {
-            let times = match newton_failures {
-                1 => "once".to_owned(),
-                n => format!("{n} times"),
-            };
-            let text = format!(
-                "the solver shortened its step {times}, the last one to {:.2e} s; each step taken still meets solver.tolerance, so nothing needs to be done",
-                self.run.last_step
-            );
-            self.report(EventKind::Solver, text);
         }
     }
 

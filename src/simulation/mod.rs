@@ -50,6 +50,7 @@ mod trail;
 #[cfg(feature = "lab")]
 mod trail_keeping;
 mod traverse;
+mod trouble;
 mod whole_turn;
 mod winding;
 

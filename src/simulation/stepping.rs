@@ -88,7 +88,7 @@ impl Winding {
                 reason: "interrupted".to_owned(),
             });
         }
-        let tried = self.stepper.statistics().tried();
+        let counts = self.stepper.statistics();
         #[cfg(feature = "lab")]
         let before = self.begin_trail();
         let taken = self.stepper.step(&mut self.sys, most).map_err(|e| SimError {
@@ -103,10 +103,11 @@ impl Winding {
         })?;
         #[cfg(feature = "lab")]
         self.end_trail(before);
-        self.run.work +=
-            (self.stepper.statistics().tried() - tried) * self.sys.state.rod.nodes() as u64;
+        self.run.work += (self.stepper.statistics().tried() - counts.tried())
+            * self.sys.state.rod.nodes() as u64;
         self.run.last_step = taken;
         self.run.steps += 1;
+        self.tell_of_trouble(counts, taken);
         self.watch_ends();
         self.watch_tension();
         self.remesh(taken)?;

@@ -58,6 +58,7 @@ impl Winding {
                 steps: now.steps - was.steps,
                 rejects: now.rejects - was.rejects,
                 newton_failures: now.newton_failures - was.newton_failures,
+                forced: now.forced - was.forced,
                 solves: now.solves - was.solves,
                 evaluations: now.evaluations - was.evaluations,
                 line_search_halvings: now.line_search_halvings - was.line_search_halvings,

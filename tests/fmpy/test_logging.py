@@ -32,7 +32,7 @@ def test_categories_are_the_declared_ones(slave, description):
 
 
 def test_a_wind_that_goes_well_warns_of_nothing(slave):
-    """Each step that the solver shortened was a warning with the words that nothing needs to be done."""
+    """Each step that the solver shortened was a line, and once a warning, with the words that nothing needs to be done."""
     slave.start(inputs={"spindle_speed": 1.0})
     for k in range(160):
         speed = 100.0 * min((k + 0.5) / 30, 1.0)
@@ -40,9 +40,18 @@ def test_a_wind_that_goes_well_warns_of_nothing(slave):
         slave.set(spindle_speed=speed, nozzle_position=slave.get("nozzle_position") + travel)
         slave.fmu.doStep(k * 1e-3, 1e-3)
     assert slave.get("turns_wound") > 2.0
-    shortened = [entry for entry in slave.log if "shortened its step" in entry[3]]
-    assert shortened and all(entry[1:3] == (0, "logSolver") for entry in shortened)
     assert not [entry for entry in slave.log if entry[1] == WARNING]
+    assert slave.get("solver_rejects") > 0
+    assert not [entry for entry in slave.log if entry[2] == "logSolver"]
+    slave.fmu.terminate()
+    summaries = [entry for entry in slave.log if entry[2] == "logSolver"]
+    assert [entry[1] for entry in summaries] == [0]
+    counted = re.match(
+        r"t = 0\.160000 s: the solver took (\d+) steps, and gave up (\d+) for their error and (\d+) after a search in vain$",
+        summaries[0][3],
+    )
+    taken, wrong, in_vain = (int(count) for count in counted.groups())
+    assert taken == slave.get("solver_steps") and wrong + in_vain == slave.get("solver_rejects")
 
 
 def test_defects_come_with_time_turn_and_angle(slave):

@@ -73,8 +73,18 @@ impl Instance {
             Ending::Interrupted
         };
         self.finish_recording(&ending);
+        self.sum_up();
         self.state = State::Terminated;
         Ok(())
+    }
+
+    /// Tells what the solver did in all, if it did anything.
+    fn sum_up(&mut self) {
+        let counts = self.run.as_ref().map(|run| run.simulation.statistics());
+        if let Some(counts) = counts.filter(|counts| counts.steps > 0) {
+            let summary = Message::of_solver(&counts, self.clock.now());
+            self.messages.push(summary);
+        }
     }
 
     /// `fmi2Reset`: a fresh instance with the same name, resources and logging. Never fails.

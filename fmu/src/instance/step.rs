@@ -47,8 +47,7 @@ impl Instance {
         }
         let events = run.simulation.drain_events();
         let simulated = run.simulation.time();
-        let messages = events.iter().map(|event| Message::of_event(event, offset));
-        self.messages.extend(messages);
+        self.messages.extend(Message::of_events(&events, offset));
         if let Err(mut reason) = result {
             reason.time += offset;
             let reached = self.clock.experiment_time(simulated);

@@ -92,6 +92,8 @@ pub struct SolverStatistics {
     pub rejects: u64,
     /// steps thrown away because Newton's method stalled
     pub newton_failures: u64,
+    /// accepted steps of the shortest length whose error is above the tolerance
+    pub forced: u64,
     /// factorisations
     pub solves: u64,
     /// evaluations of potential, gradient and Hessian

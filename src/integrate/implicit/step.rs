@@ -78,6 +78,8 @@ impl Implicit {
                     if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
                         self.commit(work, sys, &step, spindle, &support, nozzle);
                         self.statistics.steps += 1;
+                        let forced = error > self.tolerance && self.fixed.is_none();
+                        self.statistics.forced += u64::from(forced);
                         self.propose(h, factor);
                         return Ok(h);
                     }

@@ -1,0 +1,89 @@
+//! Tests of what the importer is told: by messages, and by outputs that a message goes with.
+
+use crate::ffi::Status;
+use crate::instance::Instance;
+use crate::message::Message;
+use coilwind::signals::{Event, EventKind};
+use coilwind::variables::by_name;
+use coilwind_model_description::Category;
+
+fn reference(name: &str) -> u32 {
+    by_name(name).expect("a variable").reference
+}
+
+fn set(instance: &mut Instance, name: &str, value: f64) {
+    instance.set(&[reference(name)], [value]).expect("set");
+}
+
+/// Starts an instance at the time 0 after `set_up`; returns the messages of the start too.
+fn started(set_up: impl Fn(&mut Instance)) -> (Instance, Vec<Message>) {
+    let mut instance = Instance::for_tests();
+    set_up(&mut instance);
+    instance.setup_experiment(None, 0.0, None).expect("valid");
+    instance.enter_initialization_mode().expect("enters");
+    instance.exit_initialization_mode().expect("starts");
+    let messages = instance.end_call();
+    (instance, messages)
+}
+
+fn event(time: f64, kind: EventKind) -> Event {
+    Event {
+        time,
+        turn: 1.0,
+        angle: 0.0,
+        kind,
+        text: format!("{kind:?}"),
+    }
+}
+
+/// What the solver had to do made a line for each of its steps.
+#[test]
+fn a_communication_step_has_one_line_of_the_solver() {
+    let events = [
+        event(0.1, EventKind::Turn),
+        event(0.2, EventKind::Solver),
+        event(0.3, EventKind::Defect),
+        event(0.4, EventKind::Solver),
+        event(0.5, EventKind::Solver),
+    ];
+    let messages = Message::of_events(&events, 10.0);
+    let categories: Vec<Category> = messages.iter().map(|m| m.category).collect();
+    assert_eq!(
+        categories,
+        [Category::Events, Category::Solver, Category::Events]
+    );
+    let text = &messages[1].text;
+    assert!(text.starts_with("t = 10.200000 s"), "{text}");
+    assert!(
+        text.ends_with("Solver; 2 more such in this communication step, up to t = 10.500000 s"),
+        "{text}"
+    );
+    let messages = Message::of_events(&events[..3], 0.0);
+    assert!(messages[1].text.ends_with("Solver"), "{}", messages[1].text);
+}
+
+/// The end of a run tells what the solver did in all; one that never stepped has nothing to tell.
+#[test]
+fn the_end_sums_up_what_the_solver_did() {
+    let of_solver = |instance: &mut Instance| {
+        let messages = instance.end_call().into_iter();
+        let told = messages.filter(|m| m.category == Category::Solver);
+        told.map(|m| (m.status, m.text)).collect::<Vec<_>>()
+    };
+    let (mut instance, _) = started(|_| {});
+    instance.terminate().expect("ends");
+    assert_eq!(of_solver(&mut instance), []);
+    let (mut instance, _) = started(|i| set(i, "spindle_speed", 30.0));
+    instance.do_step(0.0, 5e-3).expect("a step");
+    instance.do_step(5e-3, 5e-3).expect("a step");
+    assert_eq!(of_solver(&mut instance), []);
+    instance.terminate().expect("ends");
+    let told = of_solver(&mut instance);
+    assert_eq!(told.len(), 1, "{told:?}");
+    assert_eq!(told[0].0, Status::Ok);
+    let steps = instance
+        .get::<f64>(&[reference("solver_steps")])
+        .expect("a count");
+    let expected = format!("t = 0.010000 s: the solver took {} steps", steps[0]);
+    assert!(told[0].1.starts_with(&expected), "{told:?} {expected}");
+}
