@@ -141,7 +141,7 @@ pub struct Outputs {
     pub layon_x: f64,
     /// where the wire's centreline meets the coil, along z of the frame at rest, m
     pub layon_z: f64,
-    /// turns laid since the nozzle turned
+    /// turns of the layer that is being laid
     pub turn_in_layer: f64,
     /// from the surface of the wire where it meets the coil to the nearer flange or end of the core, along y, m
     pub flange_clearance: f64,

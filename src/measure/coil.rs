@@ -390,11 +390,6 @@ impl Coil {
         self.is_free_of_clamp(angle).then_some(angle)
     }
 
-    /// Winding angle at which the pass of the wire at this winding angle begins, rad. A swing of the nozzle past its place is no pass.
-    pub fn pass_begins(&self, angle: f64) -> f64 {
-        self.passes.begins(angle).max(0.0)
-    }
-
     /// See [`Passes::planned`].
     pub(crate) fn has_planned_passes(&self) -> bool {
         self.passes.has_plan()

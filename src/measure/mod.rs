@@ -18,6 +18,7 @@ mod crossover;
 mod defect;
 mod judge;
 mod jumps;
+mod layer_start;
 mod marks;
 mod neighbour;
 mod onset;

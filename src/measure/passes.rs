@@ -115,9 +115,10 @@ impl Passes {
     }
 
     /// Winding angle at which the pass of the wire at this winding angle begins, rad; of wire in the last swing, see
-    /// [`Self::last_swing`], that of the pass before.
-    pub(crate) fn begins(&self, angle: f64) -> f64 {
-        let swing = self.last_swing(angle);
+    /// [`Self::last_swing`], that of the pass before. Wire that `climbed` to its layer there, rad, was laid by a nozzle that has turned.
+    pub(crate) fn begins(&self, angle: f64, climbed: Option<f64>) -> f64 {
+        let has_turned = climbed.is_some_and(|at| (at - self.last().from).abs() < HUNG_BACK);
+        let swing = self.last_swing(angle).filter(|_| !has_turned);
         let begun = self.judged().take_while(|pass| pass.from <= angle);
         let passes = begun.zip(1..).filter(|(_, number)| swing != Some(*number));
         passes.last().map_or(0.0, |(pass, _)| pass.from)
@@ -252,9 +253,9 @@ mod tests {
             let from = f64::from(turn) * TAU;
             // the nozzle goes back a little, and on again from where it had turned
             passes.push(from, -1.0, Some(1e-3 * f64::from(turn)));
-            begun.push(passes.begins(from + 0.3));
+            begun.push(passes.begins(from + 0.3, None));
             passes.push(from + 1.0, 1.0, Some(1e-3 * f64::from(turn) - 2e-4));
-            begun.push(passes.begins(from + 1.3));
+            begun.push(passes.begins(from + 1.3, None));
         }
         // what the first turns for is not known until it goes on
         assert_eq!(begun[0], TAU);
@@ -262,5 +263,11 @@ mod tests {
             begun[1..].iter().all(|from| *from == f64::NEG_INFINITY),
             "{begun:?}"
         );
+        // where wire has climbed, the nozzle has turned for good
+        let end = 8.0 * TAU;
+        passes.push(end, -1.0, Some(8e-3));
+        assert_eq!(passes.begins(end + 0.3, None), f64::NEG_INFINITY);
+        assert_eq!(passes.begins(end + 0.3, Some(3.0 * TAU)), f64::NEG_INFINITY);
+        assert_eq!(passes.begins(end + 0.3, Some(end - 0.2)), end);
     }
 }

@@ -36,7 +36,7 @@ impl Winding {
         let way = self.flange_beside(on_core);
         Machine {
             layon: [layon.point.x, layon.point.z],
-            turn_in_layer: (layon.angle - self.coil.pass_begins(layon.angle)).max(0.0) / TAU,
+            turn_in_layer: (layon.angle - self.coil.layer_begins(layon.angle)).max(0.0) / TAU,
             clearance: way.map_or((y - low).min(high - y), f64::abs) - self.scene.wire.radius(),
             resistance: self.resistance_of(layon.arc, layon.added_by_stretch),
             inertia: self.coil_inertia(),

@@ -310,7 +310,7 @@ table! {
     output(141, nozzle_y, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis: that of nozzle_position, or of the law of traverse.mode");
     output(142, layon_x, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along x; the frame does not turn, the nozzle is on +x");
     output(143, layon_z, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along z of the same frame; layon_position is along y");
-    output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns laid since the nozzle turned: those of the layer that is being wound, where it turns at the ends of layers");
+    output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns of the layer that is being laid: wire laid since it climbed there, or since the nozzle turned where no layers are planned");
     output(145, flange_clearance, "m", "mm", -10.0, 10.0, 1e-3, "from the surface of the wire where it meets the coil to the nearer flange, along y; without flanges to the nearer end of the core");
     output(146, wire_resistance, "Ohm", "mOhm", 0.0, 1e9, 0.1, "resistance of wire_length at 20 degC; plastic stretch makes it longer and thinner");
     output(147, coil_inertia, "kg.m2", "g.mm2", 0.0, 1e3, 1e-6, "moment of inertia of the settled wire about the core axis, without the core's");

@@ -1,0 +1,49 @@
+//! Where the layer begins that is being wound, of wire that may not have come to rest yet.
+
+use super::coil::{Coil, STEP_UP};
+use std::f64::consts::TAU;
+
+/// Wire that changes its layer farther than this from where it is meant to climb, rad, has ridden up or sunk there and begins no layer.
+/// Chosen: a turn. Wire that rides up on its neighbour comes down again within one.
+const ASTRAY: f64 = TAU;
+
+impl Coil {
+    /// Winding angle at which the layer of the wire at this winding angle begins, rad, as far as is known by now.
+    ///
+    /// Where wire has come to rest in that layer, it says so. Until then the plan does, in the middle of the climb, or without a plan the
+    /// nozzle, which has turned. A swing of the nozzle past its place is no turn of it.
+    pub fn layer_begins(&self, angle: f64) -> f64 {
+        let (layer, since, end) = self.records.last().map_or((1, 0.0, 0.0), |last| {
+            let station = &last.station;
+            (
+                station.layer as usize,
+                last.signs.layer_since,
+                station.angle,
+            )
+        });
+        let jumps = &self.spec.jumps;
+        if jumps.is_empty() {
+            let climbed = (layer > 1).then_some(since);
+            return self.passes.begins(angle, climbed).max(0.0);
+        }
+        let middle = |jump: &[f64; 2]| 0.5 * (jump[0] + jump[1]);
+        let planned = |climbs: usize| match climbs {
+            0 => 0.0,
+            _ => middle(&jumps[climbs - 1]),
+        };
+        let due = jumps.partition_point(|jump| middle(jump) <= angle);
+        let climbs = layer - 1;
+        if climbs > due {
+            // it has climbed early, for good or for a while
+            let is_early = end - since > ASTRAY;
+            return if is_early { since } else { planned(due) };
+        }
+        let [from, to] = jumps.get(climbs).copied().unwrap_or([f64::INFINITY; 2]);
+        let is_late = climbs < due && since < from && end > to + STEP_UP;
+        let begun = if is_late { climbs } else { due };
+        match climbs == begun && (since - planned(begun)).abs() < ASTRAY {
+            true => since,
+            false => planned(begun),
+        }
+    }
+}
