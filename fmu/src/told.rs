@@ -87,3 +87,23 @@ fn the_end_sums_up_what_the_solver_did() {
     let expected = format!("t = 0.010000 s: the solver took {} steps", steps[0]);
     assert!(told[0].1.starts_with(&expected), "{told:?} {expected}");
 }
+
+/// The warning named another mode than `fmi2GetString` did.
+#[test]
+fn a_key_without_effect_is_told_with_the_mode_that_is_in_use() {
+    let (mut instance, messages) = started(|i| {
+        i.set(&[reference("scene.file")], ["fig8".to_owned()])
+            .expect("set");
+        set(i, "winding.layers", 2.0);
+    });
+    let mode = instance
+        .get::<String>(&[reference("traverse.mode")])
+        .expect("a mode");
+    let told: Vec<&str> = messages.iter().map(|m| m.text.as_str()).collect();
+    assert!(told.concat().contains("winding.layers = 2"), "{told:?}");
+    assert!(
+        told.concat()
+            .contains(&format!("traverse.mode = {} ", mode[0])),
+        "{mode:?} {told:?}"
+    );
+}

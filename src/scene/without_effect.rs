@@ -3,7 +3,7 @@
 use super::SceneError;
 use super::error::Warning;
 use super::{Integrator, Window};
-use crate::settings::{NozzleFollows, Origin, SceneSettings};
+use crate::settings::{BY_INPUT, NozzleFollows, Origin, SceneSettings};
 use std::collections::BTreeSet;
 
 /// What decides which keys a run reads.
@@ -212,6 +212,16 @@ impl Reader<'_> {
         2 * of_file.count() >= keys.len()
     }
 
+    /// What a run has chosen, in words. A nozzle that follows its input leaves the scene's own mode to say what is wound.
+    fn chosen(&self, choice: &str, now: &str) -> String {
+        match choice {
+            MODE if self.follows != NozzleFollows::Law && now != BY_INPUT => {
+                format!("{BY_INPUT} in a scene of {now}")
+            }
+            _ => now.to_owned(),
+        }
+    }
+
     /// Keys that were given although nothing reads them.
     pub(super) fn warnings(&self) -> Vec<Warning> {
         let settings = self.settings;
@@ -243,8 +253,9 @@ impl Reader<'_> {
             let others = of.values.join(" or ");
             let keys = of.keys.iter().filter(|key| by_law || **key != PER_TURN);
             for &key in keys {
+                let chosen = self.chosen(choice, now);
                 let why = format!(
-                    "{choice} = {now} does not use it; set {choice} = {others}, or leave the key out"
+                    "{choice} = {chosen} does not use it; set {choice} = {others}, or leave the key out"
                 );
                 warn(key, &why);
             }
