@@ -107,3 +107,38 @@ fn a_key_without_effect_is_told_with_the_mode_that_is_in_use() {
         "{mode:?} {told:?}"
     );
 }
+
+/// After the step in which the wire parts, the speeds of before it were its slopes: 4 m/s of wire that moves no more.
+#[test]
+fn wire_that_has_parted_has_no_slopes() {
+    for step in [1e-4, 1e-3] {
+        let (mut instance, _) = started(|i| set(i, "spindle_speed", 20.0));
+        let broke = reference("defect_break");
+        let outputs = [
+            "fed_length",
+            "tensioner_position",
+            "free_length",
+            "spindle_angle",
+        ]
+        .map(reference);
+        let mut k = 0;
+        while !instance.get::<bool>(&[broke]).expect("a flag")[0] {
+            assert!(f64::from(k) * step < 0.05, "it has not broken");
+            let pull = if f64::from(k) * step < 5e-3 {
+                15.0
+            } else {
+                90.0
+            };
+            set(&mut instance, "tension_setpoint", pull);
+            instance.do_step(f64::from(k) * step, step).expect("a step");
+            k += 1;
+        }
+        let slopes = instance
+            .output_derivatives(&outputs, &[1; 4])
+            .expect("slopes");
+        assert_eq!(slopes, [0.0, 0.0, 0.0, 20.0]);
+        let fed = instance.get::<f64>(&outputs[..3]).expect("lengths");
+        instance.do_step(f64::from(k) * step, step).expect("a step");
+        assert_eq!(instance.get::<f64>(&outputs[..3]).expect("lengths"), fed);
+    }
+}

@@ -349,7 +349,12 @@ impl Simulation {
             }
             if self.now.run.over {
                 self.talk.served = Some(served);
-                return self.settle();
+                self.settle()?;
+                let winding = self.pool.own(&mut self.now);
+                let both = [told, &winding.run.outputs];
+                let speed = winding.inputs().spindle_speed;
+                winding.run.rates = rates_of(winding, both, dt, speed);
+                return Ok(());
             }
             let first = !std::mem::replace(&mut self.talk.underway, true);
             let stepped = if self.now.stepper.next() > room {
