@@ -47,6 +47,7 @@ mod parameters;
 mod pointers;
 mod recording;
 mod resources;
+mod saved_files;
 #[cfg(test)]
 mod saving;
 mod scalar;

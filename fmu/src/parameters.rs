@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::resources;
+use crate::saved_files::SavedFiles;
 use coilwind::measure::DefectLimits;
 use coilwind::scene::{Scene, SceneError, Warning};
 use coilwind::settings::{BY_INPUT, Friction, Origin, SceneSettings};
@@ -9,7 +10,7 @@ use coilwind::signals::Inputs;
 use coilwind::variables::{Access, Value, Variable, by_name, by_reference, choice};
 use coilwind_model_description::DEFAULT_TOLERANCE;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Name of the parameter that names the scene under all others.
 const SCENE_FILE: &str = "scene.file";
@@ -31,8 +32,14 @@ const BESIDE_THE_SCENE: &str = "relative to the scene file";
 const BY_THE_FMU: &str = "by its name among the FMU's resources, or else as given";
 
 /// What a saved state holds of parameters: `scene.file`, the scene that it held, and what was set
-/// explicitly, by value reference, and the tolerance of the experiment.
-pub(crate) type SavedParameters = (String, SceneSettings, BTreeMap<u32, Value>, Option<f64>);
+/// explicitly, by value reference, the tolerance of the experiment, and where files were.
+pub(crate) type SavedParameters = (
+    String,
+    SceneSettings,
+    BTreeMap<u32, Value>,
+    Option<f64>,
+    SavedFiles,
+);
 
 /// The parameters with their precedence.
 ///
@@ -48,6 +55,10 @@ pub(crate) struct Parameters {
     explicit: BTreeMap<u32, Value>,
     /// Tolerance of the experiment, if the importer gave one.
     tolerance: Option<f64>,
+    /// Where files were that a restored state names; none of others.
+    files: SavedFiles,
+    /// The resources in which files were last looked for.
+    resources: Option<PathBuf>,
     /// `base` with `explicit` laid over it.
     settings: SceneSettings,
 }
@@ -60,11 +71,13 @@ impl Parameters {
             self.base.clone(),
             self.explicit.clone(),
             self.tolerance,
+            SavedFiles::of(&self.settings, self.resources.as_deref()),
         )
     }
 
     /// Returns the parameters of a saved state, for an FMU that is unpacked with its `resources` there. The scene is
-    /// the one that `scene.file` held when it was read; the file itself is not read again.
+    /// the one that `scene.file` held when it was read; the file itself is not read again. Files that the scene names are those that it
+    /// named then, wherever this process runs.
     ///
     /// # Errors
     ///
@@ -73,13 +86,16 @@ impl Parameters {
         saved: SavedParameters,
         resources: Option<&Path>,
     ) -> Result<Self, Error> {
-        let (file, base, explicit, tolerance) = saved;
-        let settings = laid_over(&base, &explicit, tolerance, resources)?;
+        let (file, base, explicit, tolerance, files) = saved;
+        let mut settings = laid_over(&base, &explicit, tolerance, resources)?;
+        files.find(&mut settings, resources);
         Ok(Self {
             file,
             base,
             explicit,
             tolerance,
+            files,
+            resources: resources.map(Path::to_owned),
             settings,
         })
     }
@@ -91,6 +107,8 @@ impl Parameters {
             base: SceneSettings::default(),
             explicit: BTreeMap::new(),
             tolerance: None,
+            files: SavedFiles::default(),
+            resources: None,
             settings: SceneSettings::default(),
         }
     }
@@ -120,7 +138,16 @@ impl Parameters {
         } else if next.file != self.file {
             next.base = SceneSettings::load(&resources::scene(&next.file, resources))?;
         }
+        let names_files = |name: &str| [SCENE_FILE, MESH_FILE, TRAVERSE_FILE].contains(&name);
+        if changes
+            .iter()
+            .any(|(variable, _)| names_files(variable.name))
+        {
+            next.files = SavedFiles::default();
+        }
+        next.resources = resources.map(Path::to_owned);
         next.settings = laid_over(&next.base, &next.explicit, next.tolerance, resources)?;
+        next.files.find(&mut next.settings, resources);
         Ok(next)
     }
 
@@ -137,7 +164,8 @@ impl Parameters {
         if let Some(value) = tolerance.filter(|x| !(x.is_finite() && *x > 0.0)) {
             return Err(Error::Tolerance { value });
         }
-        let settings = laid_over(&self.base, &self.explicit, tolerance, resources)?;
+        let mut settings = laid_over(&self.base, &self.explicit, tolerance, resources)?;
+        self.files.find(&mut settings, resources);
         Ok(Self {
             tolerance,
             settings,
@@ -280,18 +308,23 @@ impl Parameters {
     /// [`Error::NoFile`] with the places that were looked in.
     pub(crate) fn find_files(&self, resources: Option<&Path>) -> Result<(), Error> {
         let (core, traverse) = (&self.settings.core, &self.settings.traverse);
+        let [saved_core, saved_traverse, _] = self.files.places(resources);
         let files = [
-            (MESH_FILE, &core.file, core.shape == "mesh"),
-            (TRAVERSE_FILE, &traverse.file, traverse.mode == "table"),
+            (MESH_FILE, &core.file, core.shape == "mesh", saved_core),
+            (
+                TRAVERSE_FILE,
+                &traverse.file,
+                traverse.mode == "table",
+                saved_traverse,
+            ),
         ];
         let missing = files
             .into_iter()
-            .find(|(_, file, read)| *read && !file.is_empty() && !Path::new(file).is_file());
-        let Some((name, file, _)) = missing else {
+            .find(|(_, file, read, _)| *read && !file.is_empty() && !Path::new(file).is_file());
+        let Some((name, file, _, mut places)) = missing else {
             return Ok(());
         };
         let shown = |path: &Path| path.display().to_string();
-        let mut places = Vec::new();
         if !Path::new(file).is_absolute() {
             places.extend(resources.map(shown));
             places.extend(std::env::current_dir().ok().as_deref().map(shown));

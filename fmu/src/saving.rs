@@ -133,8 +133,8 @@ fn other_bytes_are_refused_with_the_reason() {
     assert!(matches!(
         changed(8),
         BytesError::Version {
-            found: 6,
-            expected: 7
+            found: 9,
+            expected: 8
         }
     ));
     assert!(matches!(changed(20), BytesError::Guid { .. }));

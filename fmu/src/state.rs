@@ -32,7 +32,7 @@ use std::sync::Arc;
 
 const MAGIC: &[u8; 8] = b"\x89CoilFMU";
 /// Version of the format. It changes whenever the bytes of the same state do.
-const VERSION: u32 = 7;
+const VERSION: u32 = 8;
 /// Bytes of a GUID with its braces.
 const GUID: usize = 38;
 const HEADER: usize = 8 + 4 + GUID + 8 + 4;
@@ -199,6 +199,7 @@ impl Snapshot {
         let parameters = Parameters::restored(contents.parameters, resources)?;
         let run = match contents.run {
             Some(run) => {
+                parameters.find_files(resources)?;
                 let (scene, _) = parameters.scene()?;
                 let last = match run.last {
                     Some((simulation, inputs, rates, step)) => Some(Arc::new(LastStep {

@@ -5,10 +5,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import fmpy
 import pytest
-from conftest import ERROR, ROOT
+from conftest import ERROR, ROOT, Slave
 from fmpy.fmi1 import FMICallException
 from signals import duration, winding_signals
+from test_masters import bar
 
 SCENE = "fig8"
 SPEED = 400
@@ -33,8 +35,6 @@ def go(slave, first, last):
 
 @pytest.fixture(scope="module")
 def uninterrupted(unzipped, description):
-    from conftest import Slave
-
     slave = Slave(unzipped, description, "uninterrupted")
     slave.start(scene__file=SCENE)
     rows = go(slave, 0, STEPS)
@@ -123,6 +123,68 @@ def test_bytes_that_are_no_state_change_nothing(slave, uninterrupted):
     damaged = good[:middle] + bytes([good[middle] ^ 1]) + good[middle + 1 :]
     assert "checksum" in refused(slave, damaged)
     assert go(slave, 20, STEPS) == uninterrupted[20:]
+
+
+def wound_on_a_mesh(slave, **parameters):
+    """The bytes of a state on the way, and what follows it."""
+    slave.start(inputs={"spindle_speed": 20.0}, **parameters)
+    slave.fmu.doStep(0.0, 1e-3)
+    state = slave.fmu.getFMUstate()
+    data = slave.fmu.serializeFMUstate(state)
+    slave.fmu.doStep(1e-3, 1e-3)
+    return data, slave.outputs()
+
+
+def gone_on(slave, data):
+    slave.fmu.setFMUstate(slave.fmu.deSerializeFMUstate(data))
+    slave.fmu.doStep(1e-3, 1e-3)
+    return slave.outputs()
+
+
+def test_a_state_finds_its_mesh_from_another_folder(make_slave, tmp_path, monkeypatch):
+    """The name counted from wherever the process stood, and a file of that name there was taken for the mesh."""
+    here, there = tmp_path / "here", tmp_path / "there"
+    for folder, length in ((here, 30.0), (there, 20.0)):
+        folder.mkdir()
+        (folder / "bar.stl").write_text(bar(12.0, 30.0, length), encoding="utf-8")
+    monkeypatch.chdir(here)
+    mesh = {"core__shape": "mesh", "core__file": "bar.stl", "core__unit": "mm"}
+    data, rest = wound_on_a_mesh(make_slave(), **mesh)
+    monkeypatch.chdir(there)
+    other = make_slave()
+    assert gone_on(other, data) == rest
+    assert other.get("core.file") == b"bar.stl"
+    # bytes of bytes, and a parameter that is set in between
+    state = other.fmu.getFMUstate()
+    again = other.fmu.serializeFMUstate(state)
+    monkeypatch.chdir(tmp_path)
+    third = make_slave()
+    third.fmu.setFMUstate(third.fmu.deSerializeFMUstate(again))
+    third.set(defects__gap=0.3)
+    third.fmu.doStep(2e-3, 1e-3)
+    (here / "bar.stl").unlink()
+    text = refused(make_slave(), data)
+    assert "core.file" in text and str(here / "bar.stl") in text, text
+
+
+def test_a_state_finds_its_mesh_in_an_fmu_unpacked_elsewhere(fmu_path, description, tmp_path):
+    slaves = []
+    for name in ("first", "second"):
+        unpacked = tmp_path / name
+        fmpy.extract(fmu_path, str(unpacked))
+        scene = '[core]\nshape = "mesh"\nfile = "bar.stl"\nunit = "mm"\n'
+        (unpacked / "resources/scenes/mine.toml").write_text(scene, encoding="utf-8")
+        (unpacked / "resources/scenes/bar.stl").write_text(bar(12.0, 30.0, 30.0), encoding="utf-8")
+        slaves.append(Slave(str(unpacked), description))
+    data, rest = wound_on_a_mesh(slaves[0], scene__file="mine.toml")
+    (tmp_path / "first/resources/scenes/bar.stl").unlink()
+    assert gone_on(slaves[1], data) == rest
+    (tmp_path / "second/resources/scenes/bar.stl").unlink()
+    text = refused(slaves[1], data)
+    for name in ("first", "second"):
+        assert str(tmp_path / name / "resources/scenes/bar.stl") in text, text
+    for slave in slaves:
+        slave.free()
 
 
 def test_history_is_cut_back_to_the_restored_state(make_slave, tmp_path):
