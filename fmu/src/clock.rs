@@ -8,6 +8,10 @@ use serde::{Deserialize, Serialize};
 /// Chosen: importers add steps up or multiply them, and some round to nanoseconds.
 const TOLERANCE: f64 = 1e-9;
 
+/// Shortest step, s. Chosen: steps below a nanosecond only add up, and inputs that change in one as short as this still have rates
+/// that squares of them can be taken of.
+const SHORTEST: f64 = 1e-18;
+
 /// Start time, stop time and last communication point, s.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Clock {
@@ -53,7 +57,7 @@ impl Clock {
     /// # Errors
     ///
     /// If the step does not begin at the last communication point, is not above 0, is lost in
-    /// rounding or ends after the stop time.
+    /// rounding, is too short or ends after the stop time.
     pub(crate) fn end_of(&self, point: f64, step: f64) -> Result<f64, TimeError> {
         finite("currentCommunicationPoint", point)?;
         finite("communicationStepSize", step)?;
@@ -69,6 +73,10 @@ impl Clock {
         let end = point + step;
         if end <= point {
             return Err(TimeError::TooSmall { step, time: point });
+        }
+        if step < SHORTEST {
+            let shortest = SHORTEST;
+            return Err(TimeError::TooShort { step, shortest });
         }
         match self.stop {
             Some(stop) if end - stop > tolerance(end, stop, step) => {
@@ -171,6 +179,13 @@ mod tests {
                 time: 1.0
             }
         );
+        // at the time 0 nothing is lost in rounding
+        let at_zero = Clock::new(0.0, None).expect("valid");
+        for step in [5e-324, 1e-300, 1e-20] {
+            let refused = at_zero.end_of(0.0, step).expect_err("too short");
+            assert!(refused.to_string().contains("1e-18 s or more"), "{refused}");
+        }
+        assert_eq!(at_zero.end_of(0.0, 1e-18), Ok(1e-18));
         assert!(matches!(error(1.0, 1.1), TimeError::PastStop { .. }));
         assert!(matches!(error(f64::NAN, 0.1), TimeError::NotFinite { .. }));
         assert!(matches!(

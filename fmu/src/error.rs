@@ -253,12 +253,20 @@ pub(crate) enum TimeError {
         step: f64,
     },
     /// The sum of time and step is the time itself.
-    #[error("communicationStepSize = {step} s is lost in rounding at {time} s; make it longer")]
+    #[error("communicationStepSize = {step:e} s is lost in rounding at {time} s; make it longer")]
     TooSmall {
         /// `communicationStepSize`
         step: f64,
         /// `currentCommunicationPoint`
         time: f64,
+    },
+    /// Nothing that an input is changed by in so short a step has a finite rate.
+    #[error("communicationStepSize = {step:e} s is too short; allowed: {shortest:e} s or more")]
+    TooShort {
+        /// `communicationStepSize`
+        step: f64,
+        /// Shortest step that is allowed.
+        shortest: f64,
     },
     /// The step does not begin where the last one ended.
     #[error(

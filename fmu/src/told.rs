@@ -142,3 +142,33 @@ fn wire_that_has_parted_has_no_slopes() {
         assert_eq!(instance.get::<f64>(&outputs[..3]).expect("lengths"), fed);
     }
 }
+
+/// A step of 1e-18 s in which the nozzle moved by a tenth of a millimetre was solved for, at 1e14 m/s, and the next one failed.
+#[test]
+fn what_moves_in_a_step_too_short_to_solve_for_moves_in_the_next() {
+    for tiny in [1e-18, 1e-12, 5e-10] {
+        let (mut instance, _) = started(|_| {});
+        set(&mut instance, "spindle_speed", 10.0);
+        set(&mut instance, "nozzle_position", 1e-6);
+        set(&mut instance, "tension_setpoint", 16.0);
+        instance.do_step(0.0, tiny).expect("a step");
+        instance.do_step(tiny, 1e-4).expect("a step");
+        instance.do_step(tiny + 1e-4, 1e-4).expect("a step");
+        let outputs = ["nozzle_y", "spindle_angle"].map(reference);
+        let now = instance.get::<f64>(&outputs).expect("outputs");
+        assert_eq!(now[0], 1e-6);
+        assert!((now[1] - 2e-3).abs() < 1e-8, "{tiny}: {now:?}");
+    }
+    // and what is too short at all changes nothing
+    let (mut instance, _) = started(|i| set(i, "spindle_speed", 10.0));
+    let saved = |instance: &mut Instance| {
+        let state = instance.snapshot();
+        instance.bytes_of(&state).expect("bytes")
+    };
+    let before = saved(&mut instance);
+    for tiny in [1e-20, 1e-300, 5e-324] {
+        let refused = instance.do_step(0.0, tiny).expect_err("too short");
+        assert!(refused.to_string().contains("1e-18 s or more"), "{refused}");
+    }
+    assert!(saved(&mut instance) == before);
+}

@@ -52,6 +52,8 @@ impl Winding {
         let most = course.ahead_of(self.run.time).min(self.longest_return());
         self.step(most)?;
         (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
+        // (the step has taken along what shorter ones before it left)
+        self.run.owed = 0.0;
         self.update_outputs();
         Ok(())
     }

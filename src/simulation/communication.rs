@@ -14,7 +14,7 @@ use super::outputs::keep_told;
 use super::rates::rates_of;
 use super::talk::{LONGEST_WAIT, Served};
 use super::told::{Told, as_meant};
-use super::{SimError, Simulation, Winding};
+use super::{SimError, Simulation, WORTH_A_STEP, Winding};
 use crate::signals::{Inputs, Outputs};
 use std::sync::Arc;
 
@@ -88,9 +88,16 @@ impl Simulation {
         check_finite(&inputs.after(&rates, dt), self.time())?;
         let nozzle = self.inputs().nozzle_position;
         let given = Given::new(self.time(), inputs, rates, dt, nozzle);
+        let goes_on = self.goes_on_as(&given, self.talk.newest(), ALIKE);
+        if dt < WORTH_A_STEP && !goes_on {
+            // what moves in a step that is too short to solve for moves in the next one
+            self.settle()?;
+            (self.talk.course, self.talk.travel) = (None, None);
+            return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
+        }
         let before = self.talk.travel.replace((given.rates.nozzle_position, dt));
         let (told, told_tension) = (*self.outputs(), self.told_tension());
-        if self.goes_on_as(&given, self.talk.newest(), ALIKE) {
+        if goes_on {
             self.talk.wait = self.talk.wait.saturating_sub(1);
         } else {
             self.change_to(Course::from(&given, before), &given)?;
