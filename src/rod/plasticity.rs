@@ -159,6 +159,16 @@ pub struct Scalar {
     pub rise: f64,
 }
 
+impl Scalar {
+    /// State of wire of which a `share` is in the state `other`; where both are the same it stays that, to the bit.
+    pub(crate) fn mixed(&self, other: &Self, share: f64) -> Self {
+        Self {
+            strain: self.strain + (other.strain - self.strain) * share,
+            rise: self.rise + (other.rise - self.rise) * share,
+        }
+    }
+}
+
 /// Force at a total strain (N, or N m for twist), the plastic state there, and the plastic work
 /// done on the way, J/m.
 #[inline]
@@ -194,6 +204,20 @@ pub struct Bend {
     pub curvature: [f64; 2],
     /// rise of the yield moment, N m
     pub rise: f64,
+}
+
+impl Bend {
+    /// State of wire of which a `share` is in the state `other`; where both are the same it stays that, to the bit.
+    pub(crate) fn mixed(&self, other: &Self, share: f64) -> Self {
+        let [a, b] = self.curvature;
+        Self {
+            curvature: [
+                a + (other.curvature[0] - a) * share,
+                b + (other.curvature[1] - b) * share,
+            ],
+            rise: self.rise + (other.rise - self.rise) * share,
+        }
+    }
 }
 
 /// Moment (N m) at a total curvature (1/m), both in the mid frame; the plastic state there, and the

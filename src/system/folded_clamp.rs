@@ -16,7 +16,7 @@ impl System {
     /// Turns the clamp at the start by what the fold over it exceeds [`HALF_TURN`] by; says whether it does.
     ///
     /// What the bend there loses, the plastic bend loses too: moment, torque and stored energy stay what they are.
-    pub(crate) fn turn_folded_clamp(&mut self) -> bool {
+    pub fn turn_folded_clamp(&mut self) -> bool {
         let support = &mut self.state.support[0];
         let Some(clamp) = support.frame.filter(|_| support.turning) else {
             return false;
@@ -31,8 +31,15 @@ impl System {
         let kept = joint.bend.map(|bend| bend * HALF_TURN / angle);
         support.frame = Some(first * relative(kept, joint.twist).conjugate());
         let length = rod.voronoi(0);
-        for a in 0..2 {
-            rod.bend[0].curvature[a] -= (joint.bend[a] - kept[a]) / length;
+        let gone = [0, 1].map(|a| joint.bend[a] - kept[a]);
+        for (curvature, gone) in rod.bend[0].curvature.iter_mut().zip(gone) {
+            *curvature -= gone / length;
+        }
+        // frozen wire before the clamp bends by what the clamp turns by, for when it thaws
+        let history = &mut self.state.frozen_history;
+        for mut before in history.split_off(1) {
+            before.fold_end(gone);
+            history.push(before);
         }
         true
     }

@@ -22,10 +22,21 @@ pub struct FrozenNodeRecord {
     pub(super) stretch: Scalar,
     pub(super) bend: Bend,
     pub(super) twist: Scalar,
+    /// plastic bending of the edge's second half, which froze with the edge while the node at its end stayed live
+    pub(super) end_bend: Bend,
+    /// plastic twist there
+    pub(super) end_twist: Scalar,
     pub(super) memory: ContactRecord,
 }
 
 impl FrozenNodeRecord {
+    /// Bends the edge's second half by `angle` (rad) more, for good.
+    pub(super) fn fold_end(&mut self, angle: [f64; 2]) {
+        for (curvature, angle) in self.end_bend.curvature.iter_mut().zip(angle) {
+            *curvature += angle / (0.5 * self.rest);
+        }
+    }
+
     /// Whether it can come back to life; bytes from elsewhere may say anything.
     pub(crate) fn is_sound(&self) -> bool {
         self.memory.is_sound()

@@ -73,6 +73,8 @@ impl System {
                 stretch: rod.stretch[i],
                 bend: rod.bend[i],
                 twist: rod.twist[i],
+                end_bend: rod.bend[i + 1],
+                end_twist: rod.twist[i + 1],
                 memory: line.memory(i),
             });
             arc += rod.rest[i];

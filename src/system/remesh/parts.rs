@@ -74,6 +74,7 @@ impl Remesh for Rod {
         self.twist.drain(..count);
     }
 
+    /// A node that stayed live while the edge before it was frozen has gone on to yield over half its length. Frozen wire did not.
     fn insert_front(&mut self, thaw: &Thaw) {
         let spin = Spin::new(thaw.core.angle);
         let turn = turn_about_y(thaw.core.angle);
@@ -91,6 +92,12 @@ impl Remesh for Rod {
             .splice(0..0, nodes.iter().map(|node| node.stretch));
         self.bend.splice(0..0, nodes.iter().map(|node| node.bend));
         self.twist.splice(0..0, nodes.iter().map(|node| node.twist));
+        for (i, before) in nodes.iter().enumerate() {
+            let (frozen, live) = (before.rest, self.rest[i + 1]);
+            let share = frozen / (frozen + live);
+            self.bend[i + 1] = self.bend[i + 1].mixed(&before.end_bend, share);
+            self.twist[i + 1] = self.twist[i + 1].mixed(&before.end_twist, share);
+        }
     }
 }
 
