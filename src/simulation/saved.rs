@@ -19,7 +19,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 25;
+const VERSION: u32 = 26;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
