@@ -371,7 +371,7 @@ impl Coil {
     }
 
     /// The last node that is not beyond the place `arc`, m of unstretched wire from the clamp.
-    fn node_before(&self, arc: f64) -> Option<&Node> {
+    pub(super) fn node_before(&self, arc: f64) -> Option<&Node> {
         let (mut before, mut after) = (0, self.nodes.len());
         while before < after {
             let middle = usize::midpoint(before, after);
@@ -381,13 +381,6 @@ impl Coil {
             }
         }
         before.checked_sub(1).map(|node| &self.nodes[node])
-    }
-
-    /// Winding angle of the settled wire at the place `arc`, m of unstretched wire from the clamp, rad; `None` where wire lies too
-    /// near the clamp to be judged.
-    pub(crate) fn judged_angle(&self, arc: f64) -> Option<f64> {
-        let angle = self.node_before(arc)?.angle;
-        self.is_free_of_clamp(angle).then_some(angle)
     }
 
     /// See [`Passes::planned`].

@@ -270,6 +270,13 @@ impl Coil {
             .fold(0.0, |most, node| node.settled.plastic_strain.max(most))
     }
 
+    /// Winding angle of the settled wire at the place `arc`, m of unstretched wire from the clamp, rad; `None` where wire lies too
+    /// near the clamp to be judged.
+    pub(crate) fn judged_angle(&self, arc: f64) -> Option<f64> {
+        let angle = self.node_before(arc)?.angle;
+        self.is_free_of_clamp(angle).then_some(angle)
+    }
+
     /// Largest plastic stretch of the settled wire, and the station where it first is; `None` before there is wire.
     pub(crate) fn largest_stretch(&self) -> Option<(f64, usize)> {
         let strains = self.records.iter().map(|record| record.signs.strain);

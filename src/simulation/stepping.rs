@@ -91,15 +91,18 @@ impl Winding {
         let counts = self.stepper.statistics();
         #[cfg(feature = "lab")]
         let before = self.begin_trail();
-        let taken = self.stepper.step(&mut self.sys, most).map_err(|e| SimError {
-            time: self.sys.state.time,
-            node: Some(e.node),
-            reason: match self.stepper.fixed() {
-                Some(step) => format!(
-                    "{e}; solver.step = {step:.4e} s is fixed, set it to 0 to let the solver take shorter steps"
-                ),
-                None => e.to_string(),
-            },
+        let taken = self.stepper.step(&mut self.sys, most).map_err(|e| {
+            self.tell_of_failure(counts);
+            SimError {
+                time: self.sys.state.time,
+                node: Some(e.node),
+                reason: match self.stepper.fixed() {
+                    Some(step) => format!(
+                        "{e}; solver.step = {step:.4e} s is fixed, set it to 0 to let the solver take shorter steps"
+                    ),
+                    None => e.to_string(),
+                },
+            }
         })?;
         #[cfg(feature = "lab")]
         self.end_trail(before);

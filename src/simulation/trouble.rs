@@ -28,4 +28,12 @@ impl Winding {
             self.report(EventKind::Solver, text);
         }
     }
+
+    /// Tells that no step was found; `before` are the counts from before it was looked for.
+    pub(super) fn tell_of_failure(&mut self, before: SolverStatistics) {
+        let in_vain = self.statistics().newton_failures - before.newton_failures;
+        let s = if in_vain == 1 { "" } else { "es" };
+        let text = format!("the solver found no step after {in_vain} search{s} in vain");
+        self.report(EventKind::Solver, text);
+    }
 }

@@ -3,6 +3,7 @@
 use super::model::LineModel;
 use super::point::{FLANGE, PointState, WIRE};
 use super::record::ContactRecord;
+use super::touch::TouchState;
 use crate::contact::friction::LimitFrom;
 use crate::contact::law::ContactLoss;
 use crate::contact::self_contact::SelfContact;
@@ -250,6 +251,9 @@ impl LineState {
             let all = touches.ok_or("a contact point has too many touches")?;
             if p.reach >= 0.0 && all.iter().any(|t| t.start >= controls) {
                 return Err("a touch is beyond the frozen wire");
+            }
+            if !p.has_surroundings() && !p.touch.iter().all(TouchState::is_unused) {
+                return Err("a contact point touches what it is not near");
             }
         }
         if !self.self_contact.as_ref().is_none_or(|s| s.fits(nodes)) {
