@@ -202,12 +202,6 @@ impl SceneSettings {
         law.for_turns(turns)
     }
 
-    /// Turns that the planned layers hold, for wire of diameter `d`, m, where the scene has them.
-    pub(super) fn turns_of_layers(&self, d: f64, extent: &Extent) -> Option<f64> {
-        let planned = self.layers(d, extent, &mut Problems::default())?;
-        Some(planned.turns())
-    }
-
     /// Height of the planned layers of wire of diameter `d`, both in m, where the scene has them.
     pub(super) fn height_of_layers(&self, d: f64, extent: &Extent) -> Option<f64> {
         let planned = self.layers(d, extent, &mut Problems::default())?;

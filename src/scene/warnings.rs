@@ -193,10 +193,7 @@ impl SceneSettings {
             }
         }
         // (layers of a single turn have no neighbours)
-        let side_by_side = || {
-            let turns = self.turns_of_layers(wire.diameter, extent);
-            turns.is_none_or(|turns| turns > self.winding.layers)
-        };
+        let side_by_side = || law.held().is_none_or(|turns| turns > self.winding.layers);
         if let Some(pitch) = law.pitch()
             && pitch - wire.diameter > self.defects.gap * wire.diameter
             && side_by_side()
@@ -227,7 +224,7 @@ impl SceneSettings {
         }
         if by_law
             && self.traverse.mode == "helical"
-            && let Some(held) = self.turns_of_layers(wire.diameter, extent)
+            && let Some(held) = law.held()
             && planned - held > MORE
         {
             let (lead, dwell) = (self.traverse.lead.abs(), self.traverse.dwell_turns);
