@@ -19,6 +19,8 @@ const STEP: f64 = 50e-6;
 const WAY: f64 = 0.5e-3;
 /// Wire this many diameters back along itself is no partner.
 const OWN: f64 = 5.0;
+/// Older wire is looked at as far as this, m: a pair follows one passage, so that a second near it makes a point doubtful, touch or not.
+const NEAR: f64 = 1.5 * DIAMETER;
 
 fn law(mu: f64) -> ContactLaw {
     ContactLaw {
@@ -103,18 +105,21 @@ fn slow(q: &[V3], arc: &[f64]) -> (Vec<(f64, V3, usize)>, bool) {
     for point in 1..2 * (q.len() - 1) {
         let own = arc[point / 2] - OWN * DIAMETER;
         let mut of_point = 0;
-        for m in brute::minima(q, place(q, point), DIAMETER) {
+        for m in brute::minima(q, place(q, point), NEAR) {
             let at = arc[m.t as usize];
             // the point's own passage, with a foot that is no partner
             if at > own + 2e-3 {
                 continue;
             }
             doubtful |= at > own - 2e-3;
+            of_point += 1;
             let depth = DIAMETER - m.distance;
+            if depth <= 0.0 {
+                continue;
+            }
             // half through each other: nothing that a step may do
             doubtful |= depth > 0.5 * DIAMETER;
             all.push((depth, m.normal, point));
-            of_point += 1;
         }
         doubtful |= of_point > 1;
     }
