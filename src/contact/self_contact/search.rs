@@ -7,6 +7,7 @@ use crate::contact::own_wire::own_wire;
 use crate::contact::stencil::ContactPoint;
 use crate::math::{V3, polar_angle, wrap_to_pi};
 use std::f64::consts::TAU;
+use std::ops::RangeInclusive;
 
 /// Pairs are listed when nearer than this beyond touching, in wire diameters ... Chosen, like the next two.
 const SKIN: f64 = 0.25;
@@ -92,7 +93,7 @@ impl SelfContact {
                 if arc[other] > own || elsewhere {
                     return None;
                 }
-                let way = way + way_of(other);
+                let way = way + farthest_way(shaping(other, q.len()), way_of);
                 if gap > SKIN * diameter + FOLLOW * way {
                     unpaired.push(Unpaired {
                         point,
@@ -169,6 +170,16 @@ impl SelfContact {
     }
 }
 
+/// The nodes that shape a segment of a wire of so many.
+fn shaping(segment: usize, nodes: usize) -> RangeInclusive<usize> {
+    segment.saturating_sub(1)..=(segment + 1).min(nodes - 1)
+}
+
+/// The longest way of a node: no place that these nodes shape goes farther.
+fn farthest_way(nodes: RangeInclusive<usize>, way_of: impl Fn(usize) -> f64) -> f64 {
+    nodes.map(way_of).fold(0.0, f64::max)
+}
+
 impl PairScratch {
     /// Polar angles from the clamp, positive along the wire, and unstretched lengths of the nodes.
     fn measure_wire(&mut self, q: &[V3], rest: &[f64]) {
@@ -232,9 +243,9 @@ impl PairScratch {
             .iter()
             .find(|near| {
                 let weights = ContactPoint::of_number(near.point as usize).weights();
-                let other = near.other as usize;
                 let way = (weights.sum(now) - weights.sum(q)).norm();
-                way + (now[other] - q[other]).norm() > near.room
+                let other = shaping(near.other as usize, q.len());
+                way + farthest_way(other, |node| (now[node] - q[node]).norm()) > near.room
             })
             .map(|near| near.point as usize / 2)
     }
@@ -263,6 +274,27 @@ mod tests {
             V3::new(out * angle.cos(), 0.15 * s, out * angle.sin())
         };
         (0..345).map(at).collect()
+    }
+
+    /// The way of the older wire was that of one node: its neighbour could wave into the point unseen.
+    #[test]
+    fn older_wire_that_waves_beside_its_nearest_node_is_missed() {
+        let q: Vec<V3> = turn(0.0)
+            .iter()
+            .map(|q| q.component_mul(&V3::new(1.0, 9.0, 1.0)))
+            .collect();
+        let rest: Vec<f64> = q.windows(2).map(|e| (e[1] - e[0]).norm()).collect();
+        let (mut live, mut scratch) = (SelfContact::default(), PairScratch::default());
+        live.list(&mut scratch, (&q, &q), &rest, DIAMETER);
+        let near = *scratch
+            .unpaired
+            .last()
+            .expect("wire a turn back, too far off to be a pair");
+        assert_eq!(scratch.missed(&q, &q), None);
+        // the last point has the farthest partner: no other looks at the node beyond
+        let mut now = q.clone();
+        now[near.other as usize + 1].y += near.room + 0.1;
+        assert!(scratch.missed(&q, &now).is_some());
     }
 
     #[test]
