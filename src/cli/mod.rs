@@ -44,7 +44,8 @@ use std::process::ExitCode;
 /// Simulation of wire winding: an elastic-plastic rod on a turning core.
 ///
 /// Exit codes: 0 done, 1 a defect or check failed where asked for, 2 bad input.
-/// With what was computed on disk: 3 the solver gave up or the disk is full, 130 interrupted.
+/// With what was computed on disk: 3 the solver gave up, the run is in doubt, or a file could
+/// not be written; 130 interrupted.
 /// 4: `sweep --find-max` has no answer.
 #[derive(Debug, Parser)]
 #[command(name = "coilwind", version)]
@@ -56,8 +57,8 @@ struct Cli {
 // A new command is a file beside this one with its arguments and a function that runs it.
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, coil.vtp, core.vtp,
-    /// coil.png and report.html; or go on with a run that was stopped
+    /// Wind a scene and write summary.json, history.csv, turns.csv, stations.csv, defects.csv, scene.toml,
+    /// coil.vtp, core.vtp, coil.png and report.html; or go on with a run that was stopped
     Run(run::RunArgs),
     /// Wind every combination of values on all cores, and leave a table of verdicts; or find the
     /// highest value without a defect

@@ -267,11 +267,11 @@ table! {
     output(100, wire_tension, "N", "", -1e4, 1e5, 10.0, "tension in the free span at the nozzle exit");
     output(101, wire_tension_min, "N", "", -1e4, 1e5, 10.0, "smallest wire_tension since the last communication point");
     output(102, wire_tension_max, "N", "", -1e4, 1e5, 10.0, "largest wire_tension since the last communication point");
-    flag(103, defect_bulge, "wire stands off a face of the core by more than allowed");
+    flag(103, defect_bulge, "wire stands off the core, or the layer below, by more than allowed");
     flag(104, defect_gap, "neighbouring turns lie apart by more than allowed");
     flag(105, defect_overlap, "a turn has climbed on its neighbour or changed places with it");
-    flag(106, defect_break, "tension above the strength of the wire");
-    flag(107, defect_slack, "tension fell to zero");
+    flag(106, defect_break, "the wire has parted: tension above its strength, or a kink");
+    flag(107, defect_slack, "tension below the weight of half the free span");
     count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16, double turn 32, skipped groove 64, early layer jump 128, late layer jump 256, loose turn 512, overstretch 1024, collision 2048, runaway 4096");
     count(Output, 109, defect_count, "defects of coil and wire, of every kind");
     output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect, where it was found");
@@ -300,7 +300,7 @@ table! {
     count(Output, 132, defect_count_break, "breaks so far");
     count(Output, 133, defect_count_slack, "how often the wire went slack so far");
     count(Output, 134, defect_kind, "kind of the last defect, as in defect_code; 0: none so far");
-    output(135, defect_time, "s", "", -1e9, 1e9, 1.0, "time since the start of the run at which the wire of the last defect came to rest; for slack and break when it happened. It is found later, when the wire beside it is at rest too");
+    output(135, defect_time, "s", "", -1e9, 1e9, 1.0, "time since the start of the run at which the wire of the last defect came to rest; for slack, break, collision and runaway when it happened. It is found later, when the wire beside it is at rest too");
     output(136, defect_size, "m", "mm", -10.0, 10.0, 1e-4, "size of the last defect where it was found; 0 for what befalls the wire (slack, break, collision, runaway) and for a turn that is loose by its tension alone");
     output(137, tensioner_position, "m", "mm", -1e6, 1e6, 0.1, "wire let go by the tensioner since the start");
     output(138, tensioner_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire at the tensioner");
@@ -323,7 +323,7 @@ table! {
     count(Output, 153, defect_count_late_jump, "late layer jumps of the settled wire");
     count(Output, 154, defect_count_loose_turn, "loose turns of the settled wire");
     count(Output, 155, defect_count_overstretch, "overstretched turns of the settled wire");
-    count(Output, 156, defect_count_collision, "collisions of coil and nozzle so far");
+    count(Output, 156, defect_count_collision, "collisions of the nozzle with coil, flange or core so far");
     count(Output, 157, defect_count_runaway, "how often wire shot out of the nozzle so far");
 
     local(200, solver_steps, "1", "", 0.0, 1e18, 1e5, "time steps taken");
