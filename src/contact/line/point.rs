@@ -120,17 +120,29 @@ impl PointState {
         &mut self.touch[..WIRE + self.passages]
     }
 
-    /// Whether a touch before `slot` is with the passage at `segment`, or the wall at that triangle, already.
+    /// Whether another touch counts for the passage or the wall that the touch in `slot` is with.
     ///
-    /// Inside a sharp bend two feet merge as the point moves; they are one touch then. So do the feet on two walls where the
-    /// edge between them ends.
+    /// Inside a sharp bend two feet merge as the point moves; they are one touch then, the one with an anchor. So do the feet on
+    /// two walls where the edge between them ends.
     #[inline]
-    pub(super) fn has_before(&self, slot: usize, segment: u32) -> bool {
-        if slot >= WIRE {
-            return self.touch[WIRE..slot].iter().any(|t| t.start == segment);
+    pub(super) fn is_double(&self, slot: usize) -> bool {
+        let touch = &self.touch[slot];
+        if slot < WIRE && touch.start == TouchState::UNUSED.start {
+            return false;
         }
-        let mut before = self.touch[..slot].iter().zip(&self.near);
-        segment != TouchState::UNUSED.start && before.any(|(t, &near)| near && t.start == segment)
+        let alike = if slot < WIRE {
+            0..WIRE
+        } else {
+            WIRE..WIRE + self.passages
+        };
+        alike.into_iter().any(|other| {
+            let found = &self.touch[other];
+            let counts = match found.anchored == touch.anchored {
+                true => other < slot,
+                false => found.anchored,
+            };
+            counts && found.start == touch.start && (other >= WIRE || self.near[other])
+        })
     }
 
     /// Gives the nearest walls of a concave core a slot each, from their feet at `p` (m), the nearest first. A wall keeps the

@@ -91,20 +91,20 @@ impl LineContact<'_> {
         let mut any = false;
         let mut gap = f64::INFINITY;
         for slot in point.slots() {
-            let (depth, normal, segment) = depth_at(model, tube, slot, point.touch[slot].start, p);
-            point.touch[slot].start = segment;
-            let double = point.has_before(slot, segment);
+            let touch = &mut point.touch[slot];
+            (touch.depth, touch.normal, touch.start) = depth_at(model, tube, slot, touch.start, p);
+        }
+        for slot in point.slots() {
+            let double = point.is_double(slot);
             let touch = &mut point.touch[slot];
             if double {
                 touch.depth = 0.0;
                 touch.limit.lift();
                 continue;
             }
-            touch.depth = depth;
-            touch.normal = normal;
-            if depth <= 0.0 {
+            if touch.depth <= 0.0 {
                 touch.limit.lift();
-                gap = gap.min(-depth);
+                gap = gap.min(-touch.depth);
                 continue;
             }
             any = true;
@@ -152,7 +152,7 @@ impl LineContact<'_> {
         let (mut sum, mut held) = (ContactResponse::default(), f64::INFINITY);
         for slot in point.slots() {
             let touch = point.touch[slot];
-            if point.has_before(slot, touch.start) {
+            if point.is_double(slot) {
                 continue;
             }
             let (depth, normal, _) = depth_at(self.model, &self.scratch.tube, slot, touch.start, p);

@@ -305,7 +305,7 @@ impl LineContact<'_> {
             let known = point.touch[WIRE..WIRE + point.passages]
                 .iter()
                 .filter(|t| t.start.abs_diff(foot.segment) < SAME_PASSAGE)
-                .min_by_key(|t| t.start.abs_diff(foot.segment));
+                .min_by_key(|t| (t.start.abs_diff(foot.segment), !t.anchored));
             next[count] = known.copied().unwrap_or(TouchState::UNUSED);
             next[count].start = foot.segment;
             count += 1;
