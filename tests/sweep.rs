@@ -104,7 +104,7 @@ fn rows_stand_in_the_order_of_the_grid_whatever_the_threads() {
     let map = std::fs::read_to_string(one.join("map.svg")).unwrap();
     assert_eq!(map, std::fs::read_to_string(three.join("map.svg")).unwrap());
     assert_eq!(
-        map.matches("\n0 of 2\n").count(),
+        map.matches("\nnot judged\n").count(),
         4,
         "a cell a point: {map}"
     );
@@ -257,7 +257,7 @@ fn what_is_wound_is_not_wound_again() {
         (&["--over", "spindle.speed=60:120:2"][..], "another over"),
         (
             &[over[0], over[1], "--set", "wire.material=copper"],
-            "another scene",
+            "another scene: wire.material",
         ),
         (&[over[0], over[1], "--ensemble", "2"], "another ensemble"),
     ] {
@@ -311,6 +311,33 @@ fn the_map_tells_the_tolerance_that_was_used() {
         let (_, rest) = page.split_once("[\"solver.tolerance\",\"").unwrap();
         assert!(rest.starts_with(told), "{name}: {}", &rest[..60]);
     }
+}
+
+/// Cells of such runs were blue, free of defects.
+#[test]
+fn runs_that_judge_nothing_are_not_free_of_defects_on_the_map() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    sweep.args(["sweep", "fig8", "--set", "spindle.turns=0.3"]);
+    sweep.args(["--over", "spindle.speed=60:61:4"]);
+    sweep.args(["--over", "tensioner.tension=10:15:2", "--out"]);
+    sweep.arg(&out);
+    let said = complaint(sweep, 0);
+    assert!(
+        said.contains("in 8 of 8 runs no turn came to rest"),
+        "{said}"
+    );
+    let table = rows(&out.join("ensemble.csv"));
+    assert!(table.iter().all(|row| row["unjudged_share"] == "1"));
+    let map = std::fs::read_to_string(out.join("map.svg")).unwrap();
+    assert!(map.contains("\nnot judged\n"), "{map}");
+    assert!(
+        map.contains("#969696") && !map.contains("#D6E8F4"),
+        "grey, not blue"
+    );
+    // (a third of a step is no number that anyone reads)
+    assert!(map.contains("60.3333") && !map.contains("60.33333"));
 }
 
 #[test]

@@ -7,11 +7,11 @@ use super::failure::Failure;
 use super::folder;
 use super::members;
 use super::run::{Judged, RunArgs, wind_one};
+use super::runs_bar::runs_bar;
 use super::shell::{begin_again, resume_command};
 use super::terminal::{print, stop_flag};
 use coilwind::measure::{DefectKind, UNJUDGED, Verdict};
 use coilwind::settings::SceneSettings;
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -180,7 +180,7 @@ fn judged(directory: &Path) -> Result<Judged, Failure> {
 /// Winds the members that are open, and tells what came of all.
 fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failure> {
     let count = all.len();
-    let bar = bar(args.quiet, count as u64);
+    let bar = runs_bar(args.quiet, count as u64);
     let stop = stop_flag();
     let wind = |member: Member| {
         let ended = match member {
@@ -269,16 +269,4 @@ fn words(counts: &Counts) -> String {
         format!("{} {count} of {all} ({percent:.0} %)", word(key))
     };
     counts.iter().map(share).collect::<Vec<_>>().join(", ")
-}
-
-fn bar(quiet: bool, count: u64) -> ProgressBar {
-    let bar = match quiet {
-        true => ProgressBar::hidden(),
-        false => ProgressBar::new(count),
-    };
-    // The template is constant; a mistake in it would show as the default style.
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} runs  {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }

@@ -15,6 +15,7 @@ mod motion;
 mod progress;
 mod report;
 mod run;
+mod runs_bar;
 mod scene;
 mod shell;
 mod signals;

@@ -2,6 +2,7 @@
 
 use super::failure::Failure;
 use super::folder;
+use super::runs_bar::runs_bar;
 use super::scene::SceneArgs;
 use super::shell::quoted;
 use super::sweep_answer::{Answer, Seen};
@@ -18,7 +19,7 @@ use super::{
 };
 use clap::Args;
 use clap::builder::RangedI64ValueParser;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -84,7 +85,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         before: ledger.count(),
         answer: None,
         ledger,
-        bar: bar(args.quiet),
+        bar: runs_bar(args.quiet, 0),
         stop: stop_flag(),
         pool,
         grid,
@@ -297,18 +298,6 @@ impl Work {
         let ensemble = statistics::at(&self.grid, self.ledger.rows(), point)?;
         Some(format!("{}: {}\n", self.grid.name(point), ensemble.line()))
     }
-}
-
-fn bar(quiet: bool) -> ProgressBar {
-    let bar = match quiet {
-        true => ProgressBar::hidden(),
-        false => ProgressBar::new(0),
-    };
-    // The template is constant; a mistake in it would show as the default style.
-    if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} runs  {eta} left") {
-        bar.set_style(style);
-    }
-    bar
 }
 
 /// The command that goes on, as a shell takes it.

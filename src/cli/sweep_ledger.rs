@@ -8,7 +8,7 @@ use super::sweep_row::{COLUMNS, Row, Rows};
 use super::sweep_statistics as statistics;
 use coilwind::output::{write_summary, write_whole_bytes};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -197,8 +197,45 @@ fn difference(plan: &Value, found: Option<&Value>, begun: bool) -> Option<String
     }
     let names = plan.as_object()?.keys();
     let names = names.filter(|name| plan[name.as_str()] != found[name.as_str()]);
-    let names: Vec<&str> = names.map(String::as_str).collect();
-    (!names.is_empty()).then(|| format!("another {}", names.join(", ")))
+    let told = names.map(|name| match name.as_str() {
+        "scene" => scene_difference(&plan[name.as_str()], &found[name.as_str()]),
+        other => other.to_owned(),
+    });
+    let told: Vec<String> = told.collect();
+    (!told.is_empty()).then(|| format!("another {}", told.join(", ")))
+}
+
+/// The keys in which the scenes of two plans differ.
+fn scene_difference(a: &Value, b: &Value) -> String {
+    let parsed = |text: &Value| text.as_str()?.parse::<toml::Table>().ok();
+    let (Some(a), Some(b)) = (parsed(a), parsed(b)) else {
+        return "scene".to_owned();
+    };
+    let mut keys = BTreeSet::new();
+    for (one, other) in [(&a, &b), (&b, &a)] {
+        for (key, _) in leaves(one).difference(&leaves(other)) {
+            keys.insert(key.clone());
+        }
+    }
+    let keys: Vec<String> = keys.into_iter().collect();
+    format!("scene: {}", keys.join(", "))
+}
+
+/// Every key of a scene with its value as text.
+fn leaves(table: &toml::Table) -> BTreeSet<(String, String)> {
+    let mut all = BTreeSet::new();
+    for (key, value) in table {
+        match value {
+            toml::Value::Table(inner) => {
+                let inner = leaves(inner).into_iter();
+                all.extend(inner.map(|(name, text)| (format!("{key}.{name}"), text)));
+            }
+            other => {
+                all.insert((key.clone(), other.to_string()));
+            }
+        }
+    }
+    all
 }
 
 /// Holds the plan of a sweep that goes on; an error where another sweep holds it.

@@ -1,6 +1,7 @@
 //! `map.svg`: the process map of a sweep over two variables, a cell a point of the grid.
 
 use super::failure::Failure;
+use super::members::rounded;
 use super::sweep_files::MAP;
 use super::sweep_grid::Grid;
 use super::sweep_page as page;
@@ -17,10 +18,12 @@ const CELL: (u32, u32) = (92, 52);
 const MARGIN: (u32, u32) = (110, 110);
 /// Cells along an axis from which on texts would not be read: the table has the numbers.
 const MOST: u32 = 60;
-/// Colours of no defect, of a defect in every run, and of a solver that gave up; told apart also by the colour-blind.
+/// Colours of no defect, of a defect in every run, and of runs that tell nothing; told apart also by the colour-blind.
 const FREE: [f64; 3] = [214.0, 232.0, 244.0];
 const DEFECT: [f64; 3] = [213.0, 94.0, 0.0];
-const FAILED: [f64; 3] = [150.0, 150.0, 150.0];
+const UNKNOWN: [f64; 3] = [150.0, 150.0, 150.0];
+/// Digits of a value at an axis: what a cell has room for.
+const LABEL_DIGITS: usize = 6;
 
 /// Draws the map, as a picture and as a page, where two variables are swept and it can be read; tells whether.
 ///
@@ -68,7 +71,7 @@ fn draw(grid: &Grid, rows: &Rows) -> Result<String, String> {
             let index = at.round();
             let whole = (at - index).abs() < 1e-6 && (0.0..f64::from(range.count)).contains(&index);
             match whole {
-                true => range.value(index as u32).to_string(),
+                true => rounded(range.value(index as u32), LABEL_DIGITS).to_string(),
                 false => String::new(),
             }
         };
@@ -103,25 +106,28 @@ fn draw(grid: &Grid, rows: &Rows) -> Result<String, String> {
     Ok(text)
 }
 
-/// From free to defect by the share of runs, and grey by the share that failed.
+/// From free to defect by the share of runs, and grey by the share that failed or could not be judged.
 fn colour(ensemble: &Ensemble) -> RGBColor {
-    let (bad, failed) = (ensemble.defect_share(), ensemble.failed_share());
+    let bad = ensemble.defect_share();
+    let unknown = ensemble.failed_share() + ensemble.unjudged_share();
     let part = |k: usize| {
         let judged = FREE[k] + bad * (DEFECT[k] - FREE[k]);
-        (judged + failed * (FAILED[k] - judged)).round() as u8
+        (judged + unknown * (UNKNOWN[k] - judged)).round() as u8
     };
     RGBColor(part(0), part(1), part(2))
 }
 
 /// What a cell says: `2 of 8`, and the gap.
 fn words(ensemble: &Ensemble) -> [String; 2] {
-    let failed = match ensemble.failed {
-        0 => String::new(),
-        n => format!(" ({n} failed)"),
-    };
+    let (defects, members) = (ensemble.defects, ensemble.members);
     let gap = ensemble.gap_mean_d;
     [
-        format!("{} of {}{failed}", ensemble.defects, ensemble.members),
+        match (ensemble.failed, ensemble.unjudged) {
+            (0, 0) => format!("{defects} of {members}"),
+            (0, unjudged) if unjudged == members => "not judged".to_owned(),
+            (0, unjudged) => format!("{defects} of {} judged", members - unjudged),
+            (failed, _) => format!("{defects} of {members} ({failed} failed)"),
+        },
         gap.map_or_else(String::new, |gap| format!("{gap:.3} d")),
     ]
 }

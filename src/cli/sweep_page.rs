@@ -48,6 +48,7 @@ fn data(grid: &Grid, rows: &Rows) -> Value {
             "members": ensemble.members,
             "defects": ensemble.defects,
             "failed": ensemble.failed,
+            "unjudged": ensemble.unjudged,
             "gap_mean_d": ensemble.gap_mean_d,
             "gap_deviation_d": ensemble.gap_deviation_d,
             "gap_worst_d": gaps.reduce(f64::max),

@@ -7,10 +7,11 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Columns after those of the swept variables.
-const COLUMNS: [&str; 6] = [
+const COLUMNS: [&str; 7] = [
     "members",
     "defect_share",
     "failed_share",
+    "unjudged_share",
     "gap_mean_d",
     "gap_deviation_d",
     "verdicts",
@@ -24,6 +25,8 @@ pub(super) struct Ensemble {
     pub(super) defects: usize,
     /// runs that the solver gave up
     pub(super) failed: usize,
+    /// runs that ended as planned, and in which nothing could be judged
+    pub(super) unjudged: usize,
     /// mean over the runs of their largest mean gap, in wire diameters
     pub(super) gap_mean_d: Option<f64>,
     /// standard deviation of the same between runs, of a sample
@@ -54,6 +57,7 @@ impl Ensemble {
             members: rows.len(),
             defects: rows.iter().filter(|row| row.defect).count(),
             failed: rows.iter().filter(|row| row.failed()).count(),
+            unjudged: rows.iter().filter(|row| row.is_unjudged()).count(),
             gap_mean_d: mean,
             gap_deviation_d: deviation,
             verdicts,
@@ -68,6 +72,11 @@ impl Ensemble {
     /// Share of the runs that the solver gave up.
     pub(super) fn failed_share(&self) -> f64 {
         self.failed as f64 / self.members as f64
+    }
+
+    /// Share of the runs in which nothing could be judged.
+    pub(super) fn unjudged_share(&self) -> f64 {
+        self.unjudged as f64 / self.members as f64
     }
 
     /// `aligned 6, gap 2`.
@@ -116,6 +125,7 @@ pub(super) fn table(
             ensemble.members.to_string(),
             ensemble.defect_share().to_string(),
             ensemble.failed_share().to_string(),
+            ensemble.unjudged_share().to_string(),
             shown(ensemble.gap_mean_d),
             shown(ensemble.gap_deviation_d),
             ensemble.verdicts(),

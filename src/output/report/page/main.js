@@ -1,6 +1,6 @@
 // The page: reads the data, and lays out one run, or two side by side.
 
-const GOOD = ["aligned", "single"];
+const GOOD = ["aligned"];
 /** Kinds after which no more is wound. */
 const ENDS = new Set(["break", "collision", "runaway"]);
 const BAD = DEFECTS.map((kind) => kind.name);
