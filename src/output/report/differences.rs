@@ -74,11 +74,14 @@ fn difference(
     })
 }
 
-/// A value in the unit that people use.
+/// A value in the unit that people use, or what a 0 stands for.
 fn shown(row: &Variable, value: &Value) -> String {
     let Value::Real(x) = value else {
         return value.to_string();
     };
+    if let Some((_, zero)) = row.description.split_once("; 0: ").filter(|_| *x == 0.0) {
+        return zero.split(';').next().unwrap_or(zero).to_owned();
+    }
     let unit = units().iter().find(|unit| unit.name == row.unit);
     let display = unit.and_then(|unit| unit.display.iter().find(|it| it.0 == row.display_unit));
     let (name, factor, offset) = display.copied().unwrap_or((row.unit, 1.0, 0.0));
@@ -127,6 +130,19 @@ mod tests {
                 .starts_with("diameter of the bare round wire")
         );
         assert_eq!(differences(one.path(), one.path()), Some(Vec::new()));
+    }
+
+    /// A yield stress that the material gives was told as 0 MPa.
+    #[test]
+    fn a_zero_that_stands_for_something_is_told_as_that() {
+        let [one, other] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+        for (folder, text) in [(&one, ""), (&other, "[wire]\nyield_stress_MPa = 100\n")] {
+            fs::write(folder.path().join("scene.toml"), text).expect("a file");
+        }
+        let found = differences(one.path(), other.path()).expect("two scenes");
+        let told: Vec<_> = found.iter().map(|d| (d.name, &d.values)).collect();
+        let values = ["of the material".to_owned(), "100 MPa".to_owned()];
+        assert_eq!(told, [("wire.yield_stress", &values)]);
     }
 
     /// Keys of a box stood among the differences from a cylinder, and those of a mesh too.

@@ -127,6 +127,10 @@ function product(run) {
     ["Turns at rest", fixed(p.turns, 2), ""], ["Layers", p.layers, ""], ["Wire length", digits(p.wire_length_m, 4), "m"],
     ["Resistance at 20 °C", ...ohm], ...fill(p), ["Wire diameter", digits(1e3 * p.wire_diameter_m), "mm"],
   ];
+  if (run.history) {
+    const [least, most] = [Math.min(...run.history.tension_min), Math.max(...run.history.tension_max)];
+    figures.push(["Tension at the nozzle", `${digits(least)} to ${digits(most)}`, "N"]);
+  }
   if (run.enamelled) figures.push(["Over the enamel", digits(1e3 * p.enamelled_diameter_m), "mm"]);
   if (p.clearance_m != null) figures.push(["Clearance in window", digits(1e3 * p.clearance_m), "mm"]);
   return el("dl", { class: "product" }, ...figures.map(([name, value, unit]) =>
