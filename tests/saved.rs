@@ -1,12 +1,15 @@
 //! A run saved as bytes goes on, to the bit, as if nothing had happened.
 
 mod common;
+#[path = "common/stl.rs"]
+mod stl;
 
 use coilwind::scene::Scene;
 use coilwind::signals::Inputs;
 use coilwind::simulation::{RestoreError, Simulation};
 use common::fig8;
 use std::f64::consts::TAU;
+use stl::write_revolved;
 
 /// A machine that speeds up evenly over a quarter of the steps and runs on at `speed`, rad/s.
 struct Machine {
@@ -232,13 +235,33 @@ fn no_other_bytes_are_taken() {
     assert!(error.to_string().contains("version 26"), "{error}");
     let wider = fig8(&[("core.width_x_mm", "14")]);
     let error = Simulation::from_bytes(&wider, &good).expect_err("another core");
-    assert!(matches!(error, RestoreError::OtherCore), "{error}");
+    assert!(
+        matches!(error, RestoreError::OtherCore { file: None }),
+        "{error}"
+    );
     let faster = fig8(&[("spindle.ramp_turns", "0.3")]);
     let error = Simulation::from_bytes(&faster, &good).expect_err("another motion");
     assert!(matches!(error, RestoreError::OtherMotion), "{error}");
     let verlet = fig8(&[("solver.integrator", "verlet")]);
     let error = Simulation::from_bytes(&verlet, &good).expect_err("another method");
     assert!(matches!(error, RestoreError::Impossible(_)), "{error}");
+}
+
+/// "the core's surface is not the one that the state was saved with; put the file of the mesh back" named no file.
+#[test]
+fn a_mesh_that_has_changed_is_named() {
+    let file = std::env::temp_dir().join(format!("coilwind_mesh_{}.stl", std::process::id()));
+    let path = file.display().to_string();
+    let drum = |radius: f64| [[-15.0, radius], [15.0, radius]];
+    write_revolved(&file, &drum(10.0), 48);
+    let scene = fig8(&[("core.shape", "mesh"), ("core.file", &path)]);
+    let saved = bytes(&Simulation::new(&scene).expect("starts"));
+    Simulation::from_bytes(&scene, &saved).expect("restores");
+    write_revolved(&file, &drum(9.5), 48);
+    let error = Simulation::from_bytes(&scene, &saved).expect_err("another core");
+    std::fs::remove_file(&file).expect("removed");
+    assert!(error.to_string().contains(&path), "{error}");
+    assert!(error.to_string().contains("core.file"), "{error}");
 }
 
 /// Changed bytes are refused or run; nothing in them makes the program fall over.

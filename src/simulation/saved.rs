@@ -12,10 +12,11 @@ use super::talk::Talk;
 use super::{Simulation, Winding};
 use crate::integrate::{SolverStatistics, Stepper};
 use crate::measure::SavedCoil;
-use crate::scene::Scene;
+use crate::scene::{Core, Scene};
 use crate::system::State;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Changes whenever the bytes of the same state do.
@@ -42,11 +43,12 @@ pub enum RestoreError {
     /// readable, but no state of a run
     #[error("the state contradicts itself: {0}")]
     Impossible(&'static str),
-    /// the scene's mesh file has changed since
-    #[error(
-        "the core's surface is not the one that the state was saved with; put the file of the mesh back to go on"
-    )]
-    OtherCore,
+    /// the scene's core is another one, or its mesh file has changed since
+    #[error("{}", other_core(.file.as_deref()))]
+    OtherCore {
+        /// file of the mesh; nothing where the core has none
+        file: Option<PathBuf>,
+    },
     /// the file of a table has changed since
     #[error(
         "the motion is not the one that the state was saved with: the table of traverse.file or spindle.file has changed; put it back to go on"
@@ -55,6 +57,19 @@ pub enum RestoreError {
     /// the scene does not start
     #[error("the scene of the state does not start: {0}")]
     Scene(#[from] super::SimError),
+}
+
+/// What to do about a core that the state was not saved with.
+fn other_core(file: Option<&Path>) -> String {
+    match file {
+        Some(file) => format!(
+            "the mesh in {} (core.file) is not the one that the state was saved with; put that one back to go on",
+            file.display()
+        ),
+        None => {
+            "the core is not the one that the state was saved with; set the core section as it was to go on".to_owned()
+        }
+    }
 }
 
 /// All that the scene does not give.
@@ -114,7 +129,11 @@ impl Simulation {
         }
         let mut winding = Winding::new(scene)?;
         if saved.winding.core != winding.core_checksum() {
-            return Err(RestoreError::OtherCore);
+            let file = match &scene.core {
+                Core::Mesh { path, .. } => Some(path.clone()),
+                _ => None,
+            };
+            return Err(RestoreError::OtherCore { file });
         }
         if saved.winding.motion != winding.motion_profile.checksum() {
             return Err(RestoreError::OtherMotion);
