@@ -52,7 +52,7 @@ impl Inputs {
 /// What the simulator tells the machine at a communication point.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Outputs {
-    /// tension in the free span at the nozzle exit, N
+    /// tension in the free span at the nozzle exit, N; 0 at the end of the step in which winding ends, and from then on
     pub wire_tension: f64,
     /// smallest wire_tension since the last communication point, N
     pub wire_tension_min: f64,
@@ -92,7 +92,7 @@ pub struct Outputs {
     pub spindle_angle: f64,
     /// moment of the wire on the core about +y, N m; negative when it resists positive speed
     pub spindle_torque: f64,
-    /// speed of the wire leaving the nozzle, m/s
+    /// speed of the wire leaving the nozzle, m/s; 0 at the end of the step in which winding ends, and from then on
     pub feed_speed: f64,
     /// wire that has left the nozzle since the start, m
     pub fed_length: f64,

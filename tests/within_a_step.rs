@@ -149,6 +149,37 @@ fn a_broken_wire_has_no_tension_in_any_output() {
     }
 }
 
+/// The tension told for the step of the break was that which broke the wire, or 0 where another step of the solver followed in it;
+/// so were the speed at the nozzle and the torque.
+#[test]
+fn the_step_in_which_the_wire_breaks_ends_without_tension() {
+    for beyond in [false, true] {
+        for step in [1e-5, 1e-4, 1e-3, 5e-3] {
+            let mut sim = wound(100.0, 0.7e-3, 20);
+            sim.step_beyond(beyond);
+            let mut inputs = sim.inputs();
+            inputs.tension_setpoint = 90.0;
+            let mut before = *sim.outputs();
+            while !sim.outputs().defect_break {
+                before = *sim.outputs();
+                sim.advance(inputs, step).unwrap();
+                assert!(sim.outputs().spindle_angle < 10.0 * TAU);
+            }
+            let o = *sim.outputs();
+            let told = format!("{beyond} {step}: {o:?}");
+            assert_eq!((o.wire_tension, o.spindle_torque), (0.0, 0.0), "{told}");
+            assert_eq!((o.feed_speed, o.tensioner_speed), (0.0, 0.0), "{told}");
+            assert_eq!(o.wire_tension_min, 0.0, "{told}");
+            // (what broke it stands in the step, and what was told before rose to it)
+            assert!(o.wire_tension_max > 80.0, "{told}");
+            assert!(o.wire_tension_max >= before.wire_tension, "{told}");
+            if step < 1e-4 {
+                assert!(before.wire_tension > 60.0, "{told}: {before:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn every_kind_of_defect_has_its_count_and_its_size() {
     let sim = wound(100.0, 1.2e-3, 160);

@@ -2,7 +2,28 @@
 
 use super::Winding;
 use crate::math::{Spin, V3, turn_about_y};
+use crate::signals::Outputs;
 use crate::system::Drive;
+
+/// What ends with the wire: its tension at the nozzle, what it does to the spindle, and how fast it comes.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pull {
+    tension: f64,
+    torque: f64,
+    torque_total: f64,
+    speed: f64,
+    tensioner_speed: f64,
+}
+
+impl Pull {
+    pub(super) fn write(self, o: &mut Outputs) {
+        o.wire_tension = self.tension;
+        o.spindle_torque = self.torque;
+        o.spindle_torque_total = self.torque_total;
+        o.feed_speed = self.speed;
+        o.tensioner_speed = self.tensioner_speed;
+    }
+}
 
 impl Winding {
     /// Gives the machine the motion at the start of `drive`. The nozzle holds no wire that has parted.
@@ -56,7 +77,6 @@ impl Winding {
     /// Outputs of parted wire: it neither pulls nor moves on, and measures stay those of the moment it broke.
     pub(super) fn update_broken(&mut self) {
         self.raise_flags();
-        let torque = -self.torque_of_inertia();
         let o = &mut self.run.outputs;
         let angle = self.sys.state.spindle.angle - self.run.angle0;
         // (the place where wire was last laid goes round with the core)
@@ -64,10 +84,39 @@ impl Winding {
         let layon = turned.to_lab(V3::new(o.layon_x, 0.0, o.layon_z));
         (o.layon_x, o.layon_z) = (layon.x, layon.z);
         o.spindle_angle = angle;
-        (o.wire_tension, o.spindle_torque, o.feed_speed) = (0.0, 0.0, 0.0);
-        o.meet_tension(0.0);
-        o.tensioner_speed = 0.0;
         o.nozzle_y = self.sys.state.support[1].point.y;
-        o.spindle_torque_total = torque;
+        self.let_go();
+    }
+
+    /// Tells of wire that neither pulls nor moves.
+    pub(super) fn let_go(&mut self) {
+        let torque_total = -self.torque_of_inertia();
+        let o = &mut self.run.outputs;
+        Pull {
+            torque_total,
+            ..Pull::default()
+        }
+        .write(o);
+        o.meet_tension(0.0);
+    }
+
+    /// Outputs at the end of a step of the method; where winding has ended in it, with the pull that the wire had until then.
+    pub(super) fn until_it_parted(&self) -> Outputs {
+        let mut outputs = self.run.outputs;
+        self.pull().write(&mut outputs);
+        outputs
+    }
+
+    /// The pull of the wire as the last step of the method left it.
+    pub(super) fn pull(&self) -> Pull {
+        let state = &self.sys.state;
+        let feed = state.feed.unwrap_or_default();
+        Pull {
+            tension: self.wire_tension(),
+            torque: state.torque_on_core,
+            torque_total: state.torque_on_core - self.torque_of_inertia(),
+            speed: feed.rate,
+            tensioner_speed: feed.paid_rate,
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! What a model of the machine needs: torque with inertia, and where the wire is laid.
+//! What a model of the machine needs: where the wire is laid.
 
 use super::Winding;
 use super::layon::LayOn;
@@ -13,7 +13,6 @@ pub(super) struct Machine {
     clearance: f64,
     resistance: f64,
     inertia: f64,
-    torque: f64,
 }
 
 impl Machine {
@@ -23,7 +22,6 @@ impl Machine {
         o.flange_clearance = self.clearance;
         o.wire_resistance = self.resistance;
         o.coil_inertia = self.inertia;
-        o.spindle_torque_total = self.torque;
     }
 }
 
@@ -40,7 +38,6 @@ impl Winding {
             clearance: way.map_or((y - low).min(high - y), f64::abs) - self.scene.wire.radius(),
             resistance: self.resistance_of(layon.arc, layon.added_by_stretch),
             inertia: self.coil_inertia(),
-            torque: self.sys.state.torque_on_core - self.torque_of_inertia(),
         }
     }
 

@@ -147,6 +147,7 @@ impl Winding {
         // a flag that holds in the step in which winding ends holds no longer after it
         self.run.was_slack &= !self.run.over;
         let layon = self.layon();
+        let pull = self.pull();
         let residual = self
             .sys
             .energy_residual(self.stepper.is_staggered().then_some(self.run.last_step));
@@ -159,21 +160,17 @@ impl Winding {
         let machine = self.for_the_machine(&layon);
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;
-        o.wire_tension = tension;
         // A change of the mesh may have moved it since the last look.
         o.meet_tension(tension);
         o.turns_wound = layon.angle.max(0.0) / std::f64::consts::TAU;
         o.turns_settled = self.coil.turns_settled();
         o.layer = self.coil.layer().max(1) as i32;
         o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
-        o.spindle_torque = self.sys.state.torque_on_core;
-        o.feed_speed = feed.rate;
         o.fed_length = feed.fed;
         o.free_length = layon.free_length;
         o.layon_position = layon.point.y;
         o.layon_angle = layon.angle;
         o.tensioner_position = feed.paid - self.run.paid0;
-        o.tensioner_speed = feed.paid_rate;
         o.nozzle_angle = nozzle_angle;
         o.wire_length = layon.arc;
         o.nozzle_y = self.sys.state.support[1].point.y;
@@ -187,6 +184,10 @@ impl Winding {
         o.solver_rejects = (statistics.rejects + statistics.newton_failures) as f64;
         o.live_nodes = rod.nodes() as i32;
         o.energy_residual = residual;
+        pull.write(&mut self.run.outputs);
+        if self.run.over {
+            self.let_go();
+        }
         self.watch_for_doubt(residual);
     }
 

@@ -150,7 +150,10 @@ impl Served {
 
     /// Takes note of the end of a step within the communication step.
     pub(super) fn pass(&mut self, winding: &Winding) {
-        self.outputs.meet_tension(winding.run.outputs.wire_tension);
+        let o = &winding.run.outputs;
+        [o.wire_tension, winding.wire_tension()]
+            .into_iter()
+            .for_each(|tension| self.outputs.meet_tension(tension));
         self.outputs.meet_depth(winding.sys.state.depth);
         raise_as(&mut self.outputs, &winding.run.outputs);
     }
@@ -167,7 +170,7 @@ impl Served {
         let mut outputs = match end {
             Some(end) => {
                 let share = (self.time - now.run.time) / (end.run.time - now.run.time);
-                between(start, &end.run.outputs, share)
+                between(start, &end.until_it_parted(), share)
             }
             None => *start,
         };

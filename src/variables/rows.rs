@@ -264,7 +264,7 @@ table! {
     input(5, brake_torque, "N.m", "N.mm", 0.0, 1e4, 0.1, "torque that holds the tensioner's wheel back; over tensioner.radius it adds to tension_setpoint");
     input(6, tensioner_damping, "N.s/m", "", 0.0, 1e4, 1.0, "damper on the tensioner beside tensioner.damping: pull per speed of the wire that it lets go");
 
-    output(100, wire_tension, "N", "", -1e4, 1e5, 10.0, "tension in the free span at the nozzle exit");
+    output(100, wire_tension, "N", "", -1e4, 1e5, 10.0, "tension in the free span at the nozzle exit; 0 at the end of the step in which winding ends, and from then on");
     output(101, wire_tension_min, "N", "", -1e4, 1e5, 10.0, "smallest wire_tension since the last communication point");
     output(102, wire_tension_max, "N", "", -1e4, 1e5, 10.0, "largest wire_tension since the last communication point");
     flag(103, defect_bulge, "wire stands off the core, or the layer below, by more than allowed");
@@ -284,7 +284,7 @@ table! {
     count(Output, 117, layer, "layer being wound, from 1");
     output(118, spindle_angle, "rad", "deg", -1e7, 1e7, 10.0, "core angle from the start position");
     output(119, spindle_torque, "N.m", "N.mm", -1e4, 1e4, 0.1, "moment of the wire on the core about +y; negative when it resists positive speed");
-    output(120, feed_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire leaving the nozzle");
+    output(120, feed_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire leaving the nozzle; 0 at the end of the step in which winding ends, and from then on");
     output(121, fed_length, "m", "", -1e6, 1e6, 0.1, "wire that has left the nozzle since the start");
     output(122, free_length, "m", "mm", -1.0, 1e3, 5e-2, "wire between lift-off and nozzle");
     output(123, layon_position, "m", "mm", -10.0, 10.0, 1e-2, "where the wire meets the coil, along y");
