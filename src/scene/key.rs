@@ -10,6 +10,9 @@ use std::collections::btree_map::Entry;
 /// Similarity (Jaro-Winkler) from which a guess helps more than it misleads; chosen.
 const SIMILAR: f64 = 0.8;
 
+/// Letters of the shortest key that one wrong letter leaves recognisable; chosen.
+const SHORTEST: usize = 3;
+
 /// A key understood: the row, and how the number becomes SI.
 pub(super) struct Key {
     pub(super) variable: &'static Variable,
@@ -129,7 +132,7 @@ impl<'a> Unknown<'a> {
 
     /// The key that was meant, as far as one can guess. A key of the same section is nearer than any other.
     fn suggestion(&self) -> Option<String> {
-        let in_section = || nearest(self.stem, self.of_unit()).map(|leaf| self.written(leaf));
+        let in_section = || nearest(self.stem, self.in_section()).map(|leaf| self.written(leaf));
         let misspelt_unit = || {
             let found = nearest(self.leaf, self.siblings().map(|(leaf, _)| leaf))?;
             Some(format!("{}.{found}", self.section))
@@ -144,6 +147,8 @@ impl<'a> Unknown<'a> {
         let similar = || nearest(self.name, parameters().map(|v| v.name)).map(str::to_owned);
         self.section_itself()
             .or_else(|| self.of_half_or_double())
+            .or_else(|| self.of_same_axis().map(|leaf| self.written(leaf)))
+            .or_else(|| self.of_one_letter().map(|leaf| self.written(leaf)))
             .or_else(of_word)
             .or_else(in_section)
             .or_else(misspelt_unit)
@@ -165,6 +170,36 @@ impl<'a> Unknown<'a> {
         };
         let found = self.of_unit().any(|sibling| sibling == leaf);
         (leaf != self.stem && found).then(|| format!("{}, {share}", self.written(&leaf)))
+    }
+
+    /// The only leaf along the axis that the key ends in: the word before it may name another side, as in `width_z`.
+    fn of_same_axis(&self) -> Option<&'static str> {
+        let axis = |text: &str| {
+            let (before, axis) = text.rsplit_once('_')?;
+            let table = before.rsplit_once('.').map_or("", |(table, _)| table);
+            matches!(axis, "x" | "y" | "z").then(|| (table.to_owned(), axis.to_owned()))
+        };
+        let wanted = axis(self.stem)?;
+        let mut along = self
+            .of_unit()
+            .filter(|leaf| axis(leaf).as_ref() == Some(&wanted));
+        along.next().filter(|_| along.next().is_none())
+    }
+
+    /// A leaf of the section that is one letter away, or two letters that stand the other way round.
+    fn of_one_letter(&self) -> Option<&'static str> {
+        let short = self.stem.chars().count() < SHORTEST;
+        let near = |leaf: &&str| !short && strsim::damerau_levenshtein(self.stem, leaf) == 1;
+        self.in_section().find(near)
+    }
+
+    /// The leaves of the section that can have the unit that was given; without one also its tables.
+    fn in_section(&self) -> impl Iterator<Item = &'static str> {
+        let tables = self
+            .siblings()
+            .filter_map(|(leaf, _)| leaf.rsplit_once('.'));
+        let tables = tables.map(|(table, _)| table);
+        self.of_unit().chain(tables.filter(|_| self.unit.is_none()))
     }
 
     /// The first leaf of the section that has each word of the key among its own.

@@ -2,6 +2,7 @@
 
 use crate::common::{assert_says, parse, refused, unread};
 use coilwind::settings::SceneSettings;
+use coilwind::variables::{Causality, Kind, by_name, table};
 
 #[test]
 fn unknown_names_come_with_a_suggestion() {
@@ -45,6 +46,17 @@ fn a_key_of_the_same_section_is_suggested_first() {
         ("wire.radius_um", "wire.diameter_um, twice the radius?"),
         ("nozzle.diameter_mm", "nozzle.outer_diameter_mm?"),
         ("core.flange.distance_mm", "core.flange.inner_distance_mm?"),
+        // the side that the letter names, and not the one that the word does on another axis
+        ("core.width_z_mm", "core.height_z_mm?"),
+        ("core.depth_z", "core.height_z?"),
+        ("core.size_z", "core.height_z?"),
+        ("core.width_y", "core.length_y?"),
+        ("core.lenght_y", "core.length_y?"),
+        ("core.height_x_mm", "core.width_x_mm?"),
+        ("core.widht_x", "core.width_x?"),
+        ("core.width", "core.width_x?"),
+        ("core.flange.height_z_mm", "core.flange.height_mm?"),
+        ("start.clamp_z", "start.clamp_y?"),
         // no key of the section has such a word
         ("core.tension", "tensioner.tension?"),
     ] {
@@ -52,6 +64,46 @@ fn a_key_of_the_same_section_is_suggested_first() {
         let said = unread(&format!("[{section}]\n{leaf} = 3"));
         assert_says(&said, &[&format!("did you mean {meant}")]);
     }
+}
+
+/// `core.width_z` was answered with `core.width_x`. Of a key with one letter wrong the right one is guessed.
+#[test]
+fn one_wrong_letter_in_a_key_leads_to_the_key() {
+    let (mut tried, mut wrong) = (0, Vec::new());
+    let leaves = table().iter().filter(|v| v.kind == Kind::Real);
+    for leaf in leaves.filter(|v| v.causality == Causality::Parameter) {
+        let table = leaf.name.rsplit_once('.').map_or("", |(table, _)| table);
+        let Some((section, key)) = leaf.name.split_once('.') else {
+            continue;
+        };
+        let letters: Vec<char> = key.chars().collect();
+        // (of `EI` one letter less is as near to others)
+        if letters.len() < 4 {
+            continue;
+        }
+        let inside = |at: &usize| letters[at - 1] != '.' && letters[*at] != '.';
+        for at in (1..letters.len()).filter(inside) {
+            let (mut without, mut swapped, mut twice) =
+                (letters.clone(), letters.clone(), letters.clone());
+            without.remove(at);
+            swapped.swap(at - 1, at);
+            twice.insert(at, letters[at]);
+            for typo in [without, swapped, twice] {
+                let typo: String = typo.into_iter().collect();
+                if by_name(&format!("{section}.{typo}")).is_some() {
+                    continue;
+                }
+                let said = parse(&format!("[{section}]\n{typo} = 3"));
+                let said = said.expect_err("no such key").to_string();
+                tried += 1;
+                let meant = [leaf.name, table].map(|name| format!("did you mean {name}?"));
+                if !meant.iter().any(|name| said.contains(name)) {
+                    wrong.push(format!("{section}.{typo}: {said:.120}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{} of {tried}: {wrong:#?}", wrong.len());
 }
 
 /// The range stood in SI only, beside a value in the unit of the key; metres for millimetres got no question back.
