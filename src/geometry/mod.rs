@@ -16,6 +16,7 @@
 
 pub mod generate;
 pub mod stl;
+mod stl_text;
 
 mod bodies;
 mod bvh;

@@ -1,13 +1,12 @@
 //! Meshes from STL files, binary or ASCII.
 //!
-//! The `stl_io` crate parses. Before that the bytes are put into the form it expects. It takes
-//! any file that begins with `solid ` for ASCII, although many programs write that into binary
-//! headers. And it knows only lower-case keywords and one named solid. The solids of an ASCII file are the parts of one
-//! surface, as programs write them that name its faces, or bodies that make up the core together, as in a binary file.
+//! The `stl_io` crate parses the binary form. It takes any file that begins with `solid ` for ASCII, although many programs
+//! write that into binary headers, so that the form is told apart here.
 
 use super::error::MeshError;
 use super::flat::cut_the_other_way;
 use super::mesh::TriMesh;
+use super::stl_text;
 use crate::math::V3;
 use std::collections::HashMap;
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
@@ -63,28 +62,18 @@ pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlErr
     let mut bytes = Vec::new();
     reader.seek(SeekFrom::Start(0)).map_err(StlError::Read)?;
     reader.read_to_end(&mut bytes).map_err(StlError::Read)?;
-    let (bytes, form) = normalise(bytes);
-
-    let (size, counted) = (bytes.len(), counted(&bytes));
-    let broken = |triangles: usize, error: io::Error| StlError::NotStl {
-        bytes: size,
-        form,
-        triangles,
-        reason: match counted {
-            _ if form != "binary" => error.to_string(),
-            Some(count) => {
-                let needed = BINARY_HEADER as u64 + BINARY_TRIANGLE as u64 * u64::from(count);
-                format!("its header counts {count} triangles, which take {needed} bytes")
-            }
-            None => format!("a binary file has a header of {BINARY_HEADER} bytes"),
-        },
-    };
-    let mut cursor = Cursor::new(bytes);
     let mut welded = Welded::default();
-    let parser = stl_io::create_stl_reader(&mut cursor).map_err(|e| broken(0, e))?;
-    for (index, triangle) in parser.enumerate() {
-        let triangle = triangle.map_err(|e| broken(index, e))?;
-        welded.push(triangle.vertices.map(|v| v.0), unit);
+    match text_of(&bytes) {
+        Some(text) => {
+            let facet = |corners| welded.push(corners, unit);
+            stl_text::read(text, facet).map_err(|fault| StlError::NotStl {
+                bytes: bytes.len(),
+                form: "ASCII",
+                triangles: fault.triangles,
+                reason: fault.reason,
+            })?;
+        }
+        None => read_binary(bytes, |corners| welded.push(corners, unit))?,
     }
     let apart = welded.clone();
     cut_the_other_way(&welded.vertices, &mut welded.triangles);
@@ -103,37 +92,42 @@ pub fn read<R: Read + Seek>(reader: &mut R, unit: f64) -> Result<TriMesh, StlErr
     }
 }
 
-/// Brings the bytes into the form that the parser recognises; says which form that is.
-fn normalise(mut bytes: Vec<u8>) -> (Vec<u8>, &'static str) {
-    if is_binary(&bytes) {
-        bytes[..BINARY_HEADER - 4].fill(0);
-        return (bytes, "binary");
-    }
-    let Ok(text) = std::str::from_utf8(&bytes) else {
-        return (bytes, "binary");
+/// Hands the corners of each triangle of a binary file on.
+fn read_binary(mut bytes: Vec<u8>, mut push: impl FnMut([[f32; 3]; 3])) -> Result<(), StlError> {
+    let (size, counted) = (bytes.len(), counted(&bytes));
+    let broken = |triangles: usize| StlError::NotStl {
+        bytes: size,
+        form: "binary",
+        triangles,
+        reason: match counted {
+            Some(count) => {
+                let needed = BINARY_HEADER as u64 + BINARY_TRIANGLE as u64 * u64::from(count);
+                format!("its header counts {count} triangles, which take {needed} bytes")
+            }
+            None => format!("a binary file has a header of {BINARY_HEADER} bytes"),
+        },
     };
-    let text = text
-        .trim_start_matches('\u{feff}')
-        .trim_start()
-        .to_ascii_lowercase();
-    let begins = |line: &str| line.split_whitespace().next() == Some("solid");
-    let ends = |line: &str| line.split_whitespace().next() == Some("endsolid");
-    let (header, body) = text.split_once(['\n', '\r']).unwrap_or((&text, ""));
-    if !begins(header) {
-        return (bytes, "binary");
+    // (the parser must not take the header for that of a text)
+    if let Some(header) = bytes.get_mut(..BINARY_HEADER - 4) {
+        header.fill(0);
     }
-    if !body.lines().any(begins) {
-        return (format!("solid core\n{body}").into_bytes(), "ASCII");
+    let mut cursor = Cursor::new(bytes);
+    let parser = stl_io::create_stl_reader(&mut cursor).map_err(|_| broken(0))?;
+    for (index, triangle) in parser.enumerate() {
+        let triangle = triangle.map_err(|_| broken(index))?;
+        push(triangle.vertices.map(|v| v.0));
     }
-    // (the last one may have been cut off)
-    let is_whole = body
-        .lines()
-        .rfind(|line| begins(line) || ends(line))
-        .is_some_and(ends);
-    let facets = body.lines().filter(|line| !begins(line) && !ends(line));
-    let end = if is_whole { "endsolid core\n" } else { "" };
-    let facets = facets.collect::<Vec<_>>().join("\n");
-    (format!("solid core\n{facets}\n{end}").into_bytes(), "ASCII")
+    Ok(())
+}
+
+/// The text of a file whose first word is `solid`, unless it has the size of a binary one.
+fn text_of(bytes: &[u8]) -> Option<&str> {
+    let text = std::str::from_utf8(bytes)
+        .ok()
+        .filter(|_| !is_binary(bytes))?;
+    let text = text.trim_start_matches('\u{feff}');
+    let word = text.split_whitespace().next()?;
+    word.eq_ignore_ascii_case("solid").then_some(text)
 }
 
 /// Whether the size is that of a binary file with the number of triangles its header names.

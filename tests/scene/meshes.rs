@@ -97,6 +97,61 @@ fn a_mesh_that_makes_no_core_is_told_with_its_key_and_place() {
     }
 }
 
+/// "invalid facet header" told neither the line nor what belongs there.
+#[test]
+fn a_fault_in_the_text_of_an_stl_file_is_told_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let plain = text(" part", &triangles());
+    let lines: Vec<&str> = plain.lines().collect();
+    let with = |line: usize, new: &[&str]| {
+        let mut changed = lines.clone();
+        changed.splice(line - 1..line, new.iter().copied());
+        changed.join("\n")
+    };
+    let whole = lines.len();
+    for (name, text, parts) in [
+        (
+            "comma.stl",
+            with(4, &["  vertex -6 -15 -10,"]),
+            ["line 4: ", "vertex -6 -15 -10,"],
+        ),
+        (
+            "infinite.stl",
+            with(6, &["vertex 1 2 inf"]),
+            ["line 6: ", "vertex and three finite numbers"],
+        ),
+        (
+            "square.stl",
+            with(7, &["vertex 1 2 3", "endloop"]),
+            ["line 7: ", "endloop"],
+        ),
+        (
+            "header.stl",
+            with(9, &["facet"]),
+            ["line 9: ", "facet normal"],
+        ),
+        (
+            "blank.stl",
+            with(3, &["", "outer lop"]),
+            ["line 4: ", "outer loop"],
+        ),
+        (
+            "cut.stl",
+            lines[..whole - 2].join("\n"),
+            ["line 84: ", "endfacet"],
+        ),
+        (
+            "endless.stl",
+            lines[..whole - 1].join("\r\n"),
+            ["line 85: ", "endsolid"],
+        ),
+    ] {
+        let said = said_of(folder.path(), name, &text).expect("must be refused");
+        assert_says(&said, &["core.file = ", name, "ASCII"]);
+        assert_says(&said, &parts);
+    }
+}
+
 /// Only the volume of all bodies of a file together was looked at: a flange could be inside out.
 #[test]
 fn one_body_of_several_that_is_inside_out_is_told_with_its_place() {
