@@ -23,7 +23,7 @@ use crate::math::{Spin, V3, scaled};
 use crate::measure::{Coil, CoilSpec, Crossover};
 use crate::rod::{Rod, Scalar};
 use crate::scene::{Core, Integrator, Scene, si};
-use crate::signals::{Inputs, Outputs};
+use crate::signals::{EventKind, Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
 use std::sync::Arc;
 
@@ -35,8 +35,8 @@ const MASSLESS: f64 = 1e-6;
 /// takes.
 const STEPS: [f64; 3] = [1e-9, 1e-5, 0.1];
 
-/// Builds the system at rest, an empty coil and the core angle at the start.
-fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError> {
+/// Builds the system at rest, an empty coil, the core angle at the start, and what is told of the way of the wire.
+fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64, Option<String>), SimError> {
     let surface = Arc::new(core_surface(&scene.core)?);
     let mut section = scene.wire.clone();
     if !scene.solver.features.inertia {
@@ -69,7 +69,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         }),
         _ => aside + way_round * turned,
     };
-    check_way(scene, &surface, (clamp_core, nozzle), angle0)?;
+    let way = check_way(scene, &surface, (clamp_core, nozzle), angle0)?;
     let clamp = Spin::new(angle0).to_lab(clamp_core);
     let points = line_of_nodes(scene, &surface, clamp, nozzle, angle0);
     let tension = inputs.tension_setpoint;
@@ -168,7 +168,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64), SimError>
         clamp_arc: 0.0,
         corner_angle: corner_angle(&scene.core),
     });
-    Ok((sys, coil, angle0))
+    Ok((sys, coil, angle0, way))
 }
 
 /// Tension that the quasi-static height is for, N: that of the scene, or that at the start where it is more. Wire that is
@@ -233,7 +233,7 @@ impl Winding {
     /// The same with these inputs at the start.
     pub(super) fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
         check_finite(&inputs, 0.0)?;
-        let (mut sys, coil, angle0) = wire(scene, &inputs)?;
+        let (mut sys, coil, angle0, way) = wire(scene, &inputs)?;
         let (stepper, last_step) = stepper_for(scene)?;
         sys.refresh();
         sys.state.balance.initial = sys.stored() + sys.kinetic();
@@ -292,6 +292,9 @@ impl Winding {
         sim.sys.place_supports();
         sim.reset_extremes();
         sim.update_outputs();
+        if let Some(text) = way {
+            sim.report(EventKind::Judgement, text);
+        }
         if let Some((kind, text)) = sim.doubt_about_bulge() {
             sim.report(kind, text);
         }

@@ -1,6 +1,7 @@
 //! The straight wire of the start: from the clamp past the core to the nozzle.
 
 use super::SimError;
+use super::motion_profile::ROUNDING;
 use crate::geometry::Surface;
 use crate::math::{Spin, V3};
 use crate::scene::{Scene, si};
@@ -76,51 +77,87 @@ fn last_clear(mut clear: f64, mut blocked: f64, passes: impl Fn(f64) -> bool) ->
     clear
 }
 
-/// Checks that straight wire leads from the `clamp` (core frame, m) to the `nozzle` (m) with the core turned to `angle`, rad: that
-/// its axis goes through no part of the core, such as a flange.
+/// Checks that straight wire leads from the `clamp` (core frame, m) to the `nozzle` (m) with the core turned to `angle`, rad, past
+/// the core and its flanges. What is told of wire that lies in them no deeper than contact pushes out again.
 ///
 /// # Errors
 ///
-/// If one does, with the places of the nozzle from which wire leads past it.
+/// If the axis of the wire goes through one, with the places of the nozzle from which wire leads past it.
 pub(super) fn check_way(
     scene: &Scene,
     surface: &Surface,
     (clamp, nozzle): (V3, V3),
     angle: f64,
-) -> Result<(), SimError> {
-    let spin = Spin::new(angle);
-    let deepest = |y: f64| {
+) -> Result<Option<String>, SimError> {
+    let (spin, radius) = (Spin::new(angle), scene.wire.radius());
+    let nearest = |y: f64| {
         let nozzle = spin.to_core(V3::new(nozzle.x, y, nozzle.z));
         places(scene, surface, clamp, nozzle)
             .map(|place| (surface.nearest(place).distance, place))
             .min_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let passes = |y: f64| deepest(y).is_none_or(|(distance, _)| distance >= 0.0);
-    let Some((distance, place)) = deepest(nozzle.y).filter(|(distance, _)| *distance < 0.0) else {
-        return Ok(());
+    // wire that is clamped between two walls is as deep in them at the clamp
+    let free = radius.min(surface.nearest(clamp).distance);
+    let lies_free = |y: f64, depth: f64| nearest(y).is_none_or(|(at, _)| at >= free - depth);
+    // wire that is less deep is not told from wire outside
+    let told = scene.solver.tolerance;
+    let Some((distance, place)) = nearest(nozzle.y).filter(|_| !lies_free(nozzle.y, told)) else {
+        return Ok(None);
     };
-    let way = format!(
-        "straight wire from the clamp at y = {} m to the nozzle at y = {} m goes through the core or a flange, {} m deep at y = {} m",
+    let from_to = format!(
+        "straight wire from the clamp at y = {} m to the nozzle at y = {} m",
         si(clamp.y),
-        si(nozzle.y),
-        si(-distance),
-        si(place.y)
+        si(nozzle.y)
     );
-    let remedy = if passes(clamp.y) {
-        let last = last_clear(clamp.y, nozzle.y, passes);
-        let (low, high) = (clamp.y.min(last), clamp.y.max(last));
+    // (rounding does not lead an end of the advised places beyond what is told)
+    let clear = |y: f64| lies_free(y, 0.5 * told);
+    if distance < 0.0 {
+        let passes = |y: f64| nearest(y).is_none_or(|(distance, _)| distance >= 0.0);
+        let remedy = match clear(clamp.y) {
+            true => remedy(scene, (clamp.y, nozzle.y), clear),
+            false => remedy(scene, (clamp.y, nozzle.y), passes),
+        };
+        return Err(SimError::setup(format!(
+            "{from_to} goes through the core or a flange, {} m deep at y = {} m; {remedy}",
+            si(-distance),
+            si(place.y)
+        )));
+    }
+    let (depth, remedy) = (radius - distance, remedy(scene, (clamp.y, nozzle.y), clear));
+    Ok(Some(format!(
+        "{from_to} lies up to {} m ({:.2} diameters) deep in the core or a flange, at y = {} m, and is pushed out at the start; {remedy}",
+        si(depth),
+        0.5 * depth / radius,
+        si(place.y)
+    )))
+}
+
+/// What to set so that wire from the clamp `passes` on its way to the nozzle, at these places along y, m.
+fn remedy(scene: &Scene, (clamp, nozzle): (f64, f64), passes: impl Fn(f64) -> bool) -> String {
+    if passes(clamp) {
+        let last = last_clear(clamp, nozzle, passes);
+        let (low, high) = (clamp.min(last), clamp.max(last));
         // a nozzle that leads begins elsewhere than its key says
-        let ahead = nozzle.y - scene.nozzle.y_start;
-        let leads = scene.traverse.lead != 0.0 && nozzle.y == scene.nozzle_law.position(0.0);
+        let ahead = nozzle - scene.nozzle.y_start;
+        let leads = scene.traverse.lead != 0.0 && nozzle == scene.nozzle_law.position(0.0);
         if leads && scene.nozzle_law.pitch().is_some() {
             // the first turn has its place in the layers
             let sense = scene.nozzle_law.sense();
-            let lead = |y: f64| scene.traverse.lead + sense * (y - nozzle.y);
+            let lead = |y: f64| {
+                let lead = scene.traverse.lead + sense * (y - nozzle);
+                // (what rounding leaves of none)
+                if lead.abs() > ROUNDING * nozzle.abs() {
+                    lead
+                } else {
+                    0.0
+                }
+            };
             let (one, other) = (lead(low), lead(high));
             format!(
-                "set traverse.lead between {} and {} m",
+                "set traverse.lead between {} and {} m instead of {} m",
                 si(one.min(other)),
-                si(one.max(other))
+                si(one.max(other)),
+                si(scene.traverse.lead)
             )
         } else if leads {
             format!(
@@ -138,8 +175,7 @@ pub(super) fn check_way(
         }
     } else {
         "move the clamp (start.clamp_y)".to_owned()
-    };
-    Err(SimError::setup(format!("{way}; {remedy}")))
+    }
 }
 
 #[cfg(test)]
@@ -148,18 +184,33 @@ mod tests {
     use crate::settings::SceneSettings;
     use std::path::Path;
 
+    /// What is told of the start of a scene, or why it has none.
+    fn start_of(text: &str) -> Result<Vec<String>, String> {
+        let settings =
+            SceneSettings::from_toml_str(text, "scene.toml", Path::new("")).expect("reads");
+        let scene = settings.build().expect("a scene");
+        let mut started = Simulation::new(&scene).map_err(|error| error.to_string())?;
+        let events = started.drain_events().into_iter();
+        Ok(events.map(|event| event.text).collect())
+    }
+
+    /// The number after these words.
+    fn number_after(told: &str, words: &str) -> f64 {
+        let (_, rest) = told.split_once(words).expect(told);
+        rest.split(' ')
+            .next()
+            .expect("a word")
+            .parse()
+            .expect("a number")
+    }
+
     /// Flanges 5 mm from the middle and 6 mm high; the wire is clamped beside the lower one.
-    fn started(y: f64) -> Result<(), String> {
+    fn started(y: f64) -> Result<Vec<String>, String> {
         let text = format!(
             "[core.flange]\ninner_distance_mm = 10\nheight_mm = 6\nthickness_mm = 2\n\
              [start]\nclamp_y_mm = -4.6\n[nozzle]\ny_start = {y:e}"
         );
-        let settings =
-            SceneSettings::from_toml_str(&text, "scene.toml", Path::new("")).expect("reads");
-        let scene = settings.build().expect("a scene");
-        Simulation::new(&scene)
-            .map(|_| ())
-            .map_err(|error| error.to_string())
+        start_of(&text)
     }
 
     /// It was told as deep contact and a break at 0 s.
@@ -172,9 +223,11 @@ mod tests {
             .and_then(|(_, rest)| rest.split_once(" and -0.0046 m"))
             .and_then(|(least, _)| least.parse::<f64>().ok())
             .expect("a range up to the clamp");
-        assert!((-12e-3..-5e-3).contains(&least), "{told}");
-        started(least + 1e-6).expect("a place in that range");
-        started(least - 2e-5).expect_err("a place beyond it");
+        // (the wire, and not its axis alone, has to pass the face at -5 mm)
+        assert!((-5e-3..-4.6e-3).contains(&least), "{told}");
+        assert_eq!(started(least).expect("a place in that range"), [""; 0]);
+        let beyond = started(least - 2e-5).expect("a place beyond it, where the axis passes");
+        assert!(beyond[0].contains("is pushed out"), "{beyond:?}");
     }
 
     /// The place of the nozzle was told for its key, which a lead sets apart, and what was advised was refused.
@@ -185,15 +238,11 @@ mod tests {
                 "[core.flange]\ninner_distance_mm = 10\nheight_mm = 6\nthickness_mm = 2\n[start]\nclamp_y_mm = -4.6\n\
                  [nozzle]\ny_start_mm = {y_mm}\n[traverse]\nmode = 'by-angle'\nlead_mm = -6"
             );
-            let settings =
-                SceneSettings::from_toml_str(&text, "scene.toml", Path::new("")).expect("reads");
-            let started = Simulation::new(&settings.build().expect("a scene"));
-            started.map(|_| ()).map_err(|error| error.to_string())
+            start_of(&text)
         };
         let told = start(-4.6).expect_err("wire through a flange");
-        let (_, rest) = told.split_once("nozzle.y_start between ").expect("a range");
-        let least = rest.split(' ').next().and_then(|y| y.parse::<f64>().ok());
-        start(1e3 * least.expect("a number") + 1e-3).expect("a place in that range");
+        let least = number_after(&told, "nozzle.y_start between ");
+        assert_eq!(start(1e3 * least).expect("a place in that range"), [""; 0]);
         assert!(told.contains("traverse.lead"), "{told}");
     }
 
@@ -206,21 +255,21 @@ mod tests {
                  [nozzle]\ndistance_mm = 20\ny_start_mm = -1.7\n[start]\nclamp_y_mm = -1.7\n[winding]\nlayers = 2\n\
                  [traverse]\nmode = 'helical'\nlead_mm = {lead_mm}"
             );
-            let settings =
-                SceneSettings::from_toml_str(&text, "scene.toml", Path::new("")).expect("reads");
-            let started = Simulation::new(&settings.build().expect("a scene"));
-            started.map(|_| ()).map_err(|error| error.to_string())
+            start_of(&text)
         };
         let told = start(-1.5).expect_err("wire through a flange");
         assert!(!told.contains("y_start between"), "{told}");
-        let (_, rest) = told
-            .split_once("set traverse.lead between ")
-            .expect("a range");
-        let least = rest.split(' ').next().and_then(|y| y.parse::<f64>().ok());
-        let least = 1e3 * least.expect("a number");
-        assert!((-1.0..-0.8).contains(&least), "{told}");
-        start(least + 1e-3).expect("a lead in that range");
-        start(least - 2e-2).expect_err("a lead beyond it");
+        let least = 1e3 * number_after(&told, "set traverse.lead between ");
+        assert!(told.ends_with("and 0 m instead of -0.0015 m"), "{told}");
+        assert_eq!(start(least).expect("a lead in that range"), [""; 0]);
+        // Wire of which less than half was in the flange was pushed out without a word.
+        for (lead_mm, depth) in [(-0.85, 0.28), (-0.3, 0.1), (least - 0.01, 0.002)] {
+            let told = start(lead_mm).expect("the axis passes").concat();
+            let told_depth = 1e3 * number_after(&told, "lies up to ");
+            assert!((depth..depth + 0.01).contains(&told_depth), "{told}");
+            let advised = 1e3 * number_after(&told, "set traverse.lead between ");
+            assert!((advised - least).abs() < 1e-5, "{told}");
+        }
     }
 
     #[test]
