@@ -122,6 +122,21 @@ impl Bvh {
         (mesh.nearest_on(p, best.1), best.1)
     }
 
+    /// What `look` finds first at two triangles whose boxes overlap; an error where more than `most` pairs of boxes would have to
+    /// be looked at.
+    pub(super) fn first_pair<T>(
+        &self,
+        most: u64,
+        look: impl FnMut(u32, u32) -> Option<T>,
+    ) -> Result<Option<T>, ()> {
+        let mut pairs = Pairs {
+            nodes: &self.nodes,
+            look,
+            left: most,
+        };
+        pairs.within(0)
+    }
+
     /// The triangle whose section at the level of `p` (core frame, m) is nearest, the first of several; none above and
     /// below the mesh.
     pub(crate) fn nearest_at_level(&self, mesh: &TriMesh, p: V3) -> Option<(LevelNearest, u32)> {
@@ -138,6 +153,69 @@ impl TriMesh {
         let limit = radius * radius;
         out.extend((0..self.len() as u32).filter(|&t| self.closest(t, p).distance_sq <= limit));
     }
+}
+
+/// A search among the pairs of triangles whose boxes overlap.
+struct Pairs<'a, F> {
+    nodes: &'a [Node],
+    look: F,
+    /// pairs of boxes that may still be looked at
+    left: u64,
+}
+
+impl<T, F: FnMut(u32, u32) -> Option<T>> Pairs<'_, F> {
+    /// Among the triangles below a node.
+    fn within(&mut self, node: usize) -> Result<Option<T>, ()> {
+        let nodes = self.nodes;
+        let halves: Vec<_> = children(&nodes[node]).collect();
+        let [one, other] = halves[..] else {
+            return Ok(None);
+        };
+        if let Some(found) = self.between(one, other)? {
+            return Ok(Some(found));
+        }
+        if let Some(found) = self.within(one.1)? {
+            return Ok(Some(found));
+        }
+        self.within(other.1)
+    }
+
+    /// Between the triangles below one node and those below another.
+    fn between(&mut self, a: (&Box3, usize), b: (&Box3, usize)) -> Result<Option<T>, ()> {
+        self.left = self.left.checked_sub(1).ok_or(())?;
+        if !overlap(a.0, b.0) {
+            return Ok(None);
+        }
+        let nodes = self.nodes;
+        let (node, rest) = match (&nodes[a.1], &nodes[b.1]) {
+            (Node::Leaf { shape_index: s, .. }, Node::Leaf { shape_index: t, .. }) => {
+                return Ok((self.look)(*s as u32, *t as u32));
+            }
+            (Node::Leaf { .. }, inner) => (inner, a),
+            (inner, Node::Leaf { .. }) => (inner, b),
+            // the larger one, so that the halves are of a size with the other
+            (one, other) => match size(a.0) > size(b.0) {
+                true => (one, b),
+                false => (other, a),
+            },
+        };
+        for half in children(node) {
+            let found = self.between(half, rest)?;
+            if found.is_some() {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
+}
+
+fn overlap(a: &Box3, b: &Box3) -> bool {
+    (0..3).all(|k| a.min[k] <= b.max[k] && b.min[k] <= a.max[k])
+}
+
+/// Length of a box along all axes together, m.
+fn size(bounds: &Box3) -> f64 {
+    (bounds.max - bounds.min).sum()
 }
 
 struct Near<'a> {

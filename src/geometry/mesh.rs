@@ -19,7 +19,7 @@ const LARGEST_COORDINATE: f64 = 1e6;
 const LEAST_HEIGHT: f64 = 1e-10;
 /// A neighbour may rise over a face by this share of the mesh's extent and still count as flat:
 /// some ten roundings of a single-precision file.
-const FLAT: f64 = 1e-6;
+pub(super) const FLAT: f64 = 1e-6;
 
 /// A closed, outward oriented triangle mesh. Vertices in m, core frame.
 ///
@@ -46,7 +46,7 @@ impl TriMesh {
     /// Checks and prepares a mesh.
     ///
     /// `vertices` in m; `triangles` counterclockwise seen from outside. Vertices that no
-    /// triangle uses are kept and ignored. Self-intersection is not looked for.
+    /// triangle uses are kept and ignored. Self-intersection is looked for by [`Surface::crossing`](super::Surface).
     pub fn new(vertices: Vec<V3>, triangles: Vec<[u32; 3]>) -> Result<Self, MeshError> {
         check_numbers(&vertices, &triangles)?;
         let mut facets = facets(&vertices, &triangles)?;

@@ -20,6 +20,7 @@ mod stl_text;
 
 mod bodies;
 mod bvh;
+mod crossing;
 mod elements;
 mod error;
 mod feature;
@@ -43,8 +44,10 @@ mod wall;
 
 #[cfg(feature = "lab")]
 pub use bvh::Bvh;
+pub(crate) use crossing::Crossing;
 #[cfg(feature = "lab")]
 pub use error::MeshError;
+pub(crate) use error::Place;
 #[cfg(feature = "lab")]
 pub use feature::Nearest;
 pub use flange::Flanges;

@@ -50,6 +50,11 @@ impl Surface {
         &self.mesh
     }
 
+    /// Its search tree.
+    pub(super) fn tree(&self) -> &Bvh {
+        &self.bvh
+    }
+
     /// Lowest and highest corner of the bounding box, m.
     pub fn bounds(&self) -> (V3, V3) {
         self.bounds

@@ -12,7 +12,7 @@ use super::{
     Core, Features, Flange, Integrator, LiveContact, Preset, Scene, SceneError, Solver, Window,
 };
 use crate::geometry::stl::{self, StlError};
-use crate::geometry::{Room, Surface, TriMesh};
+use crate::geometry::{Crossing, Room, Surface, TriMesh};
 use crate::math::V3;
 use crate::rod::Twist;
 use crate::settings::{NozzleFollows, SceneSettings, SolverSettings, Spindle};
@@ -338,6 +338,7 @@ impl SceneSettings {
             clamp_places: Vec::new(),
             in_the_way: None,
             flanged_about: None,
+            crossing: Crossing::None,
         };
         for vertex in &mesh.vertices {
             extent.turning_radius = extent.turning_radius.max(libm::hypot(vertex.x, vertex.z));
@@ -358,8 +359,10 @@ impl SceneSettings {
             .window
             .map_or(extent.turning_radius, |room| room.radius);
         extent.in_the_way = mesh.in_the_way(clamp, wire);
+        let surface = Surface::new(mesh);
+        extent.crossing = surface.crossing();
         if let Some(room) = extent.window {
-            extent.clamp_places = clamp_places(&Surface::new(mesh), room, 0.5 * wire);
+            extent.clamp_places = clamp_places(&surface, room, 0.5 * wire);
         }
         Ok(extent)
     }

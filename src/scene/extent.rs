@@ -1,7 +1,7 @@
 //! The room that a core takes up.
 
 use super::Flange;
-use crate::geometry::Room;
+use crate::geometry::{Crossing, Room};
 
 /// Share of a length by which it may be missed: by faces in an STL file, which has single precision, and by sums of pitches.
 pub(super) const ROUNDING: f64 = 1e-6;
@@ -30,6 +30,8 @@ pub(super) struct Extent {
     pub(super) in_the_way: Option<[Vec<f64>; 2]>,
     /// another axis than y about which a mesh has flanges, where it should have some and has none about y
     pub(super) flanged_about: Option<char>,
+    /// whether the surface of a mesh crosses itself
+    pub(super) crossing: Crossing,
 }
 
 impl Extent {
@@ -45,6 +47,7 @@ impl Extent {
             clamp_places: Vec::new(),
             in_the_way: None,
             flanged_about: None,
+            crossing: Crossing::None,
         }
     }
 

@@ -5,6 +5,7 @@ use super::extent::{Extent, ROUNDING};
 use super::impossible::si;
 use super::without_effect::Reader;
 use super::{Core, Integrator, NozzleLaw, Solver, Window};
+use crate::geometry::{Crossing, Place};
 use crate::rod::{RoundLaws, Section, Twist};
 use crate::settings::{NozzleFollows, SceneSettings};
 use std::f64::consts::TAU;
@@ -125,6 +126,20 @@ impl SceneSettings {
                 message,
             });
         };
+        match extent.crossing {
+            Crossing::None => {}
+            Crossing::At(place) => warn(
+                "core.file",
+                format!(
+                    "the surface crosses itself at {}, and inside and outside are not told apart there: wire may sink in; mesh the body once more, or unite what crosses",
+                    Place(place)
+                ),
+            ),
+            Crossing::NotSearched => warn(
+                "core.file",
+                "whether the surface crosses itself is not known, since too many of its triangles are too long to look at all that may meet; mesh the body more coarsely, or with less narrow triangles".to_owned(),
+            ),
+        }
         let beside = |y: f64| y < extent.y_min || y > extent.y_max;
         let ends = format!(
             "the core ends at {} and {} m",

@@ -152,6 +152,36 @@ fn a_fault_in_the_text_of_an_stl_file_is_told_with_its_line() {
     }
 }
 
+/// Such a surface was wound on without a word.
+#[test]
+fn a_body_that_crosses_itself_is_warned_of_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("crossed.stl");
+    let warned = |corner: [f32; 3]| -> String {
+        let mut crossed = triangles();
+        for vertex in crossed.iter_mut().flatten() {
+            if *vertex == [6.0, 15.0, 10.0] {
+                *vertex = corner;
+            }
+        }
+        std::fs::write(&file, text(" part", &crossed)).unwrap();
+        let scene = format!(
+            "[core]\nshape = 'mesh'\nfile = {file:?}\n[start]\nclamp_y_mm = -12\n[nozzle]\ny_start_mm = -12"
+        );
+        let built = parse(&scene).expect("parses").build_with_warnings();
+        let (_, warnings) = built.expect("a core all the same");
+        let warnings = warnings.iter().map(ToString::to_string);
+        warnings
+            .filter(|said| said.contains("crosses itself"))
+            .collect()
+    };
+    assert_eq!(warned([6.0, 15.0, 10.0]), "");
+    assert_eq!(warned([-5.9, 10.0, 5.0]), "");
+    // a corner that is drawn out of the face on the other side
+    let said = warned([-9.0, 10.0, 5.0]);
+    assert_says(&said, &["test.toml:3: core.file = ", "x = -6.000, y = "]);
+}
+
 /// Only the volume of all bodies of a file together was looked at: a flange could be inside out.
 #[test]
 fn one_body_of_several_that_is_inside_out_is_told_with_its_place() {
