@@ -4,6 +4,7 @@ use super::failure::Failure;
 use super::members::rounded;
 use super::scene::SceneArgs;
 use super::terminal::print;
+use super::waiting::Waiting;
 use clap::Args;
 use coilwind::scene::Bilinear;
 use coilwind::simulation::Simulation;
@@ -20,6 +21,7 @@ pub(super) struct CheckArgs {
 
 /// Builds the scene and the wire at rest; warnings go to standard error.
 pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
+    let waiting = Waiting::for_start();
     let (settings, scene, warnings) = args.scene.build()?;
     for warning in &warnings {
         eprintln!("warning: {warning}");
@@ -28,6 +30,7 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         scene: args.scene.scene.clone(),
         reason,
     })?;
+    drop(waiting);
     for event in simulation.drain_events() {
         eprintln!("warning: {}", event.text);
     }

@@ -35,6 +35,7 @@ mod sweep_wind;
 mod terminal;
 mod variables;
 mod verify;
+mod waiting;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};

@@ -297,6 +297,7 @@ fn stuck(failure: Failure, directory: &Path, told: &str) -> Failure {
 fn begin(args: &RunArgs) -> Result<Start, Failure> {
     let name = args.scene.as_deref().unwrap_or_default();
     let motion = args.motion();
+    let _waiting = (!args.quiet).then(super::waiting::Waiting::for_start);
     let (settings, scene, warnings) = match args.settings.as_deref().cloned() {
         Some(settings) => {
             let (scene, warnings) = settings.build_for(motion.nozzle_follows(&settings))?;
