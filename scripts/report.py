@@ -78,7 +78,6 @@ def main():
     parser.add_argument("-o", "--output", type=Path, help="default: index.html in the directory")
     parser.add_argument("--title", default="Winding two turns side by side")
     parser.add_argument("--turn", type=int, default=2, help="turn of the table, from 1")
-    parser.add_argument("--diameter-mm", type=float, default=0.7, help="wire diameter")
     parser.add_argument("--more", action="append", default=[], metavar="TITLE=DIR", help="a run of another kind to link")
     arguments = parser.parse_args()
 
@@ -115,11 +114,11 @@ def lead(runs):
 
 
 def verdict_table(runs, arguments):
-    table = columns(1e-3 * arguments.diameter_mm)
-    rows = [Row.of(run, arguments.turn) for run in runs]
+    table = columns(arguments.turn)
+    rows = [Row.of(run, arguments.turn, arguments.directory) for run in runs]
     head = row("th", [html.escape(column.heading) for column in table])
     body = "".join(row("td", [cell(column, r) for column in table]) for r in rows)
-    note = NOTE.format(turn=arguments.turn, d=arguments.diameter_mm, steady=STEADY_TURNS)
+    note = NOTE.format(turn=arguments.turn, steady=STEADY_TURNS)
     note += " A single run is one throw: landings scatter at high speed."
     shown = f'<div class="card"><table>{head}{body}</table></div>'
     return f'<h2>Verdict</h2>{shown}<p class="note">{html.escape(note)}</p>'
@@ -131,7 +130,7 @@ def row(kind, cells):
 
 def cell(column, run):
     text = html.escape(column.shown(run))
-    return badge(text) if column.heading in ("verdict", "paper") and text != "–" else text
+    return badge(text) if column.name in ("coil_verdict", "turn_verdict", "claim_of_the_paper") and text != "–" else text
 
 
 def badge(verdict):

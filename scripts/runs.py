@@ -83,6 +83,16 @@ class Run:
         except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
             raise Mistake(f"{path} is not whole ({error}); wind the scene again") from None
 
+    @property
+    def diameter(self):
+        """Outer diameter of the wire, m."""
+        try:
+            wire = self.scene["wire"]
+            # Zero stands for bare wire.
+            return wire["enamelled_diameter"] or wire["diameter"]
+        except (KeyError, TypeError) as error:
+            raise Mistake(f"{self.directory / 'scene.toml'} has no {error}; it has to be the file that a run leaves") from None
+
     def turn(self, number):
         """Measures of a turn (from 1), empty if it has not settled."""
         turns = self.summary.get("turns", [])

@@ -86,11 +86,8 @@ def sections_of(paths):
     for number, run in enumerate(runs):
         scene = run.scene
         try:
-            wire, core = scene["wire"], scene["core"]
             limit = scene["defects"]["gap"]
-            # Zero stands for bare wire.
-            diameter = 1e3 * (wire["enamelled_diameter"] or wire["diameter"])
-            places = section_places(core)
+            places = section_places(scene["core"])
         except (KeyError, TypeError) as error:
             raise Mistake(f"{run.directory / 'scene.toml'} has no {error}; it has to be the file that a run leaves") from None
         window = run.summary.get("product", {}).get("window")
@@ -98,7 +95,7 @@ def sections_of(paths):
         sections.append(Section(
             run=run, label=run.label if shared[run.label] == 1 else f"{run.label}, {name}",
             stations=read_columns(files[run.directory][1], COLUMNS), colour=COLOURS[number % len(COLOURS)],
-            diameter=diameter, gap_limit=limit, places=places,
+            diameter=1e3 * run.diameter, gap_limit=limit, places=places,
             faces=tuple(1e3 * y for y in window["faces_m"]) if window else None,
         ))
     return sections

@@ -3,6 +3,7 @@
 
     verdicts.py target/demo
 
+A row tells of the verdict on the whole coil and of one turn of it (--turn). Wire diameters are those of the scene.toml in each folder.
 Writes verdicts.csv (SI units, full precision) and verdicts.md into the directory.
 """
 
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Callable
 
 import numpy as np
+from failure import Mistake, told
 from runs import by_speed, open_run, read_columns
 
 # What the source paper says of its Fig. 8, by spindle speed in rad/s.
@@ -29,10 +31,14 @@ class Row:
     run: object
     turn: dict
     tension: tuple
+    diameter: float
+    folder: str
 
     @classmethod
-    def of(cls, run, turn):
-        return cls(run, run.turn(turn), tension(run))
+    def of(cls, run, turn, below):
+        place = run.directory.relative_to(below)
+        folder = place.as_posix() if place.parts else run.directory.resolve().name
+        return cls(run, run.turn(turn), tension(run), run.diameter, folder)
 
     @property
     def verdict(self):
@@ -63,6 +69,8 @@ class Column:
     scale: float = 1.0
     digits: int = 3
     unit: str = ""
+    # whether people see it in diameters of the wire
+    over_d: bool = False
 
     def shown(self, row):
         value = self.value(row)
@@ -70,24 +78,28 @@ class Column:
             return "–"
         if isinstance(value, str):
             return value
+        scale = self.scale / row.diameter if self.over_d else self.scale
         # Rounding may leave a zero with a sign.
-        return f"{round(value * self.scale, self.digits) + 0.0:.{self.digits}f}{self.unit}"
+        return f"{round(value * scale, self.digits) + 0.0:.{self.digits}f}{self.unit}"
 
 
-def columns(diameter):
-    """The table's columns for a wire of this diameter, m."""
-    over_d = 1 / diameter
+def columns(turn):
+    """The columns of the table of this turn."""
+    of_turn = f"turn {turn}: "
     return [
+        Column("folder", "folder", lambda r: r.folder),
         Column("speed_rad_per_s", "rad/s", lambda r: r.run.speed, digits=0),
+        Column("diameter_m", "d mm", lambda r: r.diameter, 1e3, 2),
         Column("ending", "run", lambda r: r.run.ending),
-        Column("turn_settled", "at rest", lambda r: r.turn.get("settled", 0.0), 100, 0, " %"),
-        Column("verdict", "verdict", lambda r: r.verdict),
+        Column("coil_verdict", "coil: verdict", lambda r: r.of_summary("verdict")),
+        Column("turn_settled", f"{of_turn}at rest", lambda r: r.turn.get("settled", 0.0), 100, 0, " %"),
+        Column("turn_verdict", f"{of_turn}verdict", lambda r: r.verdict),
         Column("claim_of_the_paper", "paper", lambda r: r.claim),
-        Column("gap_mean_m", "gap mean/d", lambda r: r.turn.get("gap_mean"), over_d),
-        Column("gap_max_m", "gap max/d", lambda r: r.turn.get("gap_max"), over_d),
+        Column("gap_mean_m", "gap mean/d", lambda r: r.turn.get("gap_mean"), over_d=True),
+        Column("gap_max_m", "gap max/d", lambda r: r.turn.get("gap_max"), over_d=True),
         Column("gap_run", "gap run", lambda r: r.turn.get("gap_run"), 100, 0, " %"),
         Column("bulge_max_m", "bulge mm", lambda r: r.turn.get("bulge_max"), 1e3, 2),
-        Column("bulge_excess_max_m", "excess/d", lambda r: r.turn.get("bulge_excess_max"), over_d, 2),
+        Column("bulge_excess_max_m", "excess/d", lambda r: r.turn.get("bulge_excess_max"), digits=2, over_d=True),
         Column("tension_min_N", "T min N", lambda r: r.tension[0], 1, 1),
         Column("tension_mean_N", "T mean N", lambda r: r.tension[1], 1, 1),
         Column("tension_max_N", "T max N", lambda r: r.tension[2], 1, 1),
@@ -101,26 +113,32 @@ def columns(diameter):
 
 
 NOTE = """\
-Turn {turn}, as far as it is at rest, without the neighbourhood of the clamp; d = {d:g} mm. gap: centre
-distance to the turn before, less d; run: longest stretch above 0.15 d, a gap from 10 % on. bulge:
-height over the core; excess: over the quasi-static height of this wire. T: tension at the nozzle
-after the first {steady:g} turns (a short run: all of it). depth: deepest contact. energy: what the
+coil: the verdict on the whole coil, the worst of its turns. gap, bulge and excess are those of turn {turn},
+as far as it is at rest, without the neighbourhood of the clamp; d: outer diameter of the wire. gap: centre
+distance to the turn before, less d; run: longest stretch above the scene's defects.gap. bulge: height over
+the core; excess: over the quasi-static height of this wire. T: tension at the nozzle after the first
+{steady:g} turns (a short run: all of it). depth: deepest contact. energy: what the
 energy balance leaves unexplained over what was dissipated. RTF: simulated over wall time."""
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("directory", type=Path, help="directory that holds the runs")
-    parser.add_argument("--turn", type=int, default=2, help="turn of the table, from 1")
-    parser.add_argument("--diameter-mm", type=float, default=0.7, help="wire diameter")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("directory", type=Path, metavar="DIR", help="directory that holds the runs")
+    parser.add_argument("--turn", type=int, default=2, metavar="N", help="turn of the table, from 1 (default: 2)")
     arguments = parser.parse_args()
+    with told(parser.prog):
+        tell(arguments)
+
+
+def tell(arguments):
+    """Prints the table and writes its files."""
     runs = runs_below(arguments.directory)
     if not runs:
-        raise SystemExit(f"no summary.json below {arguments.directory}")
+        raise Mistake(f"no summary.json below {arguments.directory}; name a folder that holds folders of runs")
 
-    rows = [Row.of(run, arguments.turn) for run in runs]
-    table = columns(1e-3 * arguments.diameter_mm)
-    note = NOTE.format(turn=arguments.turn, d=arguments.diameter_mm, steady=STEADY_TURNS)
+    rows = [Row.of(run, arguments.turn, arguments.directory) for run in runs]
+    table = columns(arguments.turn)
+    note = NOTE.format(turn=arguments.turn, steady=STEADY_TURNS)
     heads = [column.heading for column in table]
     cells = [[column.shown(row) for column in table] for row in rows]
     print("\n".join(aligned(heads, cells)))
@@ -134,6 +152,7 @@ def main():
     rule = "|" + "|".join(["---:"] * len(heads)) + "|"
     text = "\n".join([lines[0], rule, *lines[1:], "", note, ""])
     (arguments.directory / "verdicts.md").write_text(text, encoding="utf-8")
+    print(f"wrote {arguments.directory / 'verdicts.csv'}, {arguments.directory / 'verdicts.md'}")
 
 
 def runs_below(directory):
