@@ -33,9 +33,10 @@ import numpy as np
 
 import folder as folders
 from calibration_curves import TURN, ZERO_REACH, read_curves, too_few
-from calibration_fit import ANGLES, REACH, Fit, calibrate, ends_of, explains_nothing, intervals, warnings_of, zero_intervals
+from calibration_fit import ANGLES, NEAR, REACH, Fit, calibrate, ends_of, explains_nothing, intervals, warnings_of, zero_intervals
 from calibration_rest import rests_of
 from calibration_runs import Model
+from calibration_zeros import beyond_reach
 from failure import Interrupted, Mistake, told
 
 
@@ -137,13 +138,14 @@ def run(args):
             answer = calibrate(fit)
             # Where zeros are not fitted, it is asked whether others would explain what is left.
             turned = [] if model.zeros else model.turned(fit.values(answer.found.x), ANGLES)
+            beyond = beyond_reach(fit, answer)
         except KeyboardInterrupt:
             fit.stop()
             raise Interrupted(keep_best(args, fit)) from None
-    return tell(args, model, starts, answer, list(rests_of(curves, answer.computed, answer.slopes, ANGLES, turned)))
+    return tell(args, model, starts, answer, list(rests_of(curves, answer.computed, answer.slopes, ANGLES, turned)), beyond)
 
 
-def tell(args, model, starts, answer, rests):
+def tell(args, model, starts, answer, rests, beyond):
     """Prints the outcome, then writes it: a full disk takes nothing from who reads along. The exit code."""
     names, curves = model.names, model.curves
     best, width = intervals(starts, answer, args.confidence)
@@ -153,9 +155,12 @@ def tell(args, model, starts, answer, rests):
         low, high = best * np.exp(-width), best * np.exp(width)
     ends = ends_of([*names, *angles], answer.found)
     reach = np.degrees(ZERO_REACH)
+    # Beyond the end of the range there may be a better zero than one whose interval goes there.
+    reaching = {name: "lower" if value < 0.0 else "upper" for name, value, by in zip(angles, zeros, wide) if name not in ends and by < reach and abs(value) + by > NEAR * reach}
+    ends = reaching | ends
     open_ = [name for name, by in zip([*names, *angles], [*width / np.log(REACH), *wide / reach]) if not by < 1.0 and name not in ends]
-    doubtful = any(rest.doubtful for rest in rests)
-    nothing, told_of = explains_nothing(answer, curves), [*warnings_of([*names, *angles], answer), *(text for rest in rests for text in rest.warnings())]
+    doubtful = any(rest.doubtful for rest in rests) or bool(beyond)
+    nothing, told_of = explains_nothing(answer, curves), [*warnings_of([*names, *angles], answer), *(text for rest in rests for text in rest.warnings()), *(one.warning() for one in beyond)]
 
     print(f"{'parameter':32} {'start':>11} {'fitted':>11}   {100 * args.confidence:g} % interval")
     rows = [(name, f"{start:.5g}", f"{value:.5g}", f"{a:.5g} to {b:.5g}") for name, start, value, a, b in zip(names, starts, best, low, high)]
@@ -170,7 +175,7 @@ def tell(args, model, starts, answer, rests):
     reasons = []
     for name in angles:
         if name in ends:
-            reasons.append(f"{name} ended at the {ends[name]} end of its range of {reach:.0f} degrees; shift the angles of that file")
+            reasons.append(f"{name} {'has an interval that reaches' if name in reaching else 'ended at'} the {ends[name]} end of its range of {reach:.0f} degrees; shift the angles of that file")
     if any(name in ends for name in names):
         which = ", ".join(f"{name} ended at the {ends[name]} end of its range" for name in names if name in ends)
         reasons.append(
@@ -196,10 +201,11 @@ def tell(args, model, starts, answer, rests):
         }
         for name, start, value, a, b in zip(names, starts, best, low, high)
     }
+    elsewhere = {one.source: float(np.degrees(one.zero)) for one in beyond}
     of_angles = {
         str(source): {
             "value_deg": float(value), "low_deg": finite(value - by), "high_deg": finite(value + by), "at_end": ends.get(name),
-            "determined": name not in open_ and not nothing,
+            "determined": name not in open_ and not nothing, "beyond_deg": elsewhere.get(source),
         }
         for source, name, value, by in zip(model.zeros, angles, zeros, wide)
     }

@@ -1,6 +1,7 @@
 """Measured curves for scripts/calibrate.py: how they are read, and what is wrong with them."""
 
 import csv
+import functools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -86,6 +87,7 @@ def read_curves(path):
     return curves
 
 
+@functools.lru_cache(maxsize=64)
 def columns(path, *names):
     with open(path, newline="", encoding="utf-8") as file:
         reader = csv.reader(file)

@@ -44,6 +44,13 @@ class Model:
     def fit_zeros(self):
         self.zeros, self.room = list(dict.fromkeys(curve.source for curve in self.curves)), ZERO_REACH
 
+    def repeats(self):
+        """After which angle (rad) the core looks the same again."""
+        core = self.settings()["core"]
+        if core["shape"] != "rounded-box":
+            return TURN
+        return TURN / 4.0 if core["width_x"] == core["height_z"] else TURN / 2.0
+
     def settings(self):
         """The scene with its settings, as a run leaves it."""
         return tomllib.loads((self.run([]) / "scene.toml").read_text(encoding="utf-8"))

@@ -122,6 +122,16 @@ def test_an_angle_that_is_off_by_more_than_is_looked_for_is_no_fit(calibrate, me
     assert f"zero of {path} ended at the upper end of its range of 15 degrees; shift the angles of that file" in said and "wind with" not in said, said
 
 
+@pytest.mark.parametrize("ahead", [20.0, -22.0])
+def test_a_zero_beyond_reach_that_ends_within_is_doubtful(ahead, calibrate, measured, tmp_path):
+    """Curves ring: the fit took one ringing for another, at wrong values with narrow intervals and without a word."""
+    path = measured(tmp_path / "m.csv", ahead=ahead)
+    _, said, result = calibrate(tmp_path, path, words=["--fit-angle-zero"])
+    told = [text for text in result["warnings"] if text.startswith(f"the zero of {path} may lie beyond 15 deg, near ")]
+    assert result["doubtful"] and len(told) == 1 and told[0] in said, said
+    assert result["angle_zeros"][str(path)]["beyond_deg"] == pytest.approx(ahead, abs=1.5), said
+
+
 @pytest.mark.parametrize("count", [10, 30, 128, 400])
 @pytest.mark.parametrize("correlation", [0.0, 0.4, 0.7])
 def test_noise_is_seldom_taken_for_something_else(correlation, count, root):
