@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 from calibration_curves import UNITS, columns
+from failure import Mistake, told
 
 WHERE = {
     "tension": ("history.csv", "spindle_angle", "wire_tension"),
@@ -28,26 +29,57 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("-o", "--output", type=Path, default=Path("measured.csv"))
     args = parser.parse_args()
-    random, measured = np.random.default_rng(args.seed), {}
-    for text in args.noise:
-        column, _, sigma = text.partition("=")
-        quantity, _, unit = column.rpartition("_")
-        if quantity not in WHERE or unit not in UNITS[quantity]:
-            parser.error(f"--noise {text}: the column is none of tension_N, coil_width_mm, height_mm")
-        file, over, of = WHERE[quantity]
+    with told(parser.prog):
+        measured = {}
+        random = np.random.default_rng(seed_of(args.seed))
+        for text in args.noise:
+            column, values = measure(args, text, random)
+            measured[column] = values
+        write(args.output, measured)
+        print(f"wrote {args.output}")
+
+
+def seed_of(seed):
+    if seed < 0:
+        raise Mistake(f"--seed {seed} has to be at least 0")
+    return seed
+
+
+def measure(args, text, random):
+    """The name of a column, and its turns and values."""
+    column, _, sigma = text.partition("=")
+    quantity, _, unit = column.rpartition("_")
+    if quantity not in WHERE or unit not in UNITS[quantity]:
+        raise Mistake(f"--noise {text}: the column is none of tension_N, coil_width_mm, height_mm")
+    try:
+        sigma = float(sigma)
+    except ValueError:
+        raise Mistake(f"--noise {text}: expected COLUMN=SIGMA, such as {column}=0.02") from None
+    if not 0.0 <= sigma < np.inf:
+        raise Mistake(f"--noise {text}: the standard deviation has to be at least 0")
+    file, over, of = WHERE[quantity]
+    if not (args.run / file).is_file():
+        raise Mistake(f"{args.run / file} is missing; name the folder of a run (coilwind run SCENE --out DIR)")
+    try:
         angle, values = columns(args.run / file, over, of)
-        turns = np.abs(angle) / (2.0 * np.pi)
-        values = values / UNITS[quantity][unit]
-        at = np.arange(args.from_turn, turns[-1], 1.0 / 360.0)
-        measured[column] = (at, np.interp(at, turns, values) + random.normal(0.0, float(sigma), at.size))
+    except (ValueError, StopIteration):
+        raise Mistake(f"{args.run / file} is not whole; wind the scene again") from None
+    turns = np.abs(angle) / (2.0 * np.pi)
+    if not (turns.size and 0.0 <= args.from_turn < turns[-1]):
+        there = f"goes to turn {turns[-1]:.2f}" if turns.size else "has no rows"
+        raise Mistake(f"--from-turn {args.from_turn:g}: {column} of {args.run} {there}; begin before that, or wind more turns")
+    at = np.arange(args.from_turn, turns[-1], 1.0 / 360.0)
+    return column, (at, np.interp(at, turns, values / UNITS[quantity][unit]) + random.normal(0.0, sigma, at.size))
+
+
+def write(path, measured):
     longest = max((at for at, _ in measured.values()), key=len)
-    with open(args.output, "w", newline="", encoding="utf-8") as file:
+    with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["turns", *measured])
         for row, turn in enumerate(longest):
             cells = [f"{values[row]:.6g}" if row < len(at) else "" for at, values in measured.values()]
             writer.writerow([f"{turn:.6f}", *cells])
-    print(f"wrote {args.output}")
 
 
 if __name__ == "__main__":
