@@ -7,6 +7,8 @@ The machine sends nothing but its speed. `traverse.mode` makes the nozzle follow
 """
 
 import argparse
+import sys
+from pathlib import Path
 
 import numpy as np
 from winder import wind
@@ -31,6 +33,9 @@ def main():
     parser.add_argument("--turns", type=float, default=24.0)
     parser.add_argument("--share", type=float, default=0.5, help="speed at a climb, as a share of the full one (default 0.5)")
     given = parser.parse_args()
+    if not Path(given.fmu).is_file():
+        print(f"layers.py: {given.fmu} is missing; build it with scripts/build_fmu.sh", file=sys.stderr)
+        sys.exit(2)
     scene = {"scene.file": "bobbin", "traverse.mode": "orthocyclic"}
 
     def law(angle, time, read):

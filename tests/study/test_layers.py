@@ -10,3 +10,8 @@ def test_the_second_layer_begins_where_the_scene_plans_it(script, fmu):
     assert set(begins) == {1, 2}, said
     assert 19.0 < begins[2] < 21.0, said
     assert said.rstrip().endswith(" 0 defects"), said
+
+
+def test_a_missing_fmu_is_told_in_a_line(script, tmp_path):
+    code, said = script("examples/layers.py", "--fmu", tmp_path / "none.fmu")
+    assert code == 2 and said == f"layers.py: {tmp_path / 'none.fmu'} is missing; build it with scripts/build_fmu.sh\n", said
