@@ -13,6 +13,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
+from failure import told
 from runs import COLOURS, STYLE, by_speed, find_file, open_run, read_columns
 from verdicts import STEADY_TURNS
 
@@ -25,6 +26,12 @@ def main():
     parser.add_argument("-o", "--output", default="tension.png", help="picture to write")
     arguments = parser.parse_args()
 
+    with told(parser.prog):
+        plot(arguments)
+        print(f"wrote {arguments.output}")
+
+
+def plot(arguments):
     files = {}
     for path in arguments.runs:
         run = open_run(path)
@@ -40,7 +47,7 @@ def main():
     low, high, spans = 0.0, 0.0, []
     for number, (axis, run) in enumerate(zip(axes[:, 0], runs)):
         data = read_columns(files[run.directory][1], COLUMNS)
-        draw(axis, run, data, COLOURS[number % len(COLOURS)])
+        draw(axis, titled(run), data, COLOURS[number % len(COLOURS)])
         low = min(low, data["wire_tension_min"].min())
         high = max(high, data["wire_tension_max"].max())
         spans.append(data["spindle_angle"][[0, -1]] / (2 * np.pi))
@@ -50,10 +57,15 @@ def main():
     axes[-1, 0].set_xlabel("turns of the spindle from the start position")
     figure.supylabel("wire tension at the nozzle (N)", fontsize=9, color="#30343b")
     figure.savefig(arguments.output)
-    print(f"wrote {arguments.output}")
 
 
-def draw(axis, run, data, colour):
+def titled(run):
+    """Speed and folder: runs of one speed are told apart."""
+    folder = run.directory.resolve().name
+    return folder if run.speed is None else f"{run.label}, {folder}"
+
+
+def draw(axis, title, data, colour):
     turns, tension = data["spindle_angle"] / (2 * np.pi), data["wire_tension"]
     low, high = data["wire_tension_min"], data["wire_tension_max"]
     # Between communication points the wire swings faster than the line can show.
@@ -66,7 +78,7 @@ def draw(axis, run, data, colour):
         steady, note = np.full(len(turns), True), ""
     mean = np.mean(tension[steady])
     axis.axhline(mean, color="#5b616b", linewidth=0.7, linestyle=(0, (4, 3)))
-    axis.set_title(f"{run.label}", loc="left", fontweight="bold", color=colour)
+    axis.set_title(title, loc="left", fontweight="bold", color=colour)
     note += f"mean {mean:.1f} N, {low[steady].min():.1f} to {high[steady].max():.1f} N"
     axis.set_title(note, loc="right", color="#5b616b", fontsize=8)
 
