@@ -55,8 +55,10 @@ DEAF = "import signal\nsignal.signal(signal.SIGINT, signal.SIG_IGN)"
 # Without a worker for so long, the script says that it waits, s.
 SILENT = 3.0
 COUNTS = ["bulge", "gap", "overlap", "break", "slack"]
+# Turns at rest from which on one counts beside another: half of the second, as for the verdict of `coilwind sweep`.
+BESIDE = 1.5
 RESULTS = [
-    "outcome", "reason", "defect", *(f"defects_{kind}" for kind in COUNTS),
+    "outcome", "reason", "defect", "judged", *(f"defects_{kind}" for kind in COUNTS),
     "gap_max_m", "bulge_max_m", "tension_min_N", "tension_max_N", "turns_settled",
 ]
 
@@ -138,9 +140,11 @@ def wind(fmu, task):
         except FMICallException as error:
             result = {"outcome": "failed", "reason": said[0] if said else str(error)}
         values = slave.getInteger([reference[name] for name in counts])
+        every = slave.getInteger([reference["defect_count"]])[0]
         settled = get("turns_settled")
         slave.freeInstance()
-    result["defect"] = str(any(values)).lower()
+    result["defect"] = str(every > 0).lower()
+    result["judged"] = str(every > 0 or settled >= task["beside"]).lower()
     result.update(zip([name.replace("defect_count_", "defects_") for name in counts], values))
     result.update(
         gap_max_m=extremes["gap_width"], bulge_max_m=extremes["bulge_height"], turns_settled=settled,
@@ -216,7 +220,7 @@ def tasks_of(args):
             offset = SPREAD * (2.0 * member / (args.ensemble - 1) - 1.0) if args.ensemble > 1 else 0.0
             tasks.append({
                 "run": len(tasks), "scene": scene, "parameters": dict(start for start in starts if start), "motion": motion,
-                "offset": offset, "columns": [*point, member + 1],
+                "offset": offset, "columns": [*point, member + 1], "beside": BESIDE,
             })
     return list(swept), tasks
 
@@ -425,9 +429,15 @@ def run(args):
         return
     took = time.monotonic() - began
     defects, done = ledger.count("defect", "true"), ledger.count("outcome", "done")
+    unjudged = ledger.count("judged", "false", outcome="done")
+    if unjudged:
+        print(
+            f"warning: in {unjudged} of {len(tasks)} runs no turn came to rest beside another, so nothing could be compared; "
+            "wind more turns with --set spindle.turns=N", file=sys.stderr,
+        )
     workers = most_at_once(reports)
     print(
-        f"{len(tasks)} runs, {len(fresh)} of them new; {defects} with a defect, {len(tasks) - done} that failed; "
+        f"{len(tasks)} runs, {len(fresh)} of them new; {defects} with a defect, {unjudged} not judged, {len(tasks) - done} that failed; "
         f"{took:.1f} s on {workers} worker{'' if workers == 1 else 's'}"
     )
     if reports:

@@ -110,7 +110,7 @@ class Ledger:
 
         folders.write_whole(self.folder / name, write)
 
-    def count(self, column, value):
-        """How many rows have this value in this column."""
-        place = self.header.index(column)
-        return sum(row[place] == value for row in self.rows.values())
+    def count(self, column, value, **others):
+        """How many rows have this value in this column, and others in theirs."""
+        places = [(self.header.index(name), wanted) for name, wanted in [(column, value), *others.items()]]
+        return sum(all(row[place] == wanted for place, wanted in places) for row in self.rows.values())

@@ -80,6 +80,18 @@ def test_the_script_leaves_the_table_of_a_plain_loop(alone, scene, fmu, command,
     assert [int(row["run"]) for row in rows] == list(range(RUNS))
 
 
+def test_runs_that_judge_nothing_are_told(scene, fmu, command, script, tmp_path):
+    """They counted as runs without a defect."""
+    words = ["--over", "spindle.speed=100:100:1", "--command", command, "--fmu", fmu, "--workers", "1", "--out", tmp_path, "--force"]
+    for turns, judged in (("0.5", "false"), ("2.5", "true")):
+        code, said = script("scripts/sweep_dask.py", scene, *words, "--set", f"spindle.turns={turns}")
+        assert code == 0, said
+        (row,) = csv.DictReader((tmp_path / "sweep.csv").open(encoding="utf-8"))
+        assert row["judged"] == judged, row
+        assert ("in 1 of 1 runs no turn came to rest beside another" in said) == (judged == "false"), said
+        assert f"{0 if judged == 'true' else 1} not judged" in said, said
+
+
 def test_another_sweep_is_not_overwritten_without_a_word(scene, fmu, command, script, tmp_path):
     other = tmp_path / "sweep.csv"
     other.write_text("of another sweep\n", encoding="utf-8")
