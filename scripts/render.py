@@ -24,6 +24,7 @@ from vtkmodules.vtkCommonCore import vtkLogger
 
 import folder as folders
 from failure import Mistake, told
+from progress import Progress
 
 # Columns that colour the wire: array, factor to the unit, title.
 COLOURS = {
@@ -65,6 +66,8 @@ def main():
     with told(parser.prog):
         if not RATES[0] <= args.rate <= RATES[1]:
             raise Mistake(f"--rate {args.rate:g}: frames a second have to be from {RATES[0]:g} to {RATES[1]:g}")
+        if args.film and args.output:
+            raise Mistake(f"-o {args.output} names a picture, --film {args.film} a film; leave one out and start again for the other")
         refuse_unfinished(args.run)
         print(f"wrote {film(args) if args.film else picture(args)}")
 
@@ -155,10 +158,12 @@ def film(args):
         plotter.open_movie(args.film, framerate=args.rate, quality=7)
     else:
         plotter.open_gif(args.film, fps=args.rate, loop=0)
+    progress = Progress("frames", len(frames))
     for (time, _), file in zip(frames, files):
         try:
             wire = read(args.run, *file)
         except Mistake:
+            progress.end()
             plotter.close()
             args.film.unlink(missing_ok=True)
             raise
@@ -167,6 +172,8 @@ def film(args):
         plotter.add_mesh(coil.tube(wire), name="wire", reset_camera=False, **coil.look)
         plotter.add_text(f"{1e3 * time:.1f} ms", name="time", font_size=12, color="black", position="upper_left")
         plotter.write_frame()
+        progress.step()
+    progress.end()
     plotter.close()
     return args.film
 

@@ -113,6 +113,7 @@ def test_a_film_has_the_frames(run, script, tmp_path):
         (["{folder}"], "coil.vtp is missing; wind the run without --no-geometry"),
         (["{folder}", "--film", "film.mp4"], "frames.pvd is missing; wind the run with --frames N"),
         (["{folder}", "--film", "film.avi"], "the ending has to be .mp4 or .gif"),
+        (["{folder}", "--film", "film.mp4", "-o", "x.png"], "-o x.png names a picture, --film film.mp4 a film; leave one out"),
         (["{folder}", "--size", "big"], "--size big is not WIDTHxHEIGHT"),
     ],
 )
