@@ -18,6 +18,7 @@ and a warning says why. --fit-angle-zero also fits where the angle of each file 
 
 Exit codes: 0 fitted, also where values are doubtful, 1 nothing is fitted: a parameter ended at an end of its range, or the measurement
 does not determine it; also doubtful values with --fail-on-doubt, 2 a mistake that can be mended, 3 a full disk, 130 stopped.
+On a terminal a line tells how many runs are done.
 """
 
 import argparse
@@ -129,20 +130,29 @@ def run(args):
         raise too_few(points, len(args.fit))
     with tempfile.TemporaryDirectory() as folder:
         model = Model(args.command, args.scene, args.set, [], curves, folder)
-        names, starts = starts_of(model, args.fit)
-        model.names = names
-        if args.fit_angle_zero:
-            model.fit_zeros()
-        fit = Fit(model, starts, args.threads)
         try:
-            answer = calibrate(fit)
-            # Where zeros are not fitted, it is asked whether others would explain what is left.
-            turned = [] if model.zeros else model.turned(fit.values(answer.found.x), ANGLES)
-            beyond = beyond_reach(fit, answer)
-        except KeyboardInterrupt:
-            fit.stop()
-            raise Interrupted(keep_best(args, fit)) from None
+            names, starts = starts_of(model, args.fit)
+            model.names = names
+            if args.fit_angle_zero:
+                model.fit_zeros()
+            fit = Fit(model, starts, args.threads)
+            answer, turned, beyond = searched(args, fit)
+        finally:
+            model.progress.end()
     return tell(args, model, starts, answer, list(rests_of(curves, answer.computed, answer.slopes, ANGLES, turned)), beyond)
+
+
+def searched(args, fit):
+    """The answer, the curves at turned angles, and zeros of angles out of reach that fit."""
+    model = fit.model
+    try:
+        answer = calibrate(fit)
+        # Where zeros are not fitted, it is asked whether others would explain what is left.
+        turned = [] if model.zeros else model.turned(fit.values(answer.found.x), ANGLES)
+        return answer, turned, beyond_reach(fit, answer)
+    except KeyboardInterrupt:
+        fit.stop()
+        raise Interrupted(keep_best(args, fit)) from None
 
 
 def tell(args, model, starts, answer, rests, beyond):

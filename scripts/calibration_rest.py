@@ -56,7 +56,7 @@ class Rest:
         if self.repeats < LEVEL:
             yield (
                 f"what is left of {curve.column} is no noise, it repeats along the angle (noise does so with a chance of {self.repeats:.1g}): "
-                f"the scene differs from the machine in something else, or the angle is zero more than 15 degrees off, and {wrong}; see residuals.png"
+                f"the scene differs from the machine in something else, or its angle is off by more than 15 deg, and {wrong}; see residuals.png"
             )
         elif self.along > AUTOCORRELATED:
             yield (

@@ -11,6 +11,7 @@ import numpy as np
 
 from calibration_curves import TURN, ZERO_REACH, columns
 from failure import Mistake
+from progress import Progress
 
 # Share of measured heights that has to lie on settled wire.
 SETTLED = 0.8
@@ -26,7 +27,7 @@ class Model:
         self.names, self.curves, self.folder = names, curves, Path(folder)
         # Files whose angle has an unknown zero. What lies so near to an end of the run that it might be beyond it is left out.
         self.zeros, self.room = [], 0.0
-        self.runs = 0
+        self.runs, self.progress = 0, Progress("runs")
         self.going, self.stopped, self.lock = set(), False, threading.Lock()
         listed = subprocess.run([command, "variables", "--json"], capture_output=True, text=True, check=True).stdout
         self.table = {row["name"]: row for row in json.loads(listed)}
@@ -70,6 +71,9 @@ class Model:
         files = ["--no-geometry", "--no-report", "--quiet", "--force", "--out", out]
         code, said = self.start([self.command, "run", self.scene, *words, *files])
         self.runs += 1
+        with self.lock:
+            if not self.stopped:
+                self.progress.step()
         if code:
             reason = (said.strip().splitlines() or ["the run failed"])[0]
             raise Mistake(f"with {', '.join(words[1::2]) or self.scene}: {reason}")

@@ -149,6 +149,20 @@ def test_a_setting_of_what_is_fitted_is_its_start(calibrate, short, tmp_path):
     assert result["parameters"]["tensioner.mass"]["start"] == pytest.approx(1.5e-3)
 
 
+@pytest.mark.skipif(os.name == "nt", reason="terminals of POSIX")
+def test_a_terminal_shows_the_progress(root, scene, short, command, tmp_path):
+    """It said nothing until its end."""
+    reader, writer = os.openpty()
+    code = "import sys; sys.path.insert(0, 'scripts'); import progress; progress.QUIET = 0.0; import calibrate; calibrate.main()"
+    line = [sys.executable, "-c", code, scene, "--measured", short, *SHORT, "--fit", "tensioner.mass", "--command", command, "--out", tmp_path]
+    said = subprocess.run(line, stdout=subprocess.PIPE, stderr=writer, text=True, check=True, cwd=root).stdout
+    shown = os.read(reader, 1 << 12).decode()
+    os.close(reader)
+    os.close(writer)
+    assert "wind with" in said and "\r" not in said, said
+    assert "1 runs, 0 s" in shown and "20 runs, " in shown, shown
+
+
 def test_results_are_not_overwritten_without_a_word(calibrate, short, tmp_path):
     for name, holds in [("summary.json", "another run"), ("sweep.csv", "another sweep"), ("calibration.json", "another calibration")]:
         out = tmp_path / name
