@@ -11,16 +11,6 @@ use super::station::{Neighbour, Station};
 /// touching wires it is 0.866, beside them 0.
 const STANDS: f64 = 0.5;
 
-/// A run that counts after a station that it does not cover. Turns that are loose hold the same wire until a turn lies between
-/// their ends: they are one loose stretch.
-fn after_end(kind: DefectKind, run: Run) -> Run {
-    let shares_wire = (run.since() as usize) < STATIONS_PER_TURN - 1;
-    match kind {
-        DefectKind::LooseTurn if shares_wire => run.bridge(),
-        _ => Run::default(),
-    }
-}
-
 impl Coil {
     /// The last station up to the next one at which wire crosses, when the next one lies at `y`, m.
     pub(crate) fn last_crossing(&self, y: f64) -> Option<usize> {
@@ -107,12 +97,7 @@ impl Coil {
         for kind in DefectKind::MEASURED {
             let (value, limit, least) = self.criterion(kind, &record);
             let k = kind as usize;
-            record.runs[k] = match runs_before[k].next(value, limit) {
-                run if run == Run::default() && runs_before[k].counts(least) => {
-                    after_end(kind, runs_before[k])
-                }
-                run => run,
-            };
+            record.runs[k] = runs_before[k].next(value, limit);
             if record.runs[k].counts(least) && !runs_before[k].counts(least) {
                 record.raised[k] += 1;
                 record.last_defect = Some(self.records.len());

@@ -30,11 +30,9 @@ impl Coil {
     pub(crate) fn mark(&self, kind: DefectKind, marks: &mut [u16]) {
         let code = kind.code() as u16;
         for run in self.counted_runs(kind, 0) {
-            for index in run.first..=run.last {
-                if self.records[index].runs[kind as usize].since() == 0 {
-                    marks[index] |= code;
-                }
-            }
+            marks[run.first..=run.last]
+                .iter_mut()
+                .for_each(|m| *m |= code);
         }
     }
 
@@ -84,7 +82,7 @@ impl Coil {
             found.extend(counts_at.filter(|_| ends).map(|counts_at| CountedRun {
                 kind,
                 first,
-                last: index - run.since() as usize,
+                last: index,
                 counts_at,
             }));
         }

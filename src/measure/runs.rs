@@ -17,8 +17,6 @@ pub(crate) const SHORT_RUN: f64 = 8.0 / STATIONS_PER_TURN as f64;
 pub(crate) struct Run {
     /// stations of the run above the limit; 0: no run
     above: u32,
-    /// stations since the last that the run covers
-    since: u32,
 }
 
 impl Run {
@@ -29,20 +27,7 @@ impl Run {
             Some(value) if value > RELEASE * limit => self.above,
             _ => 0,
         };
-        Self { above, since: 0 }
-    }
-
-    /// The run after one more station that it does not cover, and beyond which it may go on.
-    pub(crate) fn bridge(self) -> Self {
-        Self {
-            since: self.since + 1,
-            ..self
-        }
-    }
-
-    /// Stations since the last that it covers.
-    pub(crate) fn since(self) -> u32 {
-        self.since
+        Self { above }
     }
 
     /// Length as a fraction of a turn.
@@ -88,11 +73,10 @@ mod tests {
 
     #[test]
     fn a_fraction_is_reached_by_its_number_of_stations() {
-        let of = |above| Run { above, since: 0 };
         assert_eq!(stations_for(0.1), 36);
         assert_eq!(stations_for(0.0), 1);
         assert_eq!(stations_for(0.0101), 4);
-        assert!(of(36).counts(stations_for(0.1)));
-        assert!((of(36).fraction() - 0.1).abs() < 1e-15);
+        assert!(Run { above: 36 }.counts(stations_for(0.1)));
+        assert!((Run { above: 36 }.fraction() - 0.1).abs() < 1e-15);
     }
 }

@@ -327,29 +327,6 @@ fn wire_that_hangs_loose_over_half_a_turn_is_a_loose_turn() {
     assert!(!short.flags().loose_turn && !short.flags().bulge);
 }
 
-/// A stretch that hangs looser than what is before and after it was told twice, at one place, where the turn from before it to its
-/// end was loose and the one from its start to behind it.
-#[test]
-fn a_loose_stretch_that_two_loose_turns_hold_is_one_defect() {
-    let within =
-        |parts: &[[f64; 2]], turn: f64| parts.iter().any(|[a, b]| (*a..*b).contains(&turn));
-    let stretch = altered(
-        |turn| within(&[[1.9, 2.1], [2.4, 2.75], [3.15, 3.35]], turn),
-        |node| node.height += 0.2 * D,
-    );
-    assert_eq!(only(DefectKind::LooseTurn, &stretch).turn, 3);
-    // loose turns with one between them that is not are two
-    let apart = altered(
-        |turn| within(&[[1.2, 1.8], [3.6, 4.2]], turn),
-        |node| node.height += 0.2 * D,
-    );
-    let turns: Vec<u32> = of(DefectKind::LooseTurn, &apart)
-        .iter()
-        .map(|defect| defect.turn)
-        .collect();
-    assert_eq!(turns, [2, 4]);
-}
-
 /// Wire on its way to the next layer, which is not judged, made a turn loose, by a height that no table had.
 #[test]
 fn wire_on_its_way_to_the_next_layer_is_not_loose() {
