@@ -49,10 +49,15 @@ def read_curves(path):
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
             rows = list(csv.reader(line for line in file if not line.startswith("#")))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except UnicodeDecodeError:
+        raise Mistake(f"{path} is no text in UTF-8; save it as CSV in UTF-8") from None
+    except (OSError, csv.Error) as error:
         raise Mistake(f"{path} cannot be read: {error}") from None
     if len(rows) < 2:
         raise Mistake(f"{path} holds no measurement: give a header and a row for each angle")
+    # A comma at the end of each line makes a last column of nothing.
+    if not any(row[-1].strip() for row in rows if row) and all(len(row) == len(rows[0]) for row in rows):
+        rows = [row[:-1] for row in rows]
     header = [name.strip() for name in rows[0]]
     if (foreign := next((name for mark, name in SEPARATORS.items() if mark in rows[0][0]), None)) is not None:
         raise Mistake(f"{path} has {foreign} between columns; save it with commas between columns and points in numbers")

@@ -76,6 +76,8 @@ class Model:
                 self.progress.step()
         if code:
             reason = (said.strip().splitlines() or ["the run failed"])[0]
+            if whole := next((name for name, _ in zip(self.names, values) if name in reason and "not a whole number" in reason), None):
+                raise Mistake(f"--fit {whole}: it is counted in whole numbers and cannot be fitted; give it with --set")
             raise Mistake(f"with {', '.join(words[1::2]) or self.scene}: {reason}")
         return out
 

@@ -256,6 +256,21 @@ def test_a_wrong_measurement_is_told_in_a_line(text, words, complaint, calibrate
     assert not (tmp_path / "out").exists()
 
 
+def test_tables_of_spreadsheets_are_read_or_told(root, monkeypatch, tmp_path):
+    """A comma at the end of lines gave a column without a name, and UTF-16 an error of the decoder."""
+    monkeypatch.syspath_prepend(root / "scripts")
+    import calibration_curves as curves
+    from failure import Mistake
+
+    path = tmp_path / "measured.csv"
+    path.write_text("turns,tension_N,\n0.3,15,\n0.4,16,\n", encoding="utf-8")
+    (curve,) = curves.read_curves(path)
+    assert list(curve.values) == [15.0, 16.0]
+    path.write_text("turns,tension_N\n0.3,15\n", encoding="utf-16")
+    with pytest.raises(Mistake, match="save it as CSV in UTF-8"):
+        curves.read_curves(path)
+
+
 def in_folder(call, folder):
     code = f"import sys; sys.path.insert(0, 'scripts'); import folder, pathlib; folder.{call}"
     return subprocess.run([sys.executable, "-c", code, folder], capture_output=True, text=True, check=False)
