@@ -30,7 +30,11 @@ import sys
 import tempfile
 from pathlib import Path
 
-import numpy as np
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    print('calibrate.py: this Python has no numpy; start it with "$(scripts/venv.sh study)" scripts/calibrate.py', file=sys.stderr)
+    sys.exit(2)
 
 import folder as folders
 from calibration_curves import TURN, ZERO_REACH, read_curves, too_few
