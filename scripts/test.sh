@@ -194,7 +194,8 @@ studies() {
 
 rust() {
     step Rust tests
-    cargo test --locked --workspace
+    # property tests draw the same cases in every run: a change passes or fails by what it is
+    PROPTEST_RNG_SEED=${PROPTEST_RNG_SEED-1} cargo test --locked --workspace
 }
 
 fmu() {
