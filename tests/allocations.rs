@@ -56,6 +56,7 @@ fn warm_steps(twist: &str) {
     let mut sim = Simulation::new(&scene).expect("starts");
     let warm = sim.motion_profile().time_at(1.3 * std::f64::consts::TAU);
     sim.advance_profile(warm).expect("winds");
+    assert!(calls() > 100, "the way to there takes heap");
     let (mut quiet, mut noisy) = (0, Vec::new());
     for _ in 0..400 {
         let wire = |s: &Simulation| (s.outputs().live_nodes, s.outputs().turns_settled);
