@@ -211,13 +211,13 @@ fn scene_difference(a: &Value, b: &Value) -> String {
     let (Some(a), Some(b)) = (parsed(a), parsed(b)) else {
         return "scene".to_owned();
     };
-    let mut keys = BTreeSet::new();
-    for (one, other) in [(&a, &b), (&b, &a)] {
-        for (key, _) in leaves(one).difference(&leaves(other)) {
-            keys.insert(key.clone());
-        }
-    }
-    let keys: Vec<String> = keys.into_iter().collect();
+    let (a, b) = (leaves(&a), leaves(&b));
+    let mut keys: Vec<&str> = a
+        .symmetric_difference(&b)
+        .map(|(key, _)| key.as_str())
+        .collect();
+    // (a key that both have stands there with either value)
+    keys.dedup();
     format!("scene: {}", keys.join(", "))
 }
 
