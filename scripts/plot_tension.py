@@ -62,7 +62,10 @@ def plot(arguments):
 def titled(run):
     """Speed and folder: runs of one speed are told apart."""
     folder = run.directory.resolve().name
-    return folder if run.speed is None else f"{run.label}, {folder}"
+    if run.speed is None:
+        return folder
+    # (a folder may be named by the speed)
+    return run.label if run.label.startswith(f"{folder} ") else f"{run.label}, {folder}"
 
 
 def draw(axis, title, data, colour):

@@ -36,6 +36,7 @@ from pathlib import Path
 
 import folder as folders
 from failure import Interrupted, Mistake, Stuck, same_command, told
+from progress import Progress
 from sweep_ledger import ROWS, TIMES, Ledger
 
 # Spread of the members' nozzle distance about the scene's, wire diameters, as in `coilwind sweep`.
@@ -372,22 +373,6 @@ def overhead(reports):
     return statistics.median(between) if between else math.nan
 
 
-class Progress:
-    """Tells how many runs have ended, `before` of them earlier."""
-
-    def __init__(self, count, before, quiet):
-        self.count, self.before, self.ended, self.quiet, self.began = count, before, before, quiet, time.monotonic()
-
-    def step(self):
-        self.ended += 1
-        if self.quiet:
-            return
-        took = time.monotonic() - self.began
-        left = took / (self.ended - self.before) * (self.count - self.ended)
-        end = "\n" if self.ended == self.count or not sys.stderr.isatty() else "\r"
-        print(f"{self.ended} of {self.count} runs, {took:.0f} s, {left:.0f} s left   ", end=end, file=sys.stderr, flush=True)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("scene", help="scene file, or the name of a packed scene")
@@ -424,7 +409,8 @@ def run(args):
     fresh = [task for task in tasks if task["run"] not in ledger.rows]
     began, reports = time.monotonic(), []
     if fresh:
-        reports = wind_fresh(args, fmu, fresh, ledger, Progress(len(tasks), len(ledger.rows), args.quiet))
+        progress = None if args.quiet else Progress("runs", len(tasks), before=len(ledger.rows), logged=True)
+        reports = wind_fresh(args, fmu, fresh, ledger, progress)
     if args.quiet:
         return
     took = time.monotonic() - began
@@ -455,7 +441,8 @@ def wind_fresh(args, fmu, tasks, ledger, progress):
     def keep(task, report):
         reports.append(report)
         keep_in(ledger, task, report)
-        progress.step()
+        if progress is not None:
+            progress.step()
 
     with cluster_of(args) as client:
         ledger.begin()

@@ -357,10 +357,8 @@ fn a_table_that_has_changed_is_not_the_motion_of_the_run() {
         child.kill().unwrap();
         child.wait().unwrap();
         std::fs::write(&file, other).unwrap();
-        refused(
-            &mut resume(&out),
-            "the table of traverse.file or spindle.file has changed",
-        );
+        let told = format!("the table in {} ({key}.file) is not the one", file.display());
+        refused(&mut resume(&out), &told);
         std::fs::write(&file, table).unwrap();
         assert!(resume(&out).status().unwrap().success());
     }

@@ -1,7 +1,7 @@
 //! Meshes from STL files, binary or ASCII.
 //!
-//! The `stl_io` crate parses the binary form. It takes any file that begins with `solid ` for ASCII, although many programs
-//! write that into binary headers, so that the form is told apart here.
+//! The `stl_io` crate parses the binary form; its reader of the text form tells no line of a fault. It takes any file that begins
+//! with `solid ` for text, although many programs write that into binary headers, so that the form is told apart here.
 
 use super::error::MeshError;
 use super::flat::cut_the_other_way;

@@ -49,11 +49,12 @@ pub enum RestoreError {
         /// file of the mesh; nothing where the core has none
         file: Option<PathBuf>,
     },
-    /// the file of a table has changed since
-    #[error(
-        "the motion is not the one that the state was saved with: the table of traverse.file or spindle.file has changed; put it back to go on"
-    )]
-    OtherMotion,
+    /// the motion is another one, or the file of a table has changed since
+    #[error("{}", other_motion(.files))]
+    OtherMotion {
+        /// keys and files of the tables that the motion follows; nothing where it follows none
+        files: Vec<(&'static str, String)>,
+    },
     /// the scene does not start
     #[error("the scene of the state does not start: {0}")]
     Scene(#[from] super::SimError),
@@ -70,6 +71,37 @@ fn other_core(file: Option<&Path>) -> String {
             "the core is not the one that the state was saved with; set the core section as it was to go on".to_owned()
         }
     }
+}
+
+/// What to do about a motion that the state was not saved with.
+fn other_motion(files: &[(&str, String)]) -> String {
+    let named = files
+        .iter()
+        .map(|(key, file)| format!("the table in {file} ({key})"));
+    let named: Vec<String> = named.collect();
+    match &named[..] {
+        [] => {
+            "the motion is not the one that the state was saved with; set the sections spindle and traverse as they were to go on".to_owned()
+        }
+        [one] => format!("{one} is not the one that the state was saved with; put that one back to go on"),
+        more => format!(
+            "{} are not those that the state was saved with; put those back to go on",
+            more.join(" or ")
+        ),
+    }
+}
+
+/// Keys and files of the tables that a scene's motion follows.
+fn tables(scene: &Scene) -> Vec<(&'static str, String)> {
+    let (traverse, spindle) = (&scene.traverse, &scene.spindle);
+    let mut files = Vec::new();
+    if traverse.mode == "table" {
+        files.push(("traverse.file", traverse.file.clone()));
+    }
+    if !spindle.file.is_empty() {
+        files.push(("spindle.file", spindle.file.clone()));
+    }
+    files
 }
 
 /// All that the scene does not give.
@@ -136,7 +168,9 @@ impl Simulation {
             return Err(RestoreError::OtherCore { file });
         }
         if saved.winding.motion != winding.motion_profile.checksum() {
-            return Err(RestoreError::OtherMotion);
+            return Err(RestoreError::OtherMotion {
+                files: tables(scene),
+            });
         }
         winding
             .take_over(saved.winding)

@@ -219,11 +219,9 @@ impl Joints for BendingJoints {
         let g = moment * ratio + kb * (twice * kb.dot(moment));
         let mean = (t[0] + t[1]) * (f * 0.5);
         let along = mean * kb.dot(g);
-        // what the turn of the plastic curvature adds, see `SetCurvature`
         let root = f.sqrt();
         let share = (root * (root + 1.0)).recip() * ratio * 0.25;
-        let turned = |v: Lanes3<S>| kb * (mean.dot(kb.cross(v)) * share);
-        let more = turned(moment);
+        let more = turned(moment, kb, mean, share);
         out.store3(GRADIENT[0], j, (t[1].cross(g) * f - along + more) * il[0]);
         out.store3(
             GRADIENT[1],
@@ -255,7 +253,7 @@ impl Joints for BendingJoints {
             // (elsewhere the direction of the moment does not matter: it is 0)
             let more = law.load(simd, MORE, j, 1);
             let d = law.load3(simd, DIRECTION, j, 1);
-            let turned = turned(d);
+            let turned = turned(d, kb, mean, share);
             let d = d * ratio + kb * (twice * kb.dot(d));
             let side = [d.cross(t[1]), d.cross(t[0])];
             dir = on((mean, f, il), kb.dot(d), side);
@@ -312,6 +310,15 @@ impl Joints for BendingJoints {
             }
         }
     }
+}
+
+/// What the turn of the plastic curvature adds to a derivative along `v`, see [`SetCurvature`](crate::rod::SetCurvature).
+///
+/// No closure: used at two places it is a function of its own, without the lanes of its caller, that calls a function for
+/// every product.
+#[inline(always)]
+fn turned<S: Simd>(v: Lanes3<S>, kb: Lanes3<S>, mean: Lanes3<S>, share: Lanes<S>) -> Lanes3<S> {
+    kb * (mean.dot(kb.cross(v)) * share)
 }
 
 /// Derivatives of the binormal by the edge vectors, transposed, on a vector: `kv` is its product
