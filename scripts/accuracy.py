@@ -99,10 +99,10 @@ def speed(args):
 
 def write_speed(folder, where, rows):
     head = ["rad/s", "tolerance m", "bulge off by um", "gap off by um", "CPU s, least", "real-time factor"]
-    head += ["dearest ms, CPU ms", "steps", "solves"]
+    head += ["slowest millisecond, CPU ms", "steps", "solves"]
     told = (
         f"`coilwind bench W --scene fig8 --omega W --tol TOL --repeat {REPEAT}`, 2.5 turns; {where}. Bulge and gap: rms over the stations of turn 2"
-        f" against the converged ensemble packed with the scene. Factors are the least and the largest of {ROUNDS} medians."
+        f" against the converged ensemble packed with the scene. The real-time factor is the median of {REPEAT} runs, least and largest of {ROUNDS} medians."
     )
     return tables.write(folder, "fig8-speed", "scripts/accuracy.py speed", "`fig8` by tolerance: accuracy and speed", told, tables.table(head, rows))
 

@@ -66,14 +66,14 @@ def machine(versions):
 
 def reached(lines, problem):
     """Least CPU time of a setting that reached an error, by method."""
-    targets = TARGETS[problem]
+    targets, unit = TARGETS[problem], " m" if problem == "W" else ""
     rows = []
     for value, chosen in plots.variants(lines, problem):
         for name in plots.METHODS:
             own = [line for line in chosen if plots.method(line) == name]
             if own:
                 rows.append([plots.title(problem, value), name, *(cheapest(own, target) for target in targets)])
-    return tables.table(["problem", "method", *(f"error {target:g}" for target in targets)], rows)
+    return tables.table(["problem", "method", *(f"error {target:g}{unit}" for target in targets)], rows)
 
 
 def cheapest(lines, target):
@@ -84,7 +84,7 @@ def cheapest(lines, target):
 def points(lines, problem):
     """Every setting."""
     extra = problem == "W"
-    head = ["method", "setting", "error", "CPU s", "steps"] + (["gap error um", "times real time"] if extra else [])
+    head = ["method", "setting", "error m" if extra else "error", "CPU s", "steps"] + (["gap error um", "real-time factor"] if extra else [])
     rows = []
     for line in lines:
         if line["problem"] != problem:
@@ -115,7 +115,7 @@ def turns(lines):
         count = line["turns"]
         row = [f"{count:.0f}", f"{line['cpu_s']:.2f}", f"{line['cpu_s'] / count:.3f}"]
         rows.append([*row, f"{line['nodes_mean']:.0f}", f"{line['rtf']:.2f}"])
-    return tables.table(["turns", "CPU s", "CPU s a turn", "live nodes", "times real time"], rows)
+    return tables.table(["turns", "CPU s", "CPU s a turn", "live nodes", "real-time factor"], rows)
 
 
 def fmu(found):

@@ -18,7 +18,7 @@ use crate::math::{Spin, V3, spin_velocity};
 use crate::system::{Spindle, System};
 
 /// How often a touch is looked at until that has to be enough.
-const LOOKS: u8 = 50;
+const LOOKS: u8 = 20;
 /// Way in a step that no sweep has to mend, as a share of the tolerance.
 const UNSEEN: f64 = 0.01;
 /// Change by a touch, as a share of what is unseen, after which the touches of its nodes are looked at again before all are.
