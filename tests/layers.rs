@@ -279,6 +279,22 @@ fn wire_that_gets_over_a_rim_is_told() {
     assert!(!wound(2.5));
 }
 
+/// A coil with its last wire on the rim of a flange was "aligned, exit 0": what lies there is measured as if it lay on the core.
+#[test]
+fn a_coil_over_a_rim_without_a_defect_is_not_judged() {
+    let mut sim = started(
+        "wire.material = 'copper'\nwire.diameter_mm = 0.5\ncore.shape = 'cylinder'\ncore.radius_mm = 8\n\
+         core.flange.inner_distance_mm = 6\ncore.flange.height_mm = 0.6\nnozzle.distance_mm = 20\n\
+         tensioner.tension = 6\nspindle.speed = 40\nspindle.turns = 7\ntraverse.per_turn_mm = 0.52\n",
+    );
+    wound(&mut sim, 6.0);
+    assert_eq!(sim.doubt(), None);
+    wound(&mut sim, 7.0);
+    assert_eq!(sim.defects(), [], "{:?}", sim.reasons());
+    let doubt = sim.doubt().expect("wire on the rim");
+    assert!(doubt.contains("got over the rim of a flange"), "{doubt}");
+}
+
 /// Slack at the end of a layer was told in the next one, or in the one before: the layer was guessed when it happened.
 #[test]
 fn slack_lies_in_the_layer_in_which_its_wire_came_to_rest() {

@@ -250,6 +250,8 @@ fn tuned_limits_count_at_once() {
         let mut scene = run.scene().clone();
         scene.defects.gap = gap;
         run.retune(&scene).expect("nothing is owed");
+        let o = run.outputs();
+        assert!(o.defect_count_gap > 0 || !o.defect_gap, "{o:?}");
         run.advance(stand, 1e-3).expect("goes on");
         let o = run.outputs();
         assert!(o.defect_count >= o.defect_count_gap, "{o:?}");

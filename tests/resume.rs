@@ -357,7 +357,10 @@ fn a_table_that_has_changed_is_not_the_motion_of_the_run() {
         child.kill().unwrap();
         child.wait().unwrap();
         std::fs::write(&file, other).unwrap();
-        let told = format!("the table in {} ({key}.file) is not the one", file.display());
+        let told = format!(
+            "the table in {} ({key}.file) is not the one",
+            file.display()
+        );
         refused(&mut resume(&out), &told);
         std::fs::write(&file, table).unwrap();
         assert!(resume(&out).status().unwrap().success());

@@ -575,7 +575,8 @@ impl Coil {
     /// clamp.
     pub(crate) fn is_free_of_clamp(&self, angle: f64) -> bool {
         let within = angle - TAU * (angle / TAU + 1e-9).floor();
-        within >= self.spec.limits.skip_angle || angle >= 2.0 * TAU - 1e-9
+        let skip = self.spec.limits.skip_angle;
+        within >= skip || angle >= TAU + skip.max(TAU) - 1e-9
     }
 
     /// Layer of the next station where wire lies `below` it as it does, and for how many stations that has said otherwise.

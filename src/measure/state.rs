@@ -3,7 +3,6 @@
 use super::coil::{Coil, Record};
 use super::defect::{Defect, DefectFlags, DefectKind, DefectPlace, MEASURED};
 use super::marks::CountedRun;
-use super::profile::Profile;
 use super::station::Station;
 use super::{STATION_STEP, STATIONS_PER_TURN, Verdict};
 use serde::Serialize;
@@ -244,15 +243,6 @@ impl Coil {
             let rectangle = self.coil_width() * (node.height_max.max(0.0) + d);
             self.turns_settled() * PI / 4.0 * d * d / rectangle
         })
-    }
-
-    /// Heights over the core of a complete turn (from 1), for use as a [`Profile`] of other runs.
-    pub fn height_profile(&self, turn: usize) -> Option<Profile> {
-        let records = self.records.chunks().nth(turn.checked_sub(1)?)?;
-        if records.len() < STATIONS_PER_TURN {
-            return None;
-        }
-        Profile::new(records.iter().map(|record| record.station.height).collect())
     }
 
     /// Square of the distance from the axis over the length of the settled wire, m3.

@@ -35,7 +35,9 @@ impl Defect {
                 )
             }
             (DefectKind::LooseTurn, None, _) => {
-                format!("loose turn: it has hardly any tension, {place}")
+                format!(
+                    "loose turn: its tension is below the share defects.loose_tension of tensioner.tension, {place}"
+                )
             }
             (DefectKind::Overstretch, Some(m), _) => {
                 format!("overstretch, {:.3} mm a turn, {place}", 1e3 * m)

@@ -15,7 +15,7 @@ use crate::geometry::stl::{self, StlError};
 use crate::geometry::{Crossing, Room, Surface, TriMesh};
 use crate::math::V3;
 use crate::rod::Twist;
-use crate::settings::{NozzleFollows, SceneSettings, SolverSettings, Spindle};
+use crate::settings::{NozzleFollows, Origin, SceneSettings, SolverSettings, Spindle};
 use std::path::{Path, PathBuf};
 
 /// How far beside the clamp the core is looked at too, diameters. Chosen: far above the rounding of an STL file's numbers.
@@ -141,6 +141,10 @@ impl SceneSettings {
             window,
             nozzle: self.nozzle,
             tensioner: self.tensioner,
+            tension_given: matches!(
+                self.origin("tensioner.tension"),
+                Origin::File { .. } | Origin::Set
+            ),
             start: self.start,
             spindle: Spindle {
                 turns: match self.spindle.turns {

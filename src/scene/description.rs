@@ -34,6 +34,8 @@ pub struct Scene {
     pub nozzle: Nozzle,
     /// tensioner and the line to the nozzle
     pub tensioner: Tensioner,
+    /// the scene gives its tension; else coils are judged by the input at the start
+    pub tension_given: bool,
     /// where the wire begins
     pub start: Start,
     /// spindle motion profile of `coilwind run`, as given

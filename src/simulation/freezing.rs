@@ -39,6 +39,10 @@ const DOUBLING: f64 = 0.25 * std::f64::consts::TAU;
 /// farther in a window may still become one, or cease to be one.
 const MOST: f64 = 0.05;
 
+/// Free spans behind lift-off beyond which nothing bends the wire that the span does, however little pulls at it. Bending dies
+/// out over a length that goes with the inverse root of the tension; without a bound, wire that starts without any would never rest.
+const SPANS: f64 = 4.0;
+
 /// Periods of the free span's slowest ringing over which motion is judged while the spindle stands.
 const PERIODS: f64 = 10.0;
 
@@ -58,7 +62,10 @@ impl FreezePolicy {
             displacement: given.window * or(given.creep, scaled(2e-6, wire.diameter)),
             patience: given.patience * std::f64::consts::TAU,
             most: MOST * wire.diameter,
-            keep_length: or(given.keep_length, 1.75 * (wire.ei / pull).sqrt()),
+            keep_length: or(
+                given.keep_length,
+                (1.75 * (wire.ei / pull).sqrt()).min(SPANS * span),
+            ),
             margin: or(given.margin, scaled(5e-3, wire.diameter)),
         }
     }

@@ -80,10 +80,19 @@ impl Winding {
     /// Why the verdict on this run, and its numbers, are not to be trusted, if they are not.
     ///
     /// The energy balance leaves more than 5 % of what went through it unexplained, or wire was more than half a diameter deep in
-    /// what it touches.
+    /// what it touches. Or wire has left the core or got over a flange, and no defect tells so.
     pub fn doubt(&self) -> Option<String> {
         let since = |doubt: Doubt| format!("at t = {:.6} s {}", doubt.time, doubt.cause);
-        self.run.doubt.map(since)
+        self.run.doubt.map(since).or_else(|| self.left_its_room())
+    }
+
+    /// That wire lies where nothing judges it, unless a defect condemns the coil all the same.
+    fn left_its_room(&self) -> Option<String> {
+        let why = self.slipped_off().or_else(|| self.wire_on_a_rim())?;
+        let condemned = self.verdict().is_defect() || !self.defects().is_empty();
+        (!condemned).then(|| {
+            format!("{why}; it is measured there as if it lay on the core, which judges nothing")
+        })
     }
 
     /// What bulges are judged by.

@@ -171,10 +171,13 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64, Option<Str
     Ok((sys, coil, angle0, way))
 }
 
-/// Tension that the quasi-static height is for, N: that of the scene, or that at the start where it is more. Wire that is
-/// wound looser than the scene has it stands off more than it should.
+/// Tension that coils are judged by, N: that of the scene, or that at the start where it is more. Wire that is wound looser than
+/// the scene has it stands off more than it should. A scene that leaves its tension to the input has that at the start.
 fn yardstick_tension(scene: &Scene, inputs: &Inputs) -> f64 {
-    inputs.tension_setpoint.max(scene.tensioner.tension)
+    match inputs.tension_setpoint {
+        start if start > 0.0 && !scene.tension_given => start,
+        start => start.max(scene.tensioner.tension),
+    }
 }
 
 /// Polar angle of the corner between the faces on +x and +z, rad.

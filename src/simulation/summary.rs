@@ -171,7 +171,7 @@ impl Winding {
 
     /// Where wire first lies beyond the inner face of a flange, in words. It got over the rim, and what is wound there is measured as if
     /// it lay on the core.
-    fn wire_on_a_rim(&self) -> Option<String> {
+    pub(super) fn wire_on_a_rim(&self) -> Option<String> {
         let half = 0.5 * self.scene.core.flange()?.inner_distance;
         let at = self
             .coil

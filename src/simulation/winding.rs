@@ -122,6 +122,9 @@ impl Winding {
             self.scene.defects = scene.defects;
             self.coil_mut().set_limits(scene.defects);
             self.count_defects();
+            let mut outputs = self.run.outputs;
+            self.lower_flags(&mut outputs);
+            self.run.outputs = outputs;
             self.tell_of_limits();
         }
         if let Some(law) = self.sys.model.contact.law_mut() {

@@ -342,3 +342,24 @@ fn the_neighbourhood_of_the_clamp_is_left_out() {
         .bulge
     );
 }
+
+/// Above a turn the angle meant two turns, however many it was of.
+#[test]
+fn a_skip_angle_of_several_turns_is_heeded() {
+    let apart = |angle: f64| (1.4 * D * angle / TAU, 0.0);
+    let is_judged = |skip_angle: f64, turns: f64| {
+        let limits = DefectLimits {
+            skip_angle,
+            ..limits()
+        };
+        let coil = wound(
+            CoilSpec { limits, ..spec() },
+            &on_cylinder(turns, 1.0, apart),
+        );
+        !coil.defects().is_empty()
+    };
+    for (skipped, first) in [(1.0, 3.0), (3.0, 5.0)] {
+        assert!(!is_judged(skipped * TAU, first - 1.0), "{skipped} turns");
+        assert!(is_judged(skipped * TAU, first), "{skipped} turns");
+    }
+}
