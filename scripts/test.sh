@@ -116,6 +116,9 @@ lint() {
 
 lab() {
     build_command
+    step wide kernels
+    scripts/check_lanes.sh "$command"
+
     step "exact answers; beside them the FMU, most of whose building keeps one core busy"
     beside scripts/build_fmu.sh
     "$command" verify
