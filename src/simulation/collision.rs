@@ -8,10 +8,9 @@ use super::Winding;
 use super::nozzle_place::nozzle_of;
 use crate::geometry::{Nearness, RoundedRod};
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
-use crate::measure::DefectKind;
+use crate::measure::{DefectKind, OnTurn};
 use crate::settings::Nozzle;
 use crate::signals::Inputs;
-use std::f64::consts::TAU;
 
 /// What the nozzle's body met, and where.
 struct Meeting {
@@ -32,11 +31,6 @@ fn body_of(nozzle: &Nozzle) -> Option<RoundedRod> {
         },
         edge_radius: nozzle.edge_radius,
     })
-}
-
-/// Turn of an angle along the wire, from 1.
-fn turn_at(angle: f64) -> u32 {
-    (angle.max(0.0) / TAU) as u32 + 1
 }
 
 impl Winding {
@@ -100,7 +94,7 @@ impl Winding {
         let (angle, _) = self.wound_to(node);
         let met = format!(
             "wire of turn {} reaches {:.3} mm from the axis, and the nozzle stands at {:.3} mm",
-            turn_at(angle),
+            OnTurn::at(angle).turn,
             1e3 * reach,
             1e3 * distance
         );
@@ -192,7 +186,10 @@ impl Winding {
         });
         let angle = end - back.sum::<f64>();
         Some(Meeting {
-            what: format!("wire of turn {} that lies on the coil", turn_at(angle)),
+            what: format!(
+                "wire of turn {} that lies on the coil",
+                OnTurn::at(angle).turn
+            ),
             angle,
             place: tube.points[node],
         })
@@ -209,7 +206,7 @@ impl Winding {
         let node = (1..=lift).find(|&i| body.distance(rod.x[i] - exit) < radius)?;
         let (angle, _) = self.wound_to(node);
         Some(Meeting {
-            what: format!("wire of turn {} that is just laid", turn_at(angle)),
+            what: format!("wire of turn {} that is just laid", OnTurn::at(angle).turn),
             angle,
             place: spin.to_core(rod.x[node]),
         })

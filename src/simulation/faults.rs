@@ -2,7 +2,7 @@
 
 use super::Winding;
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
-use crate::measure::{Defect, DefectKind, DefectPlace, TurnMeasures, Verdict};
+use crate::measure::{Defect, DefectKind, DefectPlace, OnTurn, TurnMeasures, Verdict};
 use crate::signals::EventKind;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -109,7 +109,7 @@ impl Winding {
     fn keep_fault(&mut self, kind: DefectKind, angle: f64, place: V3) {
         let angle = angle.max(0.0);
         let now = self.sys.state.time;
-        let (turn, angle_deg) = ((angle / TAU) as u32 + 1, (angle % TAU).to_degrees());
+        let OnTurn { turn, angle_deg } = OnTurn::at(angle);
         self.run.faults.push(Defect {
             kind,
             turn,

@@ -1,7 +1,7 @@
 //! Wire that is bent more sharply than winding wire is tested for.
 
 use super::Winding;
-use std::f64::consts::TAU;
+use crate::measure::OnTurn;
 
 /// Diameter of metal, m, up to which winding wire is tested round a rod, and the least diameter of the rod, m: it is the wire's
 /// own where that is more. Thicker wire is drawn out by [`DRAWN`] instead. So IEC 60317 has it for enamelled round copper, by the
@@ -40,12 +40,10 @@ impl Winding {
             }
         }
         let (strain, angle) = (sharpest.0, sharpest.1?);
-        let turn = (angle / TAU).floor();
         Some(format!(
-            "Not judged: whether metal or enamel cracks where wire is bent to {:.0} % of strain on its outside, in turn {:.0} at {:.0} deg; winding wire is tested to {:.0} %",
+            "Not judged: whether metal or enamel cracks where wire is bent to {:.0} % of strain on its outside, in {}; winding wire is tested to {:.0} %",
             1e2 * strain,
-            turn + 1.0,
-            (angle - TAU * turn).to_degrees(),
+            OnTurn::at(angle),
             1e2 * tested
         ))
     }

@@ -3,9 +3,9 @@
 use super::Winding;
 use super::run_state::Slip;
 use crate::math::{Spin, V3};
+use crate::measure::OnTurn;
 use crate::scene::si;
 use crate::signals::EventKind;
-use std::f64::consts::TAU;
 
 impl Winding {
     /// Tells once that live wire has slipped off an end of the core.
@@ -20,7 +20,7 @@ impl Winding {
             return;
         };
         let (angle, _) = self.wound_to(node.min(self.lift_off()));
-        let turn = (angle.max(0.0) / TAU) as u32 + 1;
+        let turn = OnTurn::at(angle).turn;
         let time = self.sys.state.time;
         self.run.slipped = Some(Slip { time, turn, end });
         let nozzle = self.sys.state.support[1].point.y;

@@ -3,7 +3,7 @@
 use super::Winding;
 use super::product::Product;
 use crate::measure::{
-    BulgeLimit, Defect, STATIONS_PER_TURN, TurnMeasures, Verdict, left_out, reasons, unfinished,
+    BulgeLimit, Defect, OnTurn, TurnMeasures, Verdict, left_out, reasons, unfinished,
 };
 use crate::scene::{Decision, Integrator, Preset};
 use serde::Serialize;
@@ -178,9 +178,8 @@ impl Winding {
             .stations()
             .position(|s| s.position.y.abs() > half)?;
         Some(format!(
-            "Wire has got over the rim of a flange: it lies beyond the inner face from turn {} at {} deg on",
-            at / STATIONS_PER_TURN + 1,
-            at % STATIONS_PER_TURN
+            "Wire has got over the rim of a flange: it lies beyond the inner face from {} on",
+            OnTurn::of_station(at)
         ))
     }
 

@@ -1,7 +1,7 @@
 //! What is told of settled wire: turns at rest, and each defect once.
 
 use super::Winding;
-use crate::measure::{Coil, CountedRun, DefectKind, STATION_STEP, STATIONS_PER_TURN, SettledNode};
+use crate::measure::{Coil, CountedRun, DefectKind, OnTurn, SettledNode};
 use crate::signals::EventKind;
 
 /// Stations within which defects that are found at once are told in one line. Chosen: about what a node settles.
@@ -109,9 +109,7 @@ impl Winding {
 
 /// Where a station lies, in words.
 fn place(station: usize) -> String {
-    let angle = (station % STATIONS_PER_TURN) as f64 * STATION_STEP;
-    let turn = station / STATIONS_PER_TURN + 1;
-    format!("in turn {turn} at {:.0} deg", angle.to_degrees())
+    format!("in {}", OnTurn::of_station(station))
 }
 
 #[cfg(test)]

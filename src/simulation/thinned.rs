@@ -1,7 +1,7 @@
 //! Wire that plastic stretch has made thinner than contact and measures take it for.
 
 use super::Winding;
-use crate::measure::STATIONS_PER_TURN;
+use crate::measure::OnTurn;
 
 /// Share by which wire may be thinner than contact takes it for, before that is told. Turns then seem to lie apart, and lie, by that
 /// share of a diameter too much: half of the rms gap that parts `aligned` from `marginal`, 0.05 diameters.
@@ -26,10 +26,9 @@ impl Winding {
         let d = 1e3 * self.scene.wire.diameter;
         (1.0 - left > THINNER).then(|| {
             format!(
-                "No part of the verdict: plastic stretch of {:.1} % in turn {} at {} deg leaves {:.3} mm of the diameter of {d:.3} mm; contact, gaps and heights are those of wire that is not thinner",
+                "No part of the verdict: plastic stretch of {:.1} % in {} leaves {:.3} mm of the diameter of {d:.3} mm; contact, gaps and heights are those of wire that is not thinner",
                 1e2 * stretch,
-                at / STATIONS_PER_TURN + 1,
-                at % STATIONS_PER_TURN,
+                OnTurn::of_station(at),
                 left * d
             )
         })
