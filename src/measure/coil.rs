@@ -3,16 +3,17 @@
 use super::buckets::Buckets;
 use super::crossover::Crossover;
 use super::defect::{BulgeLimit, DefectLimits, FALLBACK_BULGE, MEASURED};
+use super::node::{Node, SettledNode};
 use super::onset::Onset;
 use super::passes::Passes;
 use super::plumb::Plumb;
 use super::profile::Profile;
 use super::row::{Row, RowPlace};
 use super::runs::{Run, SHORT_RUN, stations_for};
+use super::segment::Segment;
 use super::station::{Signs, Station};
 use super::{STATION_STEP, STATIONS_PER_TURN};
 use crate::math::PersistentVec;
-use crate::math::V3;
 use crate::math::{polar_angle, wrap_to_pi};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -58,65 +59,6 @@ pub struct CoilSpec {
     pub clamp_arc: f64,
     /// polar angle of the corner between the faces on +x and +z, rad; pi/4 for a cylinder
     pub corner_angle: f64,
-}
-
-/// A node of wire that has come to rest.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SettledNode {
-    /// centreline in the core frame, m
-    pub position: V3,
-    /// unstretched length from the clamp, m
-    pub arc: f64,
-    /// signed distance of the centreline from the flank of the core (not from a flange), minus the radius, m
-    pub height: f64,
-    /// way along y from the centreline to the face of the flange beside it, m, negative towards -y; none far from flanges
-    pub flange: Option<f64>,
-    /// plastic stretch
-    pub plastic_strain: f64,
-    /// tension of the wire after it, N
-    pub tension: f64,
-    /// time at which it came to rest, s
-    pub time: f64,
-}
-
-/// A node with all that is known after it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Node {
-    pub(crate) settled: SettledNode,
-    pub(crate) polar: f64,
-    /// winding angle from the clamp, rad
-    pub(crate) angle: f64,
-    /// largest winding angle up to here, rad
-    pub(crate) reach: f64,
-    pub(crate) y_min: f64,
-    pub(crate) y_max: f64,
-    pub(crate) height_max: f64,
-    /// square of the distance from the axis, summed over the wire up to here, m3
-    pub(crate) second_moment: f64,
-    /// what plastic stretch adds to the wire's resistance up to here, see [`Coil::added_by_stretch`], m
-    added_by_stretch: f64,
-    pub(super) stations_before: usize,
-}
-
-impl Node {
-    /// [`Coil::added_by_stretch`] of a place behind this node and not behind the next, m.
-    fn added_by_stretch_to(&self, arc: f64) -> f64 {
-        let SettledNode {
-            arc: from,
-            plastic_strain,
-            ..
-        } = self.settled;
-        self.added_by_stretch + added_by_stretch(arc - from, plastic_strain)
-    }
-}
-
-/// Length of unstretched wire, m, that would add as much to the resistance of so much unstretched wire, m, as its plastic
-/// stretch does.
-///
-/// Plastic flow keeps the volume: wire that is longer by `1 + e` has a section smaller by as much, and `(1 + e)^2` times the
-/// resistance.
-pub fn added_by_stretch(length: f64, plastic_strain: f64) -> f64 {
-    length * plastic_strain * (2.0 + plastic_strain)
 }
 
 /// A station with all that is known after it.
@@ -459,21 +401,10 @@ impl Coil {
         let index = self.records.len();
         let angle = index as f64 * STATION_STEP;
         let end = self.nodes[self.nodes.len() - 1];
-        let start = self
-            .nodes
-            .len()
-            .checked_sub(2)
-            .map_or(end, |node| self.nodes[node]);
-        let span = end.angle - start.angle;
-        let share = if span > 0.0 {
-            ((angle - start.angle) / span).clamp(0.0, 1.0)
-        } else {
-            1.0
-        };
-        let between = |a: f64, b: f64| a + share * (b - a);
-        let position =
-            start.settled.position + (end.settled.position - start.settled.position) * share;
-        let height = between(start.settled.height, end.settled.height);
+        let start = self.nodes.len().checked_sub(2);
+        let segment = Segment::new(start.map_or(end, |node| self.nodes[node]), end);
+        let wire = segment.at(angle);
+        let (position, height) = (wire.position, wire.height);
 
         let bucket = (
             index % STATIONS_PER_TURN,
@@ -485,13 +416,8 @@ impl Coil {
             bucket,
             y: position.y,
             height,
-            flange: end.settled.flange,
-            plumb: Plumb::at(
-                position,
-                end.settled.position - start.settled.position,
-                end.settled.height - start.settled.height,
-                self.spec.direction,
-            ),
+            flange: wire.flange,
+            plumb: Plumb::at(position, segment.way(), segment.rise(), self.spec.direction),
         };
         let (row, support, rises) = self.row_and_support(pass, &at);
         let bulge = height - support.level;
@@ -518,8 +444,8 @@ impl Coil {
         let mut station = Station {
             angle,
             position,
-            arc: between(start.settled.arc, end.settled.arc),
-            time: between(start.settled.time, end.settled.time),
+            arc: wire.arc,
+            time: wire.time,
             height,
             bulge,
             bulge_excess: self
@@ -529,10 +455,9 @@ impl Coil {
                 .map(|profile| bulge - at_rest(profile)),
             neighbour,
             overlap_depth: 0.0,
-            flange_gap: end.settled.flange.map(|way| {
-                let face = end.settled.position.y + way;
-                (face - position.y).abs() - 0.5 * self.spec.diameter
-            }),
+            flange_gap: segment
+                .flange_face()
+                .map(|face| (face - position.y).abs() - 0.5 * self.spec.diameter),
             layer,
             pass: number,
             crosses,
@@ -544,14 +469,8 @@ impl Coil {
             true => support.without_own_row(),
             false => support,
         };
-        let signs = self.signs(
-            &station,
-            row,
-            &support,
-            bucket,
-            between(start.settled.plastic_strain, end.settled.plastic_strain),
-            start.settled.tension,
-        );
+        let (strain, tension) = (wire.plastic_strain, wire.tension);
+        let signs = self.signs(&station, row, &support, bucket, strain, tension);
         let beneath = self.buckets.insert(bucket, index);
         self.records.push(self.judge(Record {
             station,
