@@ -6,7 +6,7 @@ mod stopping;
 
 use std::path::Path;
 use std::process::{Command, Stdio};
-use stopping::{assert_same, coilwind, refused, said, short, wait_for_checkpoint};
+use stopping::{assert_same, coilwind, files, refused, said, short, wait_for_checkpoint};
 
 /// Members that had not begun were named, and no command wound them.
 #[test]
@@ -99,4 +99,36 @@ fn an_ensemble_is_not_overwritten_and_leaves_no_member_behind() {
     assert!(run(&["--force"]).status().unwrap().success());
     assert!(!out.join("1").exists() && out.join("summary.json").is_file());
     assert!(out.join("4/summary.json").is_file());
+}
+
+/// The members that had ended were removed one after the other, up to the one that refused.
+#[test]
+fn an_ensemble_that_goes_on_keeps_the_members_that_have_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let run = |more: &[&str]| {
+        let mut command = short(&out);
+        command.args(["--set", "spindle.turns=0.3"]).args(more);
+        command
+    };
+    assert!(run(&["--ensemble", "3"]).status().unwrap().success());
+    let before: Vec<_> = (1..=3).map(|k| files(&out.join(k.to_string()))).collect();
+    // what a member that is winding does to its history
+    let history = std::fs::File::open(out.join("3/history.csv")).unwrap();
+    history.lock().unwrap();
+    let mut sweep = coilwind();
+    sweep.args(["sweep", "fig8", "--quiet", "--force"]);
+    sweep.args(["--over", "spindle.speed=60:120:2", "--out"]);
+    sweep.arg(&out);
+    for mut command in [
+        run(&["--force"]),
+        run(&["--ensemble", "2", "--force"]),
+        sweep,
+    ] {
+        refused(&mut command, "the run is going on");
+        let after: Vec<_> = (1..=3).map(|k| files(&out.join(k.to_string()))).collect();
+        assert!(after == before, "{command:?}");
+        // (nor is there a file of the run that was refused)
+        assert_eq!(std::fs::read_dir(&out).unwrap().count(), 4, "{command:?}");
+    }
 }

@@ -29,9 +29,10 @@ const RESULTS: [&str; 11] = [
     checkpoint::FILE,
 ];
 
-/// Makes the folder; one that holds a run is refused unless `force` says otherwise.
+/// Makes the folder; one that holds a run is refused unless `force` says otherwise, and one with a member that goes on in any case.
 pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
     refuse_occupied(directory, force)?;
+    drop(hold_members(directory)?);
     fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))
 }
 
@@ -77,8 +78,10 @@ pub(super) fn begin(directory: &Path, settings: &SceneSettings, note: &str) -> R
 
 /// Removes the results of a run, but for its history and its scene, and the members of an ensemble.
 fn clear(directory: &Path) -> Result<(), Failure> {
+    let _held = hold_members(directory)?;
     for member in ensemble_files::members(directory) {
-        clear_run(&member)?;
+        clear(&member)?;
+        remove(&member, &SIGNS)?;
         // With files of somebody else in it, it stays.
         let _ = fs::remove_dir(member);
     }
@@ -156,6 +159,13 @@ pub(super) fn clear_partial(directory: &Path) {
         // What cannot be removed harms nobody.
         let _ = fs::remove_file(path);
     }
+}
+
+/// Holds every member of the ensemble in a folder; an error where one goes on. Held all at a time, so that none is lost to
+/// a command which one of the others refuses.
+fn hold_members(directory: &Path) -> Result<Vec<Option<fs::File>>, Failure> {
+    let members = ensemble_files::members(directory);
+    members.iter().map(|member| hold(member)).collect()
 }
 
 /// Holds the history of a run that goes on; an error where another run writes it.
