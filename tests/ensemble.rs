@@ -101,6 +101,33 @@ fn an_ensemble_is_not_overwritten_and_leaves_no_member_behind() {
     assert!(out.join("4/summary.json").is_file());
 }
 
+/// A second command wound those that had not begun, said that others had failed, and removed the plan of the first.
+#[test]
+fn an_ensemble_that_goes_on_is_not_gone_on_with_by_another() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut first = short(&out);
+    first
+        .args(["--ensemble", "2", "--set", "spindle.turns=50"])
+        .env("RAYON_NUM_THREADS", "1");
+    let mut first = first.stderr(Stdio::null()).spawn().unwrap();
+    wait_for_checkpoint(&out.join("1"));
+    let mut second = coilwind();
+    second.args(["run", "--quiet", "--resume"]).arg(&out);
+    refused(&mut second, "the ensemble is going on");
+    refused(short(&out).arg("--force"), "the ensemble is going on");
+    assert!(!out.join("2").exists() && !out.join("history.csv").exists());
+    first.kill().unwrap();
+    first.wait().unwrap();
+    assert!(out.join("ensemble.bin").is_file());
+    // what is held is held by a process that lives
+    let smaller = short(&out)
+        .args(["--ensemble", "1", "--set", "spindle.turns=0.3", "--force"])
+        .status();
+    assert!(smaller.unwrap().success());
+    assert!(!out.join("ensemble.bin").exists());
+}
+
 /// The members that had ended were removed one after the other, up to the one that refused.
 #[test]
 fn an_ensemble_that_goes_on_keeps_the_members_that_have_ended() {

@@ -106,7 +106,8 @@ fn checksum(path: &Path) -> Result<u32, Failure> {
 impl Checkpoint {
     /// Writes the file in the place of the one that is there.
     pub(super) fn write(&self, directory: &Path) -> Result<(), Failure> {
-        write_checked(&directory.join(FILE), MAGIC, self)
+        let path = directory.join(FILE);
+        Ok(write_whole_bytes(&path, checked(&path, MAGIC, self)?)?)
     }
 
     /// Reads the file of a folder.
@@ -148,18 +149,18 @@ impl Checkpoint {
     }
 }
 
-/// Writes a value with a checksum in the place of the file that is there.
-pub(super) fn write_checked(
+/// A value as bytes, after a checksum; errors name the file that they are for.
+pub(super) fn checked(
     path: &Path,
     magic: &[u8; 8],
     value: &impl Serialize,
-) -> Result<(), Failure> {
+) -> Result<Vec<u8>, Failure> {
     let mut bytes = postcard::to_extend(value, vec![0; HEAD])
         .map_err(|error| Failure::write(path, std::io::Error::other(error)))?;
     let checksum = crc32fast::hash(&bytes[HEAD..]).to_le_bytes();
     bytes[..magic.len()].copy_from_slice(magic);
     bytes[magic.len()..HEAD].copy_from_slice(&checksum);
-    Ok(write_whole_bytes(path, bytes)?)
+    Ok(bytes)
 }
 
 /// The value of such a file.

@@ -2,9 +2,10 @@
 
 use super::checkpoint::{self, Plan};
 use super::drive::Drive;
-use super::ensemble_files::{PLAN, Summary};
+use super::ensemble_files::{self, PLAN, Summary};
 use super::failure::Failure;
 use super::folder;
+use super::lock::Locked;
 use super::members;
 use super::run::{Judged, RunArgs, wind_one};
 use super::runs_bar::runs_bar;
@@ -16,6 +17,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
@@ -78,11 +80,18 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     };
     folder::prepare(&directory, args.force)?;
     folder::clear_all(&directory)?;
-    checkpoint::write_checked(&directory.join(PLAN), MAGIC, &ensemble)?;
+    let mut held = ensemble_files::begin(&directory)?;
+    let path = directory.join(PLAN);
+    let plan = checkpoint::checked(&path, MAGIC, &ensemble)?;
+    if let Err(error) = held.write(&plan) {
+        // Half a plan is none.
+        let _ = held.remove();
+        return Err(Failure::write(path, error));
+    }
     let verdicts = BTreeMap::new();
     let members = count;
     Summary { members, verdicts }.write(&directory)?;
-    wind(args, &directory, all)
+    wind(args, &directory, held, all)
 }
 
 /// Goes on with the members of a folder that were stopped, and winds those that have not begun.
@@ -91,6 +100,8 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
 /// Those of [`run`], and a plan that cannot be read.
 pub(super) fn resume(args: &RunArgs, directory: &Path) -> Result<(), Failure> {
     let path = directory.join(PLAN);
+    let missing = || Failure::write(&path, ErrorKind::NotFound.into());
+    let held = ensemble_files::hold(directory)?.ok_or_else(missing)?;
     let bytes = std::fs::read(&path).map_err(|e| Failure::write(&path, e))?;
     let ensemble: Ensemble =
         checkpoint::read_checked(&bytes, MAGIC).map_err(|what| Failure::Resume {
@@ -101,7 +112,7 @@ pub(super) fn resume(args: &RunArgs, directory: &Path) -> Result<(), Failure> {
     let all: Result<Vec<Member>, Failure> = (1..=ensemble.members)
         .map(|member| ensemble.member(args, directory, member))
         .collect();
-    wind(args, directory, all?)
+    wind(args, directory, held, all?)
 }
 
 impl Ensemble {
@@ -177,8 +188,8 @@ fn judged(directory: &Path) -> Result<Judged, Failure> {
     }
 }
 
-/// Winds the members that are open, and tells what came of all.
-fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failure> {
+/// Winds the members that are open, and tells what came of all. The plan is held until they have ended.
+fn wind(args: &RunArgs, directory: &Path, held: Locked, all: Vec<Member>) -> Result<(), Failure> {
     let count = all.len();
     let bar = runs_bar(args.quiet, count as u64);
     let stop = stop_flag();
@@ -208,7 +219,7 @@ fn wind(args: &RunArgs, directory: &Path, all: Vec<Member>) -> Result<(), Failur
     let stuck = |one: &Result<Judged, Failure>| matches!(one, Err(Failure::Stuck { .. }));
     if !ended.iter().any(stuck) {
         let path = directory.join(PLAN);
-        std::fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
+        held.remove().map_err(|e| Failure::write(&path, e))?;
     }
     let counts = counts(&ended);
     let verdicts = counts.iter().map(|(key, count)| (word(key), *count));

@@ -1,9 +1,11 @@
 //! Files in the folder of an ensemble, by which it is known, and the folders of its members.
 
 use super::failure::Failure;
+use super::lock::{self, Locked};
 use coilwind::output::write_summary;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// What an ensemble is, in its folder until all members have ended.
@@ -11,7 +13,7 @@ pub(super) const PLAN: &str = "ensemble.bin";
 /// How many members it has, and what came of them.
 pub(super) const SUMMARY: &str = "ensemble.json";
 /// Both.
-pub(super) const ALL: [&str; 2] = [PLAN, SUMMARY];
+const ALL: [&str; 2] = [PLAN, SUMMARY];
 
 /// What stands in [`SUMMARY`].
 #[derive(Serialize, Deserialize)]
@@ -31,6 +33,30 @@ impl Summary {
 /// Whether a folder holds an ensemble that could go on.
 pub(super) fn can_go_on(directory: &Path) -> bool {
     directory.join(PLAN).is_file()
+}
+
+/// Holds the plan of an ensemble that is about to be wound, in a folder without one; an error where another process has it.
+pub(super) fn begin(directory: &Path) -> Result<Locked, Failure> {
+    let path = directory.join(PLAN);
+    let locked = lock::create(&path).map_err(|e| Failure::write(&path, e))?;
+    locked.ok_or_else(|| goes_on(directory))
+}
+
+/// Holds the plan of the ensemble in a folder, if it has one; an error where the ensemble is going on.
+pub(super) fn hold(directory: &Path) -> Result<Option<Locked>, Failure> {
+    let path = directory.join(PLAN);
+    match lock::open(&path) {
+        Ok(locked) => locked.map(Some).ok_or_else(|| goes_on(directory)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Failure::write(path, error)),
+    }
+}
+
+fn goes_on(directory: &Path) -> Failure {
+    Failure::Resume {
+        directory: directory.display().to_string(),
+        reason: "the ensemble is going on; wait for its end, or stop it first".to_owned(),
+    }
 }
 
 /// Whether a folder holds an ensemble.

@@ -4,6 +4,7 @@ use super::checkpoint;
 use super::ensemble_files;
 use super::failure::Failure;
 use super::frames;
+use super::lock::Locked;
 use super::shell::SCENE;
 use super::sweep_files;
 use coilwind::output::PARTIAL;
@@ -29,10 +30,10 @@ const RESULTS: [&str; 11] = [
     checkpoint::FILE,
 ];
 
-/// Makes the folder; one that holds a run is refused unless `force` says otherwise, and one with a member that goes on in any case.
+/// Makes the folder; one that holds a run is refused unless `force` says otherwise, and one with an ensemble that goes on in any case.
 pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
     refuse_occupied(directory, force)?;
-    drop(hold_members(directory)?);
+    drop(hold_ensemble(directory)?);
     fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))
 }
 
@@ -78,14 +79,18 @@ pub(super) fn begin(directory: &Path, settings: &SceneSettings, note: &str) -> R
 
 /// Removes the results of a run, but for its history and its scene, and the members of an ensemble.
 fn clear(directory: &Path) -> Result<(), Failure> {
-    let _held = hold_members(directory)?;
+    let (plan, _members) = hold_ensemble(directory)?;
     for member in ensemble_files::members(directory) {
         clear(&member)?;
         remove(&member, &SIGNS)?;
         // With files of somebody else in it, it stays.
         let _ = fs::remove_dir(member);
     }
-    remove(directory, &ensemble_files::ALL)?;
+    if let Some(plan) = plan {
+        let path = directory.join(ensemble_files::PLAN);
+        plan.remove().map_err(|e| Failure::write(path, e))?;
+    }
+    remove(directory, &[ensemble_files::SUMMARY])?;
     let folder = directory.join("frames");
     let frames = fs::read_dir(&folder).into_iter().flatten();
     let frames = frames.filter_map(|entry| Some(entry.ok()?.path()));
@@ -161,11 +166,13 @@ pub(super) fn clear_partial(directory: &Path) {
     }
 }
 
-/// Holds every member of the ensemble in a folder; an error where one goes on. Held all at a time, so that none is lost to
-/// a command which one of the others refuses.
-fn hold_members(directory: &Path) -> Result<Vec<Option<fs::File>>, Failure> {
+/// Holds the plan and every member of the ensemble in a folder; an error where one goes on. Held all at a time, so that none is
+/// lost to a command which one of the others refuses.
+fn hold_ensemble(directory: &Path) -> Result<(Option<Locked>, Vec<Option<fs::File>>), Failure> {
+    let plan = ensemble_files::hold(directory)?;
     let members = ensemble_files::members(directory);
-    members.iter().map(|member| hold(member)).collect()
+    let members: Result<_, Failure> = members.iter().map(|member| hold(member)).collect();
+    Ok((plan, members?))
 }
 
 /// Holds the history of a run that goes on; an error where another run writes it.

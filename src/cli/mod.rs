@@ -10,6 +10,7 @@ mod ensemble_files;
 mod failure;
 mod folder;
 mod frames;
+mod lock;
 mod members;
 mod motion;
 mod progress;
