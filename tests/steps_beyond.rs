@@ -7,6 +7,8 @@ use coilwind::settings::SceneSettings;
 use coilwind::signals::{Inputs, Outputs};
 use coilwind::simulation::Simulation;
 use common::fig8;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 const END: f64 = 0.016;
 const TENSION: f64 = 15.0;
@@ -157,6 +159,35 @@ fn a_saved_state_with_a_step_ahead_goes_on_to_the_bit() {
         assert_eq!(copy.outputs(), other.outputs());
         assert!(copy.to_bytes().expect("bytes") == other.to_bytes().expect("bytes"));
     }
+}
+
+/// The flag and the bound were forgotten where a step ahead was under way, as in a run that goes on from a saved state.
+#[test]
+fn a_run_with_a_step_ahead_stops_at_a_flag_that_it_is_given_then() {
+    let mut sim = wound(1600, true);
+    let wait = |sim: &mut Simulation| sim.advance(held(100.0, 0.0), 1e-5).expect("a step");
+    while sim.winding().time() >= sim.time() {
+        wait(&mut sim);
+    }
+    let bytes = sim.to_bytes().expect("bytes");
+    let restored = || {
+        let mut sim = Simulation::from_bytes(sim.scene(), &bytes).expect("a state");
+        sim.step_beyond(true);
+        sim
+    };
+    let refused = |mut sim: Simulation| {
+        let error = sim.advance(held(100.0, 0.0), 0.01).expect_err("an end");
+        error.to_string()
+    };
+    for mut sim in [restored(), sim.clone()] {
+        sim.stop_on(Arc::new(AtomicBool::new(true)));
+        let told = refused(sim);
+        assert!(told.contains("interrupted"), "{told}");
+    }
+    let mut bounded = restored();
+    bounded.limit_work(1);
+    let told = refused(bounded);
+    assert!(told.contains("the work allowed"), "{told}");
 }
 
 /// A controller that corrects the tension by a few hundredths of a newton at every fifth communication point.

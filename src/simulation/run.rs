@@ -113,13 +113,21 @@ impl Simulation {
     /// The work is the number of steps tried since the start, each times its number of nodes.
     /// Rejected steps count too. The bound does not depend on the clock.
     pub fn limit_work(&mut self, most: u64) {
-        Arc::make_mut(&mut self.now).most_work = most;
+        self.for_all_steps(|winding| winding.most_work = most);
     }
 
     /// Lets a step of the run end early, with an error, once `flag` is up, however long the step is. The run then stands at the
     /// last good step of the method.
     pub fn stop_on(&mut self, flag: Arc<AtomicBool>) {
-        Arc::make_mut(&mut self.now).stop = Some(flag);
+        self.for_all_steps(|winding| winding.stop = Some(Arc::clone(&flag)));
+    }
+
+    /// Changes what bounds the steps to come: the winding that has taken a step ahead takes the next ones too.
+    fn for_all_steps(&mut self, change: impl Fn(&mut Winding)) {
+        let ahead = self.ahead.as_mut().map(|ahead| &mut ahead.winding);
+        for winding in std::iter::once(&mut self.now).chain(ahead) {
+            change(Arc::make_mut(winding));
+        }
     }
 
     /// Time of the communication point, s.
