@@ -447,6 +447,59 @@ fn an_interrupted_sweep_keeps_its_rows_and_says_how_to_go_on() {
     assert!(said.contains(&format!("{kept} runs are kept")), "{said}");
 }
 
+/// Two of them wound every run, each of them all, and replaced each other's table.
+#[cfg(unix)]
+#[test]
+fn sweeps_that_begin_at_the_same_moment_in_one_folder_wind_each_run_once() {
+    let folder = tempfile::tempdir().unwrap();
+    for round in 0..8 {
+        let out = folder.path().join(round.to_string());
+        let begun = (0..6).map(|_| {
+            let mut sweep = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+            sweep.args(["sweep", "fig8", "--over", "spindle.speed=60:61:4"]);
+            sweep.args(["--set", "spindle.turns=0.02"]);
+            sweep.args(["--set", "spindle.ramp_turns=0.02", "--threads", "1"]);
+            sweep.arg("--out").arg(&out);
+            sweep.stdout(std::process::Stdio::piped());
+            sweep.stderr(std::process::Stdio::piped());
+            sweep.spawn().unwrap()
+        });
+        let begun: Vec<_> = begun.collect();
+        let mut new = 0;
+        for process in begun {
+            let output = process.wait_with_output().unwrap();
+            let text = |bytes| String::from_utf8(bytes).unwrap();
+            let (told, said) = (text(output.stdout), text(output.stderr));
+            if output.status.success() {
+                // `4 runs, 4 of them new`; one that came after the end of another winds none
+                let count = told.split_once("4 runs, ").unwrap().1;
+                new += count.split_once(' ').unwrap().0.parse::<u32>().unwrap();
+            } else {
+                assert!(said.contains("a sweep is going on here"), "{said}");
+            }
+        }
+        assert_eq!(new, 4, "round {round}");
+        assert_eq!(rows(&out.join("sweep.csv")).len(), 4);
+    }
+}
+
+/// The command that goes on was put together from words that are text, and a folder need not be one.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_sweep_says_how_to_go_on_in_a_folder_whose_name_is_no_text() {
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join(std::ffi::OsStr::from_bytes(b"out\xff"));
+    std::fs::create_dir(&out).unwrap();
+    // a folder where the table is to be
+    std::fs::create_dir(out.join("ensemble.csv")).unwrap();
+    let said = complaint(
+        coilwind("sweep", &out, &["--over", "spindle.speed=60:60:1"]),
+        3,
+    );
+    assert!(said.contains("go on with: coilwind sweep fig8"), "{said}");
+}
+
 #[test]
 fn an_ensemble_of_a_run_leaves_a_folder_a_member() {
     let folder = tempfile::tempdir().unwrap();

@@ -54,13 +54,18 @@ fn is_at(_: &File, _: &Path) -> bool {
 }
 
 impl Locked {
-    /// Puts these bytes in the place of what the file holds.
+    /// Puts these bytes in the place of what the file holds, or nothing where there is no room for all.
     pub(super) fn write(&mut self, bytes: &[u8]) -> Result<(), Error> {
         // A device in place of a file is what tests put there.
         if self.file.metadata()?.is_file() {
             self.file.set_len(0)?;
         }
-        self.file.write_all(bytes)
+        let written = self.file.write_all(bytes);
+        if written.is_err() {
+            // (a device has no end to go back to)
+            let _ = self.file.set_len(0);
+        }
+        written
     }
 
     /// Removes the file.

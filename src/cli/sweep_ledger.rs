@@ -2,14 +2,15 @@
 
 use super::failure::Failure;
 use super::folder;
+use super::lock::{self, Locked};
 use super::sweep_files::{ALL, PLAN, ROWS, STATISTICS};
 use super::sweep_grid::Grid;
 use super::sweep_row::{COLUMNS, Row, Rows};
 use super::sweep_statistics as statistics;
-use coilwind::output::{write_summary, write_whole_bytes};
+use coilwind::output::write_whole_bytes;
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -22,7 +23,7 @@ pub(super) struct Ledger {
     rows: Rows,
     written: Option<Instant>,
     /// keeps other sweeps out of the folder
-    _hold: File,
+    _hold: Locked,
 }
 
 impl Ledger {
@@ -38,15 +39,8 @@ impl Ledger {
     ) -> Result<Self, Failure> {
         let plan = plan(grid, find_max);
         let path = directory.join(PLAN);
-        let found = fs::read(&path).ok();
-        let found = found.map(|bytes| serde_json::from_slice::<Value>(&bytes).unwrap_or_default());
-        let begun = directory.join(ROWS).exists();
-        if let Some(differs) = difference(&plan, found.as_ref(), begun).filter(|_| !force) {
-            return Err(Failure::sweep(format!(
-                "{} holds another sweep ({differs}); add --force to overwrite it, or --out for another folder",
-                directory.display()
-            )));
-        }
+        // Before anything of the folder is touched ..
+        let (found, begun) = look(directory, &plan, force)?;
         if found.is_none() && !begun {
             folder::refuse_occupied(directory, force)?;
         }
@@ -54,11 +48,10 @@ impl Ledger {
             folder::clear_run(directory)?;
         }
         fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))?;
+        let mut hold = hold(directory, &path)?;
+        // .. and again: another sweep may have begun here, and ended, since.
+        let (found, begun) = look(directory, &plan, force)?;
         let goes_on = found.as_ref() == Some(&plan) && !force;
-        if found.is_none() {
-            write_summary(&path, &plan)?;
-        }
-        let hold = hold(directory, &path)?;
         if !goes_on {
             for name in ALL.into_iter().filter(|name| *name != PLAN) {
                 let path = directory.join(name);
@@ -66,11 +59,9 @@ impl Ledger {
                     fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
                 }
             }
-            // In the held file itself; a new one has it already.
-            if found.is_some() {
-                let text = format!("{plan:#}\n");
-                fs::write(&path, text).map_err(|e| Failure::write(&path, e))?;
-            }
+            let text = format!("{plan:#}\n");
+            hold.write(text.as_bytes())
+                .map_err(|e| Failure::write(&path, e))?;
         }
         let mut ledger = Self {
             directory: directory.to_owned(),
@@ -238,19 +229,35 @@ fn leaves(table: &toml::Table) -> BTreeSet<(String, String)> {
     all
 }
 
-/// Holds the plan of a sweep that goes on; an error where another sweep holds it.
-fn hold(directory: &Path, path: &Path) -> Result<File, Failure> {
-    let file = File::open(path).map_err(|e| Failure::write(path, e))?;
-    // Not every file system has locks; on Windows a lock would keep readers out as well.
-    if cfg!(unix)
-        && let Err(fs::TryLockError::WouldBlock) = file.try_lock()
-    {
-        return Err(Failure::sweep(format!(
+/// The plan that a folder holds, if any, and whether it has rows.
+///
+/// # Errors
+/// Those of another sweep, without `force`.
+fn look(directory: &Path, plan: &Value, force: bool) -> Result<(Option<Value>, bool), Failure> {
+    let begun = directory.join(ROWS).exists();
+    let found = fs::read(directory.join(PLAN)).ok();
+    // One that has begun this instant has written nothing yet.
+    let found = found.filter(|bytes| begun || !bytes.is_empty());
+    let found = found.map(|bytes| serde_json::from_slice::<Value>(&bytes).unwrap_or_default());
+    match difference(plan, found.as_ref(), begun).filter(|_| !force) {
+        Some(differs) => Err(Failure::sweep(format!(
+            "{} holds another sweep ({differs}); add --force to overwrite it, or --out for another folder",
+            directory.display()
+        ))),
+        None => Ok((found, begun)),
+    }
+}
+
+/// Holds the plan of a sweep, empty where there was none; an error where another sweep holds it. No command puts another file in
+/// its place, so that two which begin at the same moment meet at the same one.
+fn hold(directory: &Path, path: &Path) -> Result<Locked, Failure> {
+    let held = lock::create(path).map_err(|e| Failure::write(path, e))?;
+    held.ok_or_else(|| {
+        Failure::sweep(format!(
             "{}: a sweep is going on here; wait for its end, or stop it first",
             directory.display()
-        )));
-    }
-    Ok(file)
+        ))
+    })
 }
 
 /// Puts a table in the place of the old one.
