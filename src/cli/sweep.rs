@@ -302,8 +302,10 @@ impl Work {
 
 /// The command that goes on, as a shell takes it.
 fn again() -> String {
-    let words = std::env::args().skip(1).filter(|word| word != "--force");
-    let words = words.map(quoted);
+    // (what is no text is told as well as it can be)
+    let words = std::env::args_os().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    let words = words.filter(|word| word != "--force").map(quoted);
     let words: Vec<String> = words.collect();
     format!("coilwind {}", words.join(" "))
 }
