@@ -166,6 +166,13 @@ fn what_goes_on_is_told_where_a_run_is_stopped() {
     assert!(kill.unwrap().success());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130));
+    // A few turns of fifty were judged as if no more had been planned.
+    let summary = std::fs::read(out.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_slice(&summary).unwrap();
+    let told = summary["reasons"].to_string();
+    let time = summary["simulated_s"].as_f64().unwrap();
+    let sentence = format!("The run was interrupted at t = {time:.6} s");
+    assert!(told.contains(&sentence), "{sentence}: {told}");
     let line = format!(
         "go on with: coilwind run --resume {} --fail-on-defect --quiet",
         out.display()

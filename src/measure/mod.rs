@@ -49,7 +49,9 @@ pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};
 pub use turn::{TurnMeasures, Verdict};
-pub use words::{UNJUDGED, left_out, reasons, reasons_doubted, reasons_unjudged, unfinished};
+pub use words::{
+    UNJUDGED, interrupted, left_out, reasons, reasons_doubted, reasons_unjudged, unfinished,
+};
 
 /// Polar stations per turn, one per degree.
 ///

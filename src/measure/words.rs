@@ -87,6 +87,11 @@ pub fn left_out(wound: f64, settled: f64) -> Option<String> {
     })
 }
 
+/// That a run was interrupted at a time, s: of what it had still to wind, nothing is known.
+pub fn interrupted(time: f64) -> String {
+    format!("The run was interrupted at t = {time:.6} s: what was not wound by then has no verdict")
+}
+
 /// How much of the planned layers is wound, where more than half a turn is missing. Counted in turns.
 pub fn unfinished(wound: f64, planned: f64) -> Option<String> {
     (planned - wound > 0.5).then(|| {

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::geometry::Surface;
 use crate::math::V3;
-use crate::measure::{Station, UNJUDGED, reasons_doubted, reasons_unjudged};
+use crate::measure::{Station, UNJUDGED, interrupted, reasons_doubted, reasons_unjudged};
 use crate::simulation::{Centreline, SimError, Simulation, Summary};
 use serde::Serialize;
 use std::path::Path;
@@ -35,10 +35,15 @@ impl Ending {
     pub fn judgement(&self, simulation: &Simulation) -> (&'static str, Vec<String>) {
         match self {
             Self::Failed { reason } => (UNJUDGED, reasons_unjudged(reason, &simulation.defects())),
-            Self::Done | Self::Interrupted => match simulation.doubt() {
+            Self::Done => match simulation.doubt() {
                 Some(doubt) => (UNJUDGED, reasons_doubted(&doubt, &simulation.defects())),
                 None => (simulation.verdict().as_str(), simulation.reasons()),
             },
+            Self::Interrupted => {
+                let (verdict, mut reasons) = Self::Done.judgement(simulation);
+                reasons.push(interrupted(simulation.time()));
+                (verdict, reasons)
+            }
         }
     }
 }
