@@ -11,7 +11,7 @@ use super::run_state::RunState;
 use super::talk::Talk;
 use super::{Simulation, Winding};
 use crate::integrate::{SolverStatistics, Stepper};
-use crate::measure::SavedCoil;
+use crate::measure::{Defect, SavedCoil};
 use crate::scene::{Core, Scene};
 use crate::system::State;
 use serde::{Deserialize, Serialize};
@@ -21,6 +21,10 @@ use std::sync::Arc;
 
 /// Changes whenever the bytes of the same state do.
 const VERSION: u32 = 26;
+
+/// More turns than any run winds: the stations of that many would take a hundred gigabytes. Of a fault that lies beyond them, the
+/// table of turns would take all memory.
+const MOST_TURNS: u32 = 1_000_000;
 
 /// Bytes that are no state of a run of this scene.
 #[derive(Debug, thiserror::Error)]
@@ -227,8 +231,12 @@ impl Winding {
         if !saved.run.traverse.fits(self.coil.passes()) {
             return Err("the way of the nozzle does not go with the passes");
         }
-        if saved.run.faults.iter().any(|fault| fault.turn == 0) {
-            return Err("the wire failed before its first turn");
+        let placed = |fault: &Defect| {
+            let turns = 1..=MOST_TURNS;
+            turns.contains(&fault.turn) && (0.0..=360.0).contains(&fault.angle_deg)
+        };
+        if !saved.run.faults.iter().all(placed) {
+            return Err("the wire failed in a turn that there is not");
         }
         match (&mut self.stepper, saved.implicit) {
             (Stepper::Implicit(method), Some(([next, wanted], statistics))) => {
@@ -256,5 +264,42 @@ impl Winding {
             }
         }
         sum.finalize()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::measure::DefectKind;
+    use crate::settings::SceneSettings;
+
+    /// The table of turns of such a state grew to the turn of the fault: 800 GB, and the process was gone.
+    #[test]
+    fn a_fault_in_a_turn_that_nobody_winds_is_no_state() {
+        let scene = SceneSettings::load("fig8").expect("packed");
+        let scene = scene.build().expect("valid");
+        let sim = Simulation::new(&scene).expect("starts");
+        let restored = |turn, angle_deg| {
+            let mut sim = sim.clone();
+            Arc::make_mut(&mut sim.now).run.faults.push(Defect {
+                kind: DefectKind::Slack,
+                turn,
+                layer: 1,
+                angle_deg,
+                found_turn: turn,
+                found_angle_deg: angle_deg,
+                time_s: 0.0,
+                until_s: None,
+                size_m: None,
+                size_d: None,
+                place_m: [0.0; 3],
+            });
+            Simulation::from_bytes(&scene, &sim.to_bytes().expect("bytes"))
+        };
+        assert_eq!(restored(3, 90.0).expect("a state").turns().len(), 3);
+        for (turn, angle) in [(0, 90.0), (u32::MAX, 90.0), (3, f64::NAN), (3, 1e300)] {
+            let error = restored(turn, angle).expect_err("no state");
+            assert!(error.to_string().contains("failed in a turn"), "{error}");
+        }
     }
 }
