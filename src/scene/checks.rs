@@ -181,8 +181,16 @@ impl SceneSettings {
         let turns = law.map_or(self.spindle.turns, NozzleLaw::turns);
         if ramp > turns && turns > 0.0 {
             let reason = format!("the run ends after {} turns, still accelerating", si(turns));
+            let of_spindle = turns == self.spindle.turns;
+            let most = match law.and_then(NozzleLaw::held) {
+                _ if of_spindle => format!("at most spindle.turns, {}", si(turns)),
+                Some(held) if held == turns => {
+                    format!("at most the turns of the planned layers, {}", si(turns))
+                }
+                _ => format!("at most the turns of the traverse, {}", si(turns)),
+            };
             problems.add(match self.given(&["spindle.ramp_turns", "spindle.turns"]) {
-                "spindle.turns" => self.impossible(
+                "spindle.turns" if of_spindle => self.impossible(
                     "spindle.turns",
                     reason,
                     format!(
@@ -190,9 +198,7 @@ impl SceneSettings {
                         si(ramp)
                     ),
                 ),
-                key => {
-                    self.impossible(key, reason, format!("at most spindle.turns, {}", si(turns)))
-                }
+                _ => self.impossible("spindle.ramp_turns", reason, most),
             });
         }
         if self.friction.kinetic > self.friction.static_ {

@@ -390,6 +390,25 @@ fn odd_scenes_build_with_a_warning() {
     }
 }
 
+/// "at most spindle.turns, 10" was said where that is 0 and the turns are those of the layers or of a table.
+#[test]
+fn a_ramp_is_too_long_for_the_turns_of_what_gives_them() {
+    let layers =
+        "[traverse]\nmode = 'helical'\n[winding]\nturns_per_layer = 5\nlayers = 2\n[spindle]\n";
+    for (text, most) in [
+        ("[spindle]\nturns = 3\n", "at most spindle.turns, 3"),
+        (layers, "at most the turns of the planned layers, 10"),
+    ] {
+        let message = refused(&format!("{text}ramp_turns = 20\n"));
+        assert_says(
+            &message,
+            &["spindle.ramp_turns", "still accelerating", most],
+        );
+    }
+    let message = refused(&format!("{layers}turns = 0\nramp_turns = 20\n"));
+    assert!(!message.contains("spindle.turns"), "{message}");
+}
+
 #[test]
 fn scenes_that_are_not_there() {
     let message = SceneSettings::load("fig9").unwrap_err().to_string();
