@@ -313,7 +313,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
             .for_each(|warning| eprintln!("warning: {warning}"));
     }
     let start_failure = |reason| Failure::Start {
-        scene: name.to_owned(),
+        scene: args.scene.as_ref().unwrap_or(&settings.name).clone(),
         reason,
     };
     let follows = motion.nozzle_follows(&settings);
