@@ -129,7 +129,8 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         .count();
     if unjudged > 0 {
         eprintln!(
-            "warning: in {unjudged} of {total} runs no turn came to rest beside another, so nothing could be compared; wind more turns with --set spindle.turns=N"
+            "warning: in {unjudged} of {total} runs no turn came to rest beside another, so nothing could be compared; {}",
+            work.grid.remedy()
         );
     }
     let found = match &answer {
@@ -234,7 +235,12 @@ impl Work {
             _ => Look::Free,
         };
         let range = &self.grid.ranges[0];
-        self.answer = Some(Answer::new(range, &limit, lowest, seen));
+        self.answer = Some(Answer::new(
+            (range, self.grid.remedy()),
+            &limit,
+            lowest,
+            seen,
+        ));
         Ok(told)
     }
 

@@ -66,8 +66,14 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    /// What follows from the limit among the values of a range, and from a look at the lowest.
-    pub(super) fn new(range: &Range, limit: &Limit, lowest: Look, looks: Vec<Seen>) -> Self {
+    /// What follows from the limit among the values of a range, and from a look at the lowest; with the remedy where runs cannot be
+    /// judged.
+    pub(super) fn new(
+        (range, remedy): (&Range, &str),
+        limit: &Limit,
+        lowest: Look,
+        looks: Vec<Seen>,
+    ) -> Self {
         let (name, value) = (&range.name, |index: usize| range.value(index as u32));
         let free = limit.free.checked_sub(1).map(value);
         let defect = (limit.end < range.count as usize).then(|| value(limit.end));
@@ -76,7 +82,8 @@ impl Answer {
             Some((index, look)) => Some((value(index), look)),
             None => Some((first, lowest)),
         };
-        let open = open.and_then(|(at, look)| open_question(name, at, look, free, defect));
+        let open =
+            open.and_then(|(at, look)| open_question((name, remedy), at, look, free, defect));
         let (outcome, words) = match (open, free, defect) {
             (Some(open), ..) => open,
             (None, Some(free), _) if lowest == Look::Defect => (
@@ -141,7 +148,7 @@ impl Answer {
 
 /// Why a look ends the search without an answer, and what to do; `None` where the look says enough.
 fn open_question(
-    name: &str,
+    (name, remedy): (&str, &str),
     value: f64,
     look: Look,
     free: Option<f64>,
@@ -159,7 +166,7 @@ fn open_question(
         0 => (
             Outcome::Unjudged,
             format!(
-                "is not judged: in {unjudged} of {of} runs no turn came to rest beside another; wind more turns with --set spindle.turns=N"
+                "is not judged: in {unjudged} of {of} runs no turn came to rest beside another; {remedy}"
             ),
         ),
         _ => (

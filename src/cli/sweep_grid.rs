@@ -74,6 +74,14 @@ impl Grid {
         Ok(warnings)
     }
 
+    /// What would let turns come to rest beside each other.
+    pub(super) fn remedy(&self) -> &'static str {
+        match self.base.freeze.enabled {
+            true => "wind more turns with --set spindle.turns=N",
+            false => "leave freeze.enabled = false out, with which none comes to rest",
+        }
+    }
+
     pub(super) fn points(&self) -> usize {
         self.points
     }
