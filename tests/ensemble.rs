@@ -128,6 +128,30 @@ fn an_ensemble_that_goes_on_is_not_gone_on_with_by_another() {
     assert!(!out.join("ensemble.bin").exists());
 }
 
+/// "coilwind: : cannot start" was all that was told of it.
+#[test]
+fn a_member_that_cannot_start_is_named_where_its_ensemble_goes_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let (out, inputs) = (folder.path().join("out"), folder.path().join("in.csv"));
+    // so near to the core that the nearer member has no room
+    let rows = "time,spindle_speed,nozzle_offset_x\n0,0,-0.0437\n0.002,0,-0.0437\n";
+    std::fs::write(&inputs, rows).unwrap();
+    // and the other one meets a full disk
+    std::fs::create_dir_all(out.join("2")).unwrap();
+    let full = out.join("2/turns.csv");
+    std::os::unix::fs::symlink("/dev/full", &full).unwrap();
+    let mut first = coilwind();
+    first.args(["run", "fig8", "--quiet", "--no-geometry", "--step", "0.001"]);
+    first.arg("--inputs").arg(&inputs).arg("--out").arg(&out);
+    let begins = "coilwind: fig8: cannot start: ";
+    refused(first.args(["--ensemble", "2"]), begins);
+    assert!(out.join("ensemble.bin").is_file());
+    std::fs::remove_file(&full).unwrap();
+    let mut again = coilwind();
+    refused(again.args(["run", "--quiet", "--resume"]).arg(&out), begins);
+    assert!(out.join("2/summary.json").is_file() && !out.join("ensemble.bin").exists());
+}
+
 /// The members that had ended were removed one after the other, up to the one that refused.
 #[test]
 fn an_ensemble_that_goes_on_keeps_the_members_that_have_ended() {
