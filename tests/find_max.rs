@@ -105,11 +105,23 @@ fn a_maximum_among_values_that_are_not_judged_or_failed_is_no_answer() {
         assert!(said.contains(part), "{part}: {said}");
     }
     // More turns were advised where no number of them is judged.
-    let sets = ["spindle.turns=0.5", "freeze.enabled=false"];
-    let (_, said) = find_max("no-rest", "spindle.speed=300:302:2", &sets, 4);
-    let remedy = "leave freeze.enabled = false out, with which none comes to rest";
-    assert!(said.contains(remedy), "{said}");
-    assert!(!said.contains("spindle.turns=N"), "{said}");
+    let layers = ["winding.layers=2", "winding.turns_per_layer=1"];
+    for (out, sets, remedy) in [
+        (
+            "no-rest",
+            &["spindle.turns=0.5", "freeze.enabled=false"][..],
+            "leave freeze.enabled = false out",
+        ),
+        (
+            "alone",
+            &["traverse.mode=helical", layers[0], layers[1]],
+            "give winding.turns_per_layer more than 1",
+        ),
+    ] {
+        let (_, said) = find_max(out, "spindle.speed=100:102:2", sets, 4);
+        assert!(said.contains(remedy), "{said}");
+        assert!(!said.contains("spindle.turns=N"), "{said}");
+    }
     // A turn and a bit: that turn lies beside none, and was told as free of gaps.
     let (told, said) = find_max(
         "single",

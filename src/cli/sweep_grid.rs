@@ -76,9 +76,14 @@ impl Grid {
 
     /// What would let turns come to rest beside each other.
     pub(super) fn remedy(&self) -> &'static str {
+        let ends = [0, self.runs() - 1].map(|run| self.settings(run));
+        let mut ends = ends.iter().flatten();
         match self.base.freeze.enabled {
-            true => "wind more turns with --set spindle.turns=N",
             false => "leave freeze.enabled = false out, with which none comes to rest",
+            true if ends.all(|settings| settings.winding.turns_per_layer == 1.0) => {
+                "give winding.turns_per_layer more than 1, since a turn alone in its layer lies beside none"
+            }
+            true => "wind more turns with --set spindle.turns=N",
         }
     }
 
