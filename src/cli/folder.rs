@@ -15,6 +15,9 @@ use std::path::{Path, PathBuf};
 /// Files by which a folder is known to hold a run.
 const SIGNS: [&str; 4] = ["summary.json", "history.csv", SCENE, checkpoint::FILE];
 
+/// What a folder holds that holds a sweep.
+const SWEEP: &str = "a sweep";
+
 /// Files that a run leaves when it ends. Those of an earlier run would mix with a later one that is stopped.
 const RESULTS: [&str; 11] = [
     "summary.json",
@@ -39,9 +42,18 @@ pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
 
 /// An error where the folder holds a run, unless `force` says otherwise.
 pub(super) fn refuse_occupied(directory: &Path, force: bool) -> Result<(), Failure> {
-    let holds = match held(directory) {
-        Some(holds) if !force => holds,
-        _ => return Ok(()),
+    refuse(directory, held(directory).filter(|_| !force))
+}
+
+/// The same where it is no sweep that the folder holds: a sweep that has begun there a moment ago may be the one that is asked for.
+pub(super) fn refuse_all_but_sweeps(directory: &Path, force: bool) -> Result<(), Failure> {
+    let other = held(directory).filter(|holds| *holds != SWEEP);
+    refuse(directory, other.filter(|_| !force))
+}
+
+fn refuse(directory: &Path, holds: Option<&'static str>) -> Result<(), Failure> {
+    let Some(holds) = holds else {
+        return Ok(());
     };
     Err(Failure::Occupied {
         directory: directory.display().to_string(),
@@ -55,7 +67,7 @@ pub(super) fn held(directory: &Path) -> Option<&'static str> {
     let any = |names: &[&str]| names.iter().any(|name| has(directory, name));
     match (any(&SIGNS), any(&sweep_files::SIGNS)) {
         (true, _) => Some("another run"),
-        (_, true) => Some("a sweep"),
+        (_, true) => Some(SWEEP),
         _ => ensemble_files::is_in(directory).then_some("an ensemble"),
     }
 }

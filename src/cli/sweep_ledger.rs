@@ -40,9 +40,15 @@ impl Ledger {
         let plan = plan(grid, find_max);
         let path = directory.join(PLAN);
         // Before anything of the folder is touched ..
-        let (found, begun) = look(directory, &plan, force)?;
+        let (found, begun) = look(directory, &plan, force).or_else(|_| {
+            // A plan that is being written this instant is not whole.
+            match lock::open(&path) {
+                Ok(None) => Err(goes_on(directory)),
+                _ => look(directory, &plan, force),
+            }
+        })?;
         if found.is_none() && !begun {
-            folder::refuse_occupied(directory, force)?;
+            folder::refuse_all_but_sweeps(directory, force)?;
         }
         if force {
             folder::clear_run(directory)?;
@@ -252,12 +258,14 @@ fn look(directory: &Path, plan: &Value, force: bool) -> Result<(Option<Value>, b
 /// its place, so that two which begin at the same moment meet at the same one.
 fn hold(directory: &Path, path: &Path) -> Result<Locked, Failure> {
     let held = lock::create(path).map_err(|e| Failure::write(path, e))?;
-    held.ok_or_else(|| {
-        Failure::sweep(format!(
-            "{}: a sweep is going on here; wait for its end, or stop it first",
-            directory.display()
-        ))
-    })
+    held.ok_or_else(|| goes_on(directory))
+}
+
+fn goes_on(directory: &Path) -> Failure {
+    Failure::sweep(format!(
+        "{}: a sweep is going on here; wait for its end, or stop it first",
+        directory.display()
+    ))
 }
 
 /// Puts a table in the place of the old one.
