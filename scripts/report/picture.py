@@ -3,22 +3,27 @@
 
     scripts/report/picture.py
 
-Winds fig8_gap with a gap, opens its report in headless Chromium as tests/report/run.sh does, and keeps the upper part of
-the page at half its size. Needs what tests/report/run.sh needs, and Pillow, which comes with matplotlib.
+Winds the run of docs/guide/report.md, opens its report in headless Chromium, and keeps the page with few colours. Needs
+Chromium, and Pillow, which comes with matplotlib; COILWIND_COMMAND names the command (target/release/coilwind).
 """
 
+import os
 import subprocess
 from pathlib import Path
 
 from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
-SHOTS = ROOT / "target" / "report-shots"
-UPPER = 0.56
-"""Share of the page: verdict, product, view, defects."""
+COMMAND = os.environ.get("COILWIND_COMMAND", str(ROOT / "target/release/coilwind"))
+RUN = ["fig8", "--set", "spindle.speed=100", "--set", "spindle.turns=2.6", "--set", "traverse.per_turn_mm=1", "--frames", "6"]
+FOLDER = ROOT / "target/report-picture"
+SHOT = FOLDER / "page.png"
+BROWSER = [
+    "chromium", "--headless", "--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader",
+    "--virtual-time-budget=9000", "--hide-scrollbars", "--window-size=1200,2600",
+]
 
-subprocess.run([ROOT / "tests/report/run.sh", "--shots", SHOTS], check=True, cwd=ROOT)
-page = Image.open(SHOTS / "gap" / "light.png").convert("RGB")
-page = page.crop((0, 0, page.width, int(UPPER * page.height)))
-page = page.resize((page.width * 5 // 8, page.height * 5 // 8), Image.Resampling.LANCZOS)
-page.save(ROOT / "docs/guide/report.png", optimize=True)
+subprocess.run([COMMAND, "run", *RUN, "--quiet", "--force", "--out", FOLDER], check=True, cwd=ROOT)
+subprocess.run([*BROWSER, f"--screenshot={SHOT}", (FOLDER / "report.html").as_uri()], check=True)
+page = Image.open(SHOT).convert("RGB")
+page.quantize(128, dither=Image.Dither.NONE).save(ROOT / "docs/guide/report.png", optimize=True)

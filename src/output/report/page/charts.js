@@ -42,7 +42,7 @@ function charts(run) {
       { label: "least", values: plain(history.tension_min), band: true },
       { label: "largest", values: plain(history.tension_max), band: true },
     ], marks, go, told(note, alone), over(1, "tension", "tension_min", "tension_max")),
-    chart("Torque of the wire on the core", axis, x, "mN m", [{ label: "torque", values: torque, width: 1.4 }], marks, go,
+    chart("Torque of the wire on the core", axis, x, "mN.m", [{ label: "torque", values: torque, width: 1.4 }], marks, go,
       told("Negative where the wire resists the spindle.", alone), over(1e3, "torque")),
   ];
 }

@@ -35,7 +35,7 @@ const QUANTITIES = {
   tension: { label: "Tension", unit: "N", scale: 1 },
   plastic_strain: { label: "Plastic strain", unit: "%", scale: 100 },
   gap: { label: "Gap to the neighbour", unit: "mm", scale: 1e3 },
-  bulge: { label: "Height over its bed", unit: "mm", scale: 1e3 },
+  bulge: { label: "Bulge", unit: "mm", scale: 1e3 },
   layer: { label: "Layer", kinds: true },
   defect: { label: "Defect", kinds: true },
 };

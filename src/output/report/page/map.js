@@ -96,7 +96,7 @@ function defectMap(run) {
     board.paint();
   };
   const bar = el("div", { class: "bar" }, el("h2", {}, "Defect map"),
-    choice({ gap: "Gap", bulge: "Height", layer: "Layer" }, key, pick));
+    choice({ gap: "Gap", bulge: "Bulge", layer: "Layer" }, key, pick));
   const note = [run.defects.length ? "Rings mark defects." : "No defects.", ...(run.view?.renderer ? ["A click moves the view there."] : [])].join(" ");
   return el("section", { class: "card map" }, bar, el("div", { class: "plot" }, board, tip),
     el("div", { class: "legend", style: "position: static; display: inline-block; margin-top: 8px" }, legendBox),
