@@ -3,7 +3,7 @@
 
     scripts/report/picture.py
 
-Winds the run of docs/guide/report.md, opens its report in headless Chromium, and keeps the page with few colours. Needs
+Winds the run of docs/guide/report.md, opens its report in headless Chromium, and keeps the page. Needs
 Chromium, and Pillow, which comes with matplotlib; COILWIND_COMMAND names the command (target/release/coilwind).
 """
 
@@ -16,7 +16,7 @@ from PIL import Image
 ROOT = Path(__file__).resolve().parents[2]
 COMMAND = os.environ.get("COILWIND_COMMAND", str(ROOT / "target/release/coilwind"))
 RUN = ["fig8", "--set", "spindle.speed=100", "--set", "spindle.turns=2.6", "--set", "traverse.per_turn_mm=1", "--frames", "6"]
-FOLDER = ROOT / "target/report-picture"
+FOLDER = ROOT / "target/shown"
 SHOT = FOLDER / "page.png"
 BROWSER = [
     "chromium", "--headless", "--no-sandbox", "--use-gl=swiftshader", "--enable-unsafe-swiftshader",
@@ -26,4 +26,4 @@ BROWSER = [
 subprocess.run([COMMAND, "run", *RUN, "--quiet", "--force", "--out", FOLDER], check=True, cwd=ROOT)
 subprocess.run([*BROWSER, f"--screenshot={SHOT}", (FOLDER / "report.html").as_uri()], check=True)
 page = Image.open(SHOT).convert("RGB")
-page.quantize(128, dither=Image.Dither.NONE).save(ROOT / "docs/guide/report.png", optimize=True)
+page.save(ROOT / "docs/guide/report.png", optimize=True)
