@@ -76,7 +76,7 @@ pub struct Outputs {
     pub defect_turn: f64,
     /// polar angle of the last defect within its turn, rad
     pub defect_angle: f64,
-    /// largest height over the core or the layer below, last settled turn, m
+    /// largest bulge of the last 360 settled stations, m
     pub bulge_height: f64,
     /// widest gap to the neighbouring turn, last settled turn, m
     pub gap_width: f64,
@@ -86,7 +86,7 @@ pub struct Outputs {
     pub turns_wound: f64,
     /// turns come to rest; falls on reversal
     pub turns_settled: f64,
-    /// layer being wound, from 1
+    /// layer of the last settled wire, from 1; rises once wire of the new layer has settled
     pub layer: i32,
     /// core angle from the start position, rad
     pub spindle_angle: f64,

@@ -264,7 +264,7 @@ impl SceneSettings {
             problems.add(self.impossible(
                 "solver.tolerance",
                 "rounding is larger",
-                "1e-9 to 0.001 m, or 0: as the wire's diameter",
+                "1e-9 to 0.001 m, or 0: in proportion to the outer diameter",
             ));
         }
         if solver.tolerance > most * (1.0 + 1e-9) && solver.integrator == Integrator::Implicit {

@@ -196,14 +196,14 @@ pub struct Freeze {
     pub window: f64,
     /// window of time instead, while the spindle stands, s; 0: ten periods of the free span's slowest ringing
     pub time: f64,
-    /// largest motion in the core frame per core angle, m/rad; 0: as the wire's diameter, 2 um/rad for 0.7 mm
+    /// largest motion in the core frame per core angle, m/rad; 0: in proportion to the outer diameter, 2 um/rad for 0.7 mm
     pub creep: f64,
     /// turns behind lift-off from which on that limit grows
     pub patience: f64,
     /// settled wire kept live behind lift-off, m; 0: 1.75 sqrt(EI/T)
     pub keep_length: f64,
-    /// region: largest distance of the wire's surface from the core or the layer below, m; 0: as the wire's diameter, 5 mm
-    /// for 0.7 mm
+    /// region: largest distance of the wire's surface from the core or the layer below, m; 0: in proportion to the outer
+    /// diameter, 5 mm for 0.7 mm
     pub margin: f64,
 }
 

@@ -276,12 +276,12 @@ table! {
     count(Output, 109, defect_count, "defects of coil and wire, of every kind");
     output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect, where it was found");
     output(111, defect_angle, "rad", "deg", -1e7, 1e7, 1.0, "polar angle of the last defect within its turn, where it was found");
-    output(112, bulge_height, "m", "mm", -10.0, 10.0, 1e-3, "largest height over the core or the layer below, last settled turn");
+    output(112, bulge_height, "m", "mm", -10.0, 10.0, 1e-3, "largest bulge of the last 360 settled stations");
     output(113, gap_width, "m", "mm", -10.0, 10.0, 1e-4, "widest gap to the neighbouring turn, last settled turn");
     output(114, overlap_depth, "m", "mm", -10.0, 10.0, 1e-4, "deepest overlap with the neighbouring turn, last settled turn");
     output(115, turns_wound, "1", "", -1e6, 1e6, 1.0, "turns laid, counted from the clamp");
     output(116, turns_settled, "1", "", -1e6, 1e6, 1.0, "turns come to rest; falls on reversal");
-    count(Output, 117, layer, "layer being wound, from 1");
+    count(Output, 117, layer, "layer of the last settled wire, from 1; rises once wire of the new layer has settled");
     output(118, spindle_angle, "rad", "deg", -1e7, 1e7, 10.0, "core angle from the start position");
     output(119, spindle_torque, "N.m", "N.mm", -1e4, 1e4, 0.1, "moment of the wire on the core about +y; negative when it resists positive speed");
     output(120, feed_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire leaving the nozzle; 0 at the end of the step in which winding ends, and from then on");
@@ -307,10 +307,10 @@ table! {
     output(139, nozzle_angle, "rad", "deg", -1.6, 1.6, 0.1, "angle at the nozzle between the free span and the plane across the axis; positive where the wire on its way from the nozzle to the core goes towards larger y");
     output(140, wire_length, "m", "", 0.0, 1e6, 1.0, "wire from the clamp to where it meets the coil, unstretched");
 
-    output(141, nozzle_y, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis: that of nozzle_position, or of the law of traverse.mode");
+    output(141, nozzle_y, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis: that of nozzle_position, or of the traverse law, traverse.mode");
     output(142, layon_x, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along x; the frame does not turn, the nozzle is on +x");
     output(143, layon_z, "m", "mm", -10.0, 10.0, 1e-2, "where the wire's centreline meets the coil, along z of the same frame; layon_position is along y");
-    output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns of the layer that is being laid: wire laid since it climbed there, or since the nozzle turned where no layers are planned");
+    output(144, turn_in_layer, "1", "", -1e6, 1e6, 1.0, "turns of the layer that is being laid: wire laid since it climbed there, or since the nozzle reversed where no layers are planned");
     output(145, flange_clearance, "m", "mm", -10.0, 10.0, 1e-3, "from the surface of the wire where it meets the coil to the nearer flange, along y; without flanges to the nearer end of the core");
     output(146, wire_resistance, "Ohm", "mOhm", 0.0, 1e9, 0.1, "resistance of wire_length at 20 degC; plastic stretch makes it longer and thinner");
     output(147, coil_inertia, "kg.m2", "g.mm2", 0.0, 1e3, 1e-6, "moment of inertia of the settled wire about the core axis, without the core's");
@@ -332,7 +332,7 @@ table! {
     local(203, penetration_max, "m", "um", -1.0, 1.0, 1e-6, "deepest penetration in contact since the last communication point");
     local(204, energy_residual, "J", "", -1e9, 1e9, 1e-3, "error of the energy balance since the start");
 
-    text(1000, "wire.material", (wire.material), ["copper", "table1", "custom", "copper-soft", "copper-half-hard", "copper-hard", "aluminium"], "copper: section-consistent; table1: the paper's wire of 0.7 mm; custom: every rigidity given; the others: metals of the library");
+    text(1000, "wire.material", (wire.material), ["copper", "table1", "custom", "copper-soft", "copper-half-hard", "copper-hard", "aluminium"], "copper: rigidities from modulus and section; table1: the paper's wire of 0.7 mm; custom: every rigidity given; the others: metals of the library");
     switch(1001, "wire.elastic", wire.elastic, "true: no yield, no moment cap, and no break unless wire.strength is given");
     fixed(1002, "wire.diameter", wire.diameter, "m", "mm", 2e-5, 5e-3, 1e-3, "diameter of the bare round wire: stiffness, yield, mass of the metal and resistance go with it");
     fixed(1003, "wire.density", wire.density, "kg/m3", "", 0.0, 3e4, 1e4, "density of the metal, 100 at least; 0: of the material");
@@ -396,22 +396,22 @@ table! {
     fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face");
 
     native(1500, "spindle.speed", spindle.speed, "rad/s", "rpm", 0.1, 2000.0, 100.0, "final speed of the native programme");
-    native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "turns over which the speed rises, at constant acceleration");
-    native(1502, "spindle.turns", spindle.turns, "1", "", 0.0, 1e5, 1.0, "turns of the spindle until the native programme ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle");
+    native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "revolutions over which the speed rises, at constant acceleration");
+    native(1502, "spindle.turns", spindle.turns, "1", "", 0.0, 1e5, 1.0, "revolutions of the spindle until the native programme ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle");
 
     native_text(1503, "spindle.file", (spindle.file), [], "CSV file of the spindle's angle and the share of its speed that is allowed there, relative to the scene file");
-    native(1504, "spindle.repeat_turns", spindle.repeat_turns, "1", "", 0.0, 1e5, 1.0, "turns after which the table of spindle.file begins again; 0: it does not");
+    native(1504, "spindle.repeat_turns", spindle.repeat_turns, "1", "", 0.0, 1e5, 1.0, "revolutions after which the table of spindle.file begins again; 0: it does not");
     native(1505, "spindle.flange_share", spindle.flange_share, "1", "", 0.01, 1.0, 1.0, "share of the speed that is allowed while wire climbs to the next planned layer");
-    native(1506, "spindle.flange_turns", spindle.flange_turns, "1", "", 1e-3, 1e3, 1.0, "turns over which the speed falls before a climb with spindle.flange_share below 1, and rises after it");
+    native(1506, "spindle.flange_turns", spindle.flange_turns, "1", "", 1e-3, 1e3, 1.0, "revolutions over which the speed falls before a climb with spindle.flange_share below 1, and rises after it");
 
-    fixed(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per turn; the sign is its direction along y");
+    fixed(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per revolution; the sign is its direction along y");
     fixed(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
-    fmu_text("by-input", 1602, "traverse.mode", (traverse.mode), ["by-input", "by-angle", "orthocyclic", "helical", "table"], "nozzle travel: as nozzle_position says; even with the core's angle, as without inputs too; layers with a straight part and a step in each turn; layers of even travel; from a table");
-    fixed(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the step to the next turn");
-    fixed(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: least turns that the nozzle stands at the end of a layer; it stays until the layer has its turns");
+    fmu_text("by-input", 1602, "traverse.mode", (traverse.mode), ["by-input", "by-angle", "orthocyclic", "helical", "table"], "nozzle travel: as nozzle_position says; even with the core's angle, as without inputs too; layers with a straight part and a crossover in each turn; layers of even travel; from a table");
+    fixed(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the crossover to the next turn");
+    fixed(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: least revolutions that the nozzle stands at the end of a layer; it stays until the layer has its turns");
     text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file, set in the FMU relative to its resources or as given");
-    fixed(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of a law in layers or a table");
-    text(1607, "traverse.trail", (traverse.trail), ["free", "led"], "orthocyclic: what the law says; free: where the nozzle is, and the wire trails behind it; led: where the wire is laid, in smooth crossovers, and the nozzle swings ahead of it; on a cylinder");
+    fixed(1606, "traverse.advance", traverse.advance, "rad", "deg", 0.0, 6.0, 1.0, "core angle by which the nozzle is ahead of the traverse law in layers or a table");
+    text(1607, "traverse.trail", (traverse.trail), ["free", "led"], "orthocyclic: what the traverse law says; free: where the nozzle is, and the wire trails behind it; led: where the wire is laid, in smooth crossovers, and the nozzle swings ahead of it; on a cylinder");
     fixed(1608, "traverse.crossover_delay", traverse.crossover_delay, "rad", "deg", 0.0, 6.0, 1.0, "orthocyclic: core angle after that of the clamp at which crossovers end");
 
     fixed(1650, "winding.turns_per_layer", winding.turns_per_layer, "1", "", 0.0, 1e5, 10.0, "layered traverse modes: turns of the first layer; 0: as many as fit between the flanges");
@@ -427,12 +427,12 @@ table! {
     fixed(1802, "friction.slip_speed", friction.slip_speed, "m/s", "mm/s", 1e-5, 100.0, 1e-2, "slip speed over which static turns into kinetic");
 
     text(1900, "solver.integrator", (solver.integrator), ["auto", "implicit", "rk4", "verlet"], "time integrator; auto: rk4 for preset paper, else implicit");
-    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit; implicit as the wire's diameter, 0.3 mm for 0.7 mm, coarser as the cube root of a tolerance above its own, halved until fine enough for the bends on corners");
+    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit; implicit in proportion to the outer diameter, 0.3 mm for 0.7 mm, coarser as the cube root of a tolerance above its own, halved until fine enough for the bends on corners");
     fixed(1902, "solver.spacing_free", solver.spacing_free, "m", "mm", 0.0, 0.1, 1e-3, "node spacing in the free span; 0: 1 mm explicit, eight times that near the core implicit");
     fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core or the layer below at which free-span edges are split; 0: 3 mm implicit, 6 mm explicit");
     fixed(1904, "solver.step_share", solver.step_share, "1", "", 1e-3, 1.0, 1.0, "time step as a share of the stability limit");
     fixed(1905, "solver.step", solver.step, "s", "us", 0.0, 1e-2, 1e-6, "fixed time step; 0: from the error (implicit) or the stability limit");
-    fixed(1906, "solver.tolerance", solver.tolerance, "m", "um", 0.0, 1e-3, 1e-6, "estimated error that a step of the implicit method may have, root mean square over the wire, 1e-9 m at least; 0: as the wire's diameter, 2 um for 0.7 mm");
+    fixed(1906, "solver.tolerance", solver.tolerance, "m", "um", 0.0, 1e-3, 1e-6, "estimated error that a step of the implicit method may have, root mean square over the wire, 1e-9 m at least; 0: in proportion to the outer diameter, 2 um for 0.7 mm");
     text(1907, "solver.twist", (solver.twist), ["auto", "off", "quasi-static", "dynamic"], "how the wire's twist is carried; auto: the least that matters; dynamic with the explicit methods");
     text(1908, "solver.live_contact", (solver.live_contact), ["auto", "on", "off"], "contact of live wire with live wire; auto: from half a live turn on");
     text(1909, "solver.plasticity", (solver.plasticity), ["auto", "on", "off"], "plastic state of the wire; auto: where it can yield; off: elastic wire");
@@ -444,32 +444,32 @@ table! {
 
     switch(2000, "freeze.enabled", freeze.enabled, "false keeps all wire in the computation");
     fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");
-    fixed(2002, "freeze.creep", freeze.creep, "m/rad", "um/rad", 0.0, 1.0, 1e-6, "largest motion of wire at rest per core angle; 0: as the wire's diameter, 2 um/rad for 0.7 mm");
+    fixed(2002, "freeze.creep", freeze.creep, "m/rad", "um/rad", 0.0, 1.0, 1e-6, "largest motion of wire at rest per core angle; 0: in proportion to the outer diameter, 2 um/rad for 0.7 mm");
     fixed(2003, "freeze.keep_length", freeze.keep_length, "m", "mm", 0.0, 100.0, 1e-2, "settled wire kept live behind lift-off; 0: 1.75 sqrt(EI/T)");
-    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core or the layer below; 0: as the wire's diameter, 5 mm for 0.7 mm");
+    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core or the layer below; 0: in proportion to the outer diameter, 5 mm for 0.7 mm");
     fixed(2005, "freeze.time", freeze.time, "s", "ms", 0.0, 1e6, 1e-2, "time over which motion is judged while the spindle stands; 0: ten periods of the free span's slowest ringing at the start");
     fixed(2006, "freeze.patience", freeze.patience, "1", "", 0.0, 1000.0, 1.0, "turns behind lift-off from which on creep may double each quarter of a turn, up to a twentieth of the diameter in all");
 
     tunable(2100, "defects.gap", defects.gap, "1", "", 0.0, 100.0, 0.1, "gap above this many diameters ...");
-    tunable(2101, "defects.gap_fraction", defects.gap_fraction, "1", "", 0.0, 1.0, 0.1, "... over at least this fraction of a turn in one run");
-    tunable(2102, "defects.bulge_excess", defects.bulge_excess, "1", "", 0.0, 100.0, 1.0, "height over the quasi-static height, diameters");
-    tunable(2103, "defects.bulge_absolute", defects.bulge_absolute, "m", "mm", 0.0, 1.0, 1e-3, "height allowed; 0: bulge_excess decides, or one diameter where no quasi-static height is known");
+    tunable(2101, "defects.gap_fraction", defects.gap_fraction, "1", "", 0.0, 1.0, 0.1, "... over at least this fraction of a turn without a break");
+    tunable(2102, "defects.bulge_excess", defects.bulge_excess, "1", "", 0.0, 100.0, 1.0, "bulge over the quasi-static height allowed, diameters");
+    tunable(2103, "defects.bulge_absolute", defects.bulge_absolute, "m", "mm", 0.0, 1.0, 1e-3, "bulge allowed; 0: bulge_excess decides, or one diameter where no quasi-static height is known");
     tunable(2104, "defects.overlap_axial", defects.overlap_axial, "1", "", 0.0, 1.0, 1.0, "axial distance to the neighbour below this many diameters ...");
-    tunable(2105, "defects.overlap_height", defects.overlap_height, "1", "", 0.0, 100.0, 1.0, "... while standing above its layer by this many diameters");
+    tunable(2105, "defects.overlap_height", defects.overlap_height, "1", "", 0.0, 100.0, 1.0, "... while its bulge is above this many diameters");
     tunable(2106, "defects.skip_angle", defects.skip_angle, "rad", "deg", 0.0, 1e3, 1.0, "polar angle after the clamp that is left out");
     tunable(2120, "defects.double_turn", defects.double_turn, "1", "", 0.0, 10.0, 1.0, "fraction of a turn over which wire stands on its own row to be a double turn");
     tunable(2121, "defects.skipped_groove", defects.skipped_groove, "1", "", 0.0, 10.0, 1.0, "fraction of a turn over which a groove of the layer below lies empty beside the wire");
     tunable(2122, "defects.jump", defects.jump, "1", "", 0.0, 1e3, 1.0, "turns by which a layer jump may come before or after the planned one; judged where the scene has winding.turns_per_layer or a layered traverse mode");
-    tunable(2123, "defects.loose_height", defects.loose_height, "1", "", 0.0, 100.0, 0.1, "height over the quasi-static height above which wire touches nothing, diameters ...");
+    tunable(2123, "defects.loose_height", defects.loose_height, "1", "", 0.0, 100.0, 0.1, "bulge over the quasi-static height above which wire touches nothing, diameters ...");
     tunable(2124, "defects.loose_fraction", defects.loose_fraction, "1", "", 0.0, 1.0, 1.0, "... and the share of a turn that may do so");
-    tunable(2125, "defects.loose_tension", defects.loose_tension, "1", "", 0.0, 1.0, 1.0, "least mean tension of a settled turn, as a share of tensioner.tension");
+    tunable(2125, "defects.loose_tension", defects.loose_tension, "1", "", 0.0, 1.0, 1.0, "least mean tension of a settled turn, as a share of tensioner.tension, or of the tension at the start where that is more");
     tunable(2126, "defects.stretch", defects.stretch, "1", "", 0.0, 10.0, 1e-2, "plastic stretch allowed");
 
     native(2200, "output.history_interval", output.history_interval, "rad", "deg", 1e-5, 1e3, 1e-2, "core angle between rows of history.csv");
     text(2201, "output.directory", (output.directory), [], "where result files go; empty: the FMU writes none");
 
     text(2300, "scene.file", (file), [], "packed name or path of a scene; empty: default");
-    text(2301, "preset", (preset), ["default", "paper"], "default: the best this version has; paper: the paper's method (rk4)");
+    text(2301, "preset", (preset), ["default", "paper"], "default: the production method; paper: the paper's method (rk4)");
 
     number_of(3000, "wire.material_number", "wire.material", 7.0, "number of wire.material; 0: as wire.material says, 1 copper, 2 table1, 3 custom, 4 copper-soft, 5 copper-half-hard, 6 copper-hard, 7 aluminium");
     number_of(3001, "core.shape_number", "core.shape", 3.0, "number of core.shape; 0: as core.shape says, 1 rounded-box, 2 cylinder, 3 mesh");
