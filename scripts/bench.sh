@@ -5,7 +5,7 @@
 #
 # Leaves JSON lines, CSV and pictures in target/bench/, and writes the tables docs/validation/tables/performance-*.md and the
 # pictures in docs/validation/performance/.
-# Takes about half an hour, one thread at a time; let the machine do nothing else. --quick: coarsest settings, once each,
+# Takes some ten minutes, one thread at a time; let the machine do nothing else. --quick: coarsest settings, once each,
 # in less than five minutes, to see that everything works; nothing under docs/ is touched. COILWIND_COMMAND names another binary
 # than target/release/coilwind, COILWIND_FMU another FMU; without them both are built.
 set -euo pipefail

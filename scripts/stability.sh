@@ -95,7 +95,7 @@ NOTE
     if grep -q REFINED "$out-refined.log"; then
         echo
         echo '```text'
-        grep REFINED "$out-refined.log" | sed 's/^ *REFINED //; s/; lower tension_setpoint.*//; s/; raise tension_setpoint.*//; s/; keep it under.*//'
+        grep REFINED "$out-refined.log" | sed 's/^ *REFINED //; s/; lower the tension.*//; s/; raise tension_setpoint.*//; s/; keep it under.*//'
         echo '```'
     fi
 } >"$tables/stability-refined.md"

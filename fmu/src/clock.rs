@@ -52,6 +52,11 @@ impl Clock {
             .is_none_or(|stop| self.now >= stop - TOLERANCE * stop.abs().max(self.now.abs()))
     }
 
+    /// Tells whether there is a stop time, and the experiment has reached it.
+    pub(crate) fn has_reached_stop(&self) -> bool {
+        self.stop.is_some() && self.is_over()
+    }
+
     /// Returns the end of a step of `step` from `point`, all in s.
     ///
     /// # Errors
@@ -215,7 +220,8 @@ mod tests {
         assert!(!clock.is_over());
         clock.set(1.0 + 10.0 * 0.1);
         assert!(clock.is_over());
-        assert!(Clock::default().is_over());
+        assert!(clock.has_reached_stop());
+        assert!(Clock::default().is_over() && !Clock::default().has_reached_stop());
     }
 
     #[test]

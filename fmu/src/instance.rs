@@ -193,7 +193,7 @@ impl Instance {
                 self.parameters
                     .find_files(self.identity.resources.as_deref())?;
                 let (scene, warnings) = self.parameters.scene()?;
-                let inputs = self.parameters.start_inputs();
+                let inputs = scene.start_inputs();
                 let by_law = self.parameters.settings().nozzle_follows_law();
                 let run = Run::start(
                     &scene,

@@ -277,10 +277,15 @@ impl Parameters {
         differing.chain(overruled).collect()
     }
 
-    /// Returns a text if a `value` of an input at the start is another than the scene's parameter for it.
-    pub(crate) fn contradiction_of_input(&self, input: &Variable, value: f64) -> Option<String> {
+    /// Returns a text if a `value` of an input at the start is another than the scene's, which starts with `own`.
+    pub(crate) fn contradiction_of_input(
+        &self,
+        input: &Variable,
+        value: f64,
+        own: &Inputs,
+    ) -> Option<String> {
         let scene = match input.access {
-            Access::Input { get, .. } => get(&self.settings.start_inputs()),
+            Access::Input { get, .. } => get(own),
             _ => return None,
         };
         let parameter = match input.name {
@@ -366,11 +371,6 @@ impl Parameters {
             _ => {}
         }
         error
-    }
-
-    /// Returns the inputs of that scene at the start.
-    pub(crate) fn start_inputs(&self) -> Inputs {
-        self.settings.start_inputs()
     }
 }
 

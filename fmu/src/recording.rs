@@ -1,7 +1,7 @@
 //! The files of a run in `output.directory`: a row per communication point, results at the end.
 
 use crate::error::RecordError;
-use coilwind::output::{Ending, History, Mark, Snapshot, write_results};
+use coilwind::output::{Ending, History, Mark, RESULTS, Snapshot, write_results};
 use coilwind::settings::SceneSettings;
 use coilwind::simulation::Simulation;
 use std::path::{Path, PathBuf};
@@ -43,6 +43,10 @@ impl Recording {
         std::fs::create_dir_all(&directory).map_err(folder(&directory))?;
         // First what another run may hold, so that nothing of its is overwritten.
         let history = History::create(&directory.join("history.csv"))?;
+        let earlier = RESULTS.iter().map(|name| directory.join(name));
+        for file in earlier.filter(|file| file.is_file()) {
+            std::fs::remove_file(&file).map_err(folder(&file))?;
+        }
         std::fs::write(&scene, settings.to_toml_for_elsewhere()).map_err(folder(&scene))?;
         Ok(Self {
             history: Some(history),
@@ -84,6 +88,11 @@ impl Recording {
             computed: Duration::ZERO,
         };
         Ok((recording, false))
+    }
+
+    /// Time that the solver took so far.
+    pub(crate) fn time_taken(&self) -> Duration {
+        self.computed
     }
 
     /// Adds time that the solver took.

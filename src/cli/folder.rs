@@ -3,11 +3,10 @@
 use super::checkpoint;
 use super::ensemble_files;
 use super::failure::Failure;
-use super::frames;
 use super::lock::Locked;
 use super::shell::SCENE;
 use super::sweep_files;
-use coilwind::output::PARTIAL;
+use coilwind::output::{PARTIAL, RESULTS};
 use coilwind::settings::SceneSettings;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,21 +16,6 @@ const SIGNS: [&str; 4] = ["summary.json", "history.csv", SCENE, checkpoint::FILE
 
 /// What a folder holds that holds a sweep.
 const SWEEP: &str = "a sweep";
-
-/// Files that a run leaves when it ends. Those of an earlier run would mix with a later one that is stopped.
-const RESULTS: [&str; 11] = [
-    "summary.json",
-    "turns.csv",
-    "stations.csv",
-    "defects.csv",
-    "coil.vtp",
-    "coil.png",
-    "core.vtp",
-    "report.html",
-    "compare.html",
-    frames::SERIES,
-    checkpoint::FILE,
-];
 
 /// Makes the folder; one that holds a run is refused unless `force` says otherwise, and one with an ensemble that goes on in any case.
 pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
@@ -208,4 +192,17 @@ pub(super) fn hold(directory: &Path) -> Result<Option<fs::File>, Failure> {
 #[cfg(not(unix))]
 pub(super) fn hold(_: &Path) -> Result<Option<fs::File>, Failure> {
     Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::frames;
+
+    #[test]
+    fn results_are_removed_by_the_names_that_they_are_written_by() {
+        for name in [frames::SERIES, checkpoint::FILE] {
+            assert!(RESULTS.contains(&name), "{name}");
+        }
+    }
 }

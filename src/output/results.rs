@@ -48,6 +48,22 @@ impl Ending {
     }
 }
 
+/// Files that a run leaves when it ends, beside its history and its scene. Those of an earlier run would pass for those of a later one that is
+/// stopped in its folder.
+pub const RESULTS: [&str; 11] = [
+    "summary.json",
+    "turns.csv",
+    "stations.csv",
+    "defects.csv",
+    "coil.vtp",
+    "coil.png",
+    "core.vtp",
+    "report.html",
+    "compare.html",
+    "frames.pvd",
+    "checkpoint.bin",
+];
+
 /// What `summary.json` holds: how the run ended, how long it took, and the run itself.
 #[derive(Serialize)]
 struct Report<'a> {

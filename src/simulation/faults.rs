@@ -71,7 +71,7 @@ impl Winding {
         let half = 0.5 * rest[edge];
         let before_nozzle = rest[edge..].iter().sum::<f64>() - half;
         let text = format!(
-            "the wire broke {:.1} mm before the nozzle: {} N is above its strength of {} N; lower tension_setpoint or the spindle's acceleration",
+            "the wire broke {:.1} mm before the nozzle: {} N is above its strength of {} N; lower the tension (tensioner.tension, or the inputs tension_setpoint and brake_torque) or change the spindle's speed more gently",
             1e3 * before_nozzle,
             four_digits(self.sys.state.load.tension[edge]),
             four_digits(self.scene.wire.strength),

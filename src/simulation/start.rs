@@ -48,8 +48,12 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64, Option<Str
     let nozzle = nozzle_of(scene, inputs);
     let distance = libm::hypot(nozzle.x, nozzle.z);
     if surface.radius_max() + radius >= distance {
+        let set = match (inputs.nozzle_offset_x, inputs.nozzle_offset_z) {
+            (0.0, 0.0) => "nozzle.distance",
+            _ => "nozzle.distance with nozzle_offset_x and nozzle_offset_z",
+        };
         return Err(SimError::setup(format!(
-            "nozzle.distance = {} m lies inside the circle of radius {} m that the core sweeps; allowed: more than that radius",
+            "{set} = {} m lies inside the circle of radius {} m that the core sweeps; allowed: more than that radius",
             si(distance),
             si(surface.radius_max() + radius)
         )));

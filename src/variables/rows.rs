@@ -462,7 +462,7 @@ table! {
     tunable(2122, "defects.jump", defects.jump, "1", "", 0.0, 1e3, 1.0, "turns by which a layer jump may come before or after the planned one; judged where the scene has winding.turns_per_layer or a layered traverse mode");
     tunable(2123, "defects.loose_height", defects.loose_height, "1", "", 0.0, 100.0, 0.1, "bulge over the quasi-static height above which wire touches nothing, diameters ...");
     tunable(2124, "defects.loose_fraction", defects.loose_fraction, "1", "", 0.0, 1.0, 1.0, "... and the share of a turn that may do so");
-    tunable(2125, "defects.loose_tension", defects.loose_tension, "1", "", 0.0, 1.0, 1.0, "least mean tension of a settled turn, as a share of tensioner.tension, or of the tension at the start where that is more");
+    tunable(2125, "defects.loose_tension", defects.loose_tension, "1", "", 0.0, 1.0, 1.0, "least mean tension of a settled turn, as a share of tensioner.tension, or of the tension at the start where that is more or the scene gives none");
     tunable(2126, "defects.stretch", defects.stretch, "1", "", 0.0, 10.0, 1e-2, "plastic stretch allowed");
 
     native(2200, "output.history_interval", output.history_interval, "rad", "deg", 1e-5, 1e3, 1e-2, "core angle between rows of history.csv");

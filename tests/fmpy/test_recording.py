@@ -83,6 +83,41 @@ def test_results_of_a_run_before_are_not_overwritten_without_a_word(make_slave, 
     assert "output.directory" in text and directory in text
 
 
+def test_a_run_begun_anew_leaves_no_results_of_the_run_before(make_slave, tmp_path):
+    """The folder of a run that was going on held the verdict and the coil of the one before, and a report mixed the two."""
+    directory = tmp_path / "results"
+    first, second = make_slave("first"), make_slave("second")
+    first.start(output__directory=str(directory))
+    steps(first, 2)
+    first.fmu.terminate()
+    (directory / "checkpoint.bin").write_bytes(b"of a run of the command")
+    second.start(output__directory=str(directory))
+    steps(second, 1)
+    assert {path.name for path in directory.iterdir()} == {"scene.toml", "history.csv"}
+    second.fmu.terminate()
+    assert {path.name for path in directory.iterdir()} == RESULTS
+
+
+def test_a_run_freed_at_its_stop_time_is_done(slave, tmp_path):
+    """It was "interrupted", although it had come to its end."""
+    slave.start(stop_time=2 * STEP, output__directory=str(tmp_path))
+    steps(slave, 2)
+    slave.free()
+    slave.fmu.component = None
+    assert status(tmp_path) == "done"
+
+
+def test_time_computed_before_a_roll_back_counts(slave, tmp_path):
+    """A master that rolls back at every step told the wall time of its last one."""
+    slave.start(output__directory=str(tmp_path))
+    state = slave.fmu.getFMUstate()
+    steps(slave, 20)
+    slave.fmu.setFMUstate(state)
+    slave.fmu.freeFMUstate(state)
+    slave.fmu.terminate()
+    assert json.loads((tmp_path / "summary.json").read_text())["wall_s"] > 0.0
+
+
 def test_a_directory_that_cannot_be_made_is_a_warning(slave, tmp_path):
     blocked = tmp_path / "file"
     blocked.write_text("in the way")

@@ -57,9 +57,15 @@ impl Instance {
     fn warn_of_contradictions(&mut self) {
         let mut texts = self.parameters.contradictions();
         texts.extend(self.parameters.effect_of_tolerance());
+        let run = self.run.as_ref();
+        let own = run.map_or_else(
+            || self.parameters.settings().start_inputs(),
+            |run| run.simulation.scene().start_inputs(),
+        );
         for (reference, value) in &self.start_inputs {
             let input = by_reference(*reference);
-            let text = input.and_then(|row| self.parameters.contradiction_of_input(row, *value));
+            let text =
+                input.and_then(|row| self.parameters.contradiction_of_input(row, *value, &own));
             texts.extend(text);
         }
         self.messages.extend(texts.iter().map(Message::warning));
@@ -78,6 +84,14 @@ impl Instance {
         Ok(())
     }
 
+    /// How a run ends that nobody terminates: as it was meant to where it has reached its stop time.
+    fn untold_ending(&self) -> Ending {
+        match self.clock.has_reached_stop() {
+            true => Ending::Done,
+            false => Ending::Interrupted,
+        }
+    }
+
     /// Tells what the solver did in all, if it did anything.
     fn sum_up(&mut self) {
         let counts = self.run.as_ref().map(|run| run.simulation.statistics());
@@ -89,7 +103,7 @@ impl Instance {
 
     /// `fmi2Reset`: a fresh instance with the same name, resources and logging. Never fails.
     pub(crate) fn reset(&mut self) -> Result<(), Error> {
-        self.finish_recording(&Ending::Interrupted);
+        self.finish_recording(&self.untold_ending());
         let messages = std::mem::take(&mut self.messages);
         *self = Self {
             messages,
@@ -101,7 +115,7 @@ impl Instance {
     /// `fmi2FreeInstance`. A run that nobody terminated leaves its results as well.
     pub(crate) fn close(&mut self) {
         if self.state != State::Fatal {
-            self.finish_recording(&Ending::Interrupted);
+            self.finish_recording(&self.untold_ending());
         }
     }
 }

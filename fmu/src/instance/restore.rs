@@ -7,6 +7,7 @@ use crate::message::Message;
 use crate::recording::Recording;
 use crate::state::{SavedRun, Snapshot};
 use coilwind_model_description::guid;
+use std::time::Duration;
 
 impl Instance {
     /// `fmi2GetFMUstate`. What stands in the files of the run is on disk afterwards. Where that
@@ -46,11 +47,14 @@ impl Instance {
     /// cut back to where it stood; the end of the run writes the other files.
     pub(crate) fn restore(&mut self, saved: &Snapshot) {
         // Buffered rows must be on disk before the file is read again.
+        let mut taken = Duration::ZERO;
         if let Some(run) = &mut self.run
             && let Some(mut recording) = run.recording.take()
-            && let Err(reason) = recording.mark()
         {
-            self.messages.push(Message::not_written(reason));
+            taken = recording.time_taken();
+            if let Err(reason) = recording.mark() {
+                self.messages.push(Message::not_written(reason));
+            }
         }
         let saved = saved.clone();
         self.state = saved.state;
@@ -61,7 +65,7 @@ impl Instance {
         self.demonstrates = saved.demonstrates;
         self.run = saved.run.map(|run| {
             let settings = self.parameters.settings();
-            let recording = run.mark.and_then(|mark| {
+            let mut recording = run.mark.and_then(|mark| {
                 let resumed = Recording::resume(settings, &run.simulation, &mark);
                 match resumed {
                     Ok((recording, false)) => Some(recording),
@@ -75,6 +79,10 @@ impl Instance {
                     }
                 }
             });
+            // What was computed in vain is part of what the results have cost.
+            if let Some(recording) = &mut recording {
+                recording.computed(taken);
+            }
             Box::new(Run {
                 simulation: run.simulation,
                 inputs: run.inputs,

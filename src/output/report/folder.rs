@@ -278,9 +278,12 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
         "wire_tension_max",
         "spindle_torque",
     ];
-    let Some(columns) = table(path, names)? else {
+    let Some(mut columns) = table(path, names)? else {
         return Ok(None);
     };
+    // A history of the FMU is in time of the experiment; defects are in time of the run.
+    let start = columns[0].first().copied().unwrap_or(0.0);
+    columns[0].iter_mut().for_each(|time| *time -= start);
     let rows = columns[0].len();
     let piece = rows.div_ceil(CURVE).max(1);
     let thin = |column: usize, choose: fn(&[f64]) -> f64| {
@@ -318,4 +321,23 @@ fn stations(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, Report
         ("layer", Array::bytes(layer)),
         ("measured", Array::bytes(measured)),
     ])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::history;
+
+    /// A history of the FMU is in time of the experiment. Marks of slack and breaks, in time of the run, lay elsewhere.
+    #[test]
+    fn curves_of_a_run_that_starts_later_begin_at_zero() {
+        let folder = tempfile::tempdir().unwrap();
+        let curves = |start: f64| {
+            let path = folder.path().join("history.csv");
+            let head = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque";
+            let row = |t: f64| format!("{},{t},1,15,14,16,0.1\n", start + t);
+            std::fs::write(&path, format!("{head}\n{}{}", row(0.0), row(0.5))).unwrap();
+            serde_json::to_string(&history(&path).unwrap()).unwrap()
+        };
+        assert_eq!(curves(10.0), curves(0.0));
+    }
 }
