@@ -124,14 +124,16 @@ impl Passes {
         passes.last().map_or(0.0, |(pass, _)| pass.from)
     }
 
-    /// How many layers begin after one winding angle and up to another, rad: passes that follow one which filled a layer.
-    pub(crate) fn layers_begun(&self, after: f64, until: f64) -> u32 {
-        let (mut before, mut count) = (0.0, 0);
-        for pass in self.judged().skip(1).take_while(|p| p.from <= until) {
-            count += u32::from(pass.from > after && pass.from - before >= SHORTEST);
-            before = pass.from;
-        }
-        count
+    /// Winding angles, rad, at which layers begin after one and up to another: passes that follow one which filled a layer.
+    pub(crate) fn layers_begun(&self, after: f64, until: f64) -> impl Iterator<Item = f64> {
+        let mut before = 0.0;
+        let passes = self.judged().skip(1).map(|pass| pass.from);
+        passes
+            .take_while(move |from| *from <= until)
+            .filter(move |from| {
+                let full = from - std::mem::replace(&mut before, *from) >= SHORTEST;
+                full && *from > after
+            })
     }
 
     /// The passes without those in which the nozzle hung back.

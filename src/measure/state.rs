@@ -1,6 +1,6 @@
 //! Numbers that describe the settled coil as a whole, as the machine sees them.
 
-use super::coil::{Coil, Record};
+use super::coil::{Coil, Record, STEP_UP};
 use super::defect::{Defect, DefectFlags, DefectKind, DefectPlace, MEASURED};
 use super::marks::CountedRun;
 use super::station::Station;
@@ -208,7 +208,13 @@ impl Coil {
     /// layer that the nozzle has begun since.
     pub(crate) fn layer_at(&self, angle: f64) -> u32 {
         let settled = self.end_angle().map_or(0.0, |(angle, _)| angle);
-        self.layer() + self.passes.layers_begun(settled, angle)
+        let mut begun = self.passes.layers_begun(settled, angle);
+        let Some(first) = begun.next() else {
+            return self.layer();
+        };
+        // Settled wire may have climbed already to the layer that begins next.
+        let before_it = self.settled_layer_at(settled.min(first - STEP_UP));
+        before_it.unwrap_or_else(|| self.layer()) + 1 + begun.count() as u32
     }
 
     /// Layer of the settled wire at this winding angle, rad; none where the wire has not settled.
