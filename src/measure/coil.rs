@@ -305,7 +305,7 @@ impl Coil {
     }
 
     /// Length of unstretched wire, m, that would add as much to the resistance as plastic stretch does between the clamp and
-    /// the place `arc`, m of unstretched wire from there. See [`added_by_stretch`]. Wire behind the last node counts as
+    /// the place `arc`, m of unstretched wire from there. See [`added_by_stretch`](super::added_by_stretch). Wire behind the last node counts as
     /// stretched like the wire before it.
     pub fn added_by_stretch(&self, arc: f64) -> f64 {
         let node = self.node_before(arc);
