@@ -55,16 +55,19 @@ fn an_ensemble_that_is_stopped_goes_on_to_the_same_bytes() {
     assert_eq!(told(&whole), told(&out));
 }
 
+/// A run of a third of a turn into this folder, with `more` of the command line.
+fn brief(out: &Path, more: &[&str]) -> Command {
+    let mut command = short(out);
+    command.args(["--set", "spindle.turns=0.3"]).args(more);
+    command
+}
+
 /// A run wound into the folder of an ensemble, and a smaller ensemble kept a member of the larger one.
 #[test]
 fn an_ensemble_is_not_overwritten_and_leaves_no_member_behind() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let run = |more: &[&str]| {
-        let mut command = short(&out);
-        command.args(["--set", "spindle.turns=0.3"]).args(more);
-        command
-    };
+    let run = |more: &[&str]| brief(&out, more);
     assert!(run(&["--ensemble", "3"]).status().unwrap().success());
     refused(&mut run(&[]), "holds an ensemble; add --force");
     refused(&mut run(&["--ensemble", "2"]), "holds an ensemble");
@@ -157,11 +160,7 @@ fn a_member_that_cannot_start_is_named_where_its_ensemble_goes_on() {
 fn an_ensemble_that_goes_on_keeps_the_members_that_have_ended() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("out");
-    let run = |more: &[&str]| {
-        let mut command = short(&out);
-        command.args(["--set", "spindle.turns=0.3"]).args(more);
-        command
-    };
+    let run = |more: &[&str]| brief(&out, more);
     assert!(run(&["--ensemble", "3"]).status().unwrap().success());
     let before: Vec<_> = (1..=3).map(|k| files(&out.join(k.to_string()))).collect();
     // what a member that is winding does to its history

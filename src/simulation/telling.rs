@@ -7,8 +7,8 @@ use crate::signals::EventKind;
 /// Stations within which defects that are found at once are told in one line. Chosen: about what a node settles.
 const TOGETHER: usize = 10;
 
-/// Why wire that comes to rest may lack the defect that was told of it: it slid and came to rest elsewhere, it was unwound and is
-/// wound again, or it was measured again without what comes to rest after it.
+/// Why wire that comes to rest may lack the defect that was told of it. It slid and came to rest elsewhere, or it was unwound and is
+/// wound again. Or it was measured again without what comes to rest after it.
 const MEASURED_ANEW: &str = "its wire had come loose or been unwound, or the nozzle had turned back, and was measured again";
 
 /// The same where wire beside a flange has left its row for certain.
