@@ -104,6 +104,32 @@ fn an_ensemble_is_not_overwritten_and_leaves_no_member_behind() {
     assert!(out.join("4/summary.json").is_file());
 }
 
+/// A run or an ensemble with `--force` removed the plan and the rows of a sweep that went on.
+#[test]
+fn a_sweep_that_goes_on_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut sweep = coilwind();
+    sweep.args(["sweep", "fig8", "--over", "spindle.speed=60:300:200"]);
+    sweep.args(["--threads", "1", "--quiet", "--out"]).arg(&out);
+    let mut sweep = sweep.stderr(Stdio::null()).spawn().unwrap();
+    let patience = std::time::Instant::now();
+    while !out.join("sweep.csv").is_file() && patience.elapsed().as_secs() < 60 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    refused(short(&out).arg("--force"), "a sweep is going on here");
+    let mut ensemble = short(&out);
+    ensemble.args(["--force", "--ensemble", "2"]);
+    refused(&mut ensemble, "a sweep is going on here");
+    assert!(out.join("sweep.json").is_file() && out.join("sweep.csv").is_file());
+    assert!(!out.join("history.csv").exists() && !out.join("1").exists());
+    sweep.kill().unwrap();
+    sweep.wait().unwrap();
+    // one that has stopped is
+    assert!(short(&out).arg("--force").status().unwrap().success());
+    assert!(!out.join("sweep.json").exists() && !out.join("sweep.csv").exists());
+}
+
 /// A second command wound those that had not begun, said that others had failed, and removed the plan of the first.
 #[test]
 fn an_ensemble_that_goes_on_is_not_gone_on_with_by_another() {

@@ -353,43 +353,6 @@ fn wire_that_parted_carries_no_tension_from_there_on() {
     }
 }
 
-/// A brake on the wheel pulls as the set tension does, and inputs read back as they were given.
-#[test]
-fn a_brake_pulls_by_its_torque_over_the_radius_of_its_wheel() {
-    let wound = |set: f64, torque: f64| {
-        let mut run = Simulation::new(&fig8(&[("tensioner.radius", "0.25")])).expect("starts");
-        run.step_beyond(true);
-        let rates = Inputs {
-            tension_setpoint: if torque > 0.0 { 0.0 } else { 20.0 },
-            brake_torque: if torque > 0.0 { 5.0 } else { 0.0 },
-            ..Inputs::HELD
-        };
-        let mut now = Inputs {
-            spindle_speed: 100.0,
-            tension_setpoint: set,
-            brake_torque: torque,
-            ..run.inputs()
-        };
-        run.set_start(Inputs {
-            spindle_speed: 0.0,
-            ..now
-        })
-        .expect("starts");
-        for _ in 0..40 {
-            run.advance_ramped(now, rates, 1e-3).expect("goes on");
-            now = now.after(&rates, 1e-3);
-            assert_eq!(run.inputs(), now);
-        }
-        *run.outputs()
-    };
-    let (by_force, by_brake) = (wound(15.0, 0.0), wound(13.0, 0.5));
-    // (2 N more from the start, and 20 N/s)
-    assert!(by_brake.wire_tension > 14.0, "{}", by_brake.wire_tension);
-    assert!((by_force.wire_tension - by_brake.wire_tension).abs() < 1e-9);
-    assert!((by_force.fed_length - by_brake.fed_length).abs() < 1e-12);
-    assert!(by_force.turns_wound > 0.3, "{}", by_force.turns_wound);
-}
-
 /// A damper that the machine adds is one that the scene has.
 #[test]
 fn a_damper_from_outside_is_a_damper_of_the_scene() {
@@ -459,43 +422,6 @@ fn a_nozzle_measured_at_the_start_of_a_step_is_as_late_as_the_page_says() {
     );
     close(lag("true", faster, false), 10.0 * step * step);
     close(lag("false", faster, true), 5.0 * step * step);
-}
-
-/// A brake asked for more than it has holds by the most it has, at a rate too.
-#[test]
-fn a_brake_holds_by_its_largest_torque_at_most() {
-    let pull = |asked: f64, rate: f64| {
-        let scene = fig8(&[
-            ("tensioner.tension", "10"),
-            ("tensioner.brake_torque_max", "0.2"),
-        ]);
-        let still = Inputs {
-            tension_setpoint: 10.0,
-            nozzle_position: scene.nozzle_law.start(),
-            brake_torque: asked,
-            ..Inputs::HELD
-        };
-        let rates = Inputs {
-            brake_torque: rate,
-            ..Inputs::HELD
-        };
-        let mut run = Simulation::starting_with(&scene, still).expect("starts");
-        for _ in 0..20 {
-            run.advance_ramped(still, rates, 1e-3).expect("goes on");
-        }
-        assert_eq!(run.inputs().brake_torque, asked + 1e-3 * rate);
-        run.outputs().wire_tension
-    };
-    // 0.2 N m on a wheel of 50 mm
-    for (asked, rate, tension) in [
-        (0.1, 0.0, 12.0),
-        (0.2, 0.0, 14.0),
-        (0.9, 0.0, 14.0),
-        (0.2, 40.0, 14.0),
-    ] {
-        let found = pull(asked, rate);
-        assert!((found - tension).abs() < 0.02, "{asked}: {found}");
-    }
 }
 
 /// With inertia in the line and a pulley, a run goes on from its bytes as if it had not stopped.

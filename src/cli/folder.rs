@@ -17,10 +17,12 @@ const SIGNS: [&str; 4] = ["summary.json", "history.csv", SCENE, checkpoint::FILE
 /// What a folder holds that holds a sweep.
 const SWEEP: &str = "a sweep";
 
-/// Makes the folder; one that holds a run is refused unless `force` says otherwise, and one with an ensemble that goes on in any case.
+/// Makes the folder; one that holds a run is refused unless `force` says otherwise, and one with an ensemble or a sweep that goes
+/// on in any case.
 pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
     refuse_occupied(directory, force)?;
     drop(hold_ensemble(directory)?);
+    drop(sweep_files::hold(directory)?);
     fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))
 }
 
@@ -67,7 +69,7 @@ fn has(directory: &Path, name: &str) -> bool {
 /// it is what tells that no other run writes here.
 pub(super) fn begin(directory: &Path, settings: &SceneSettings, note: &str) -> Result<(), Failure> {
     clear(directory)?;
-    remove(directory, &sweep_files::ALL)?;
+    remove_sweep(directory)?;
     let path = directory.join(SCENE);
     let text = format!("{note}{}", settings.to_toml_for_elsewhere());
     fs::write(&path, text).map_err(|e| Failure::write(&path, e))
@@ -130,6 +132,12 @@ pub(super) fn clear_run(directory: &Path) -> Result<(), Failure> {
 /// Removes all that a run or a sweep left.
 pub(super) fn clear_all(directory: &Path) -> Result<(), Failure> {
     clear_run(directory)?;
+    remove_sweep(directory)
+}
+
+/// Removes all that a sweep left; an error where it is going on.
+fn remove_sweep(directory: &Path) -> Result<(), Failure> {
+    let _plan = sweep_files::hold(directory)?;
     remove(directory, &sweep_files::ALL)
 }
 

@@ -1,4 +1,9 @@
-//! Names of the files in the folder of a sweep.
+//! The files in the folder of a sweep, and who holds its plan.
+
+use super::failure::Failure;
+use super::lock::{self, Locked};
+use std::io::ErrorKind;
+use std::path::Path;
 
 /// What the sweep is: scene, ranges, members.
 pub(super) const PLAN: &str = "sweep.json";
@@ -18,3 +23,28 @@ pub(super) const ANSWER: &str = "find_max.json";
 pub(super) const SIGNS: [&str; 2] = [PLAN, ROWS];
 /// All of them.
 pub(super) const ALL: [&str; 6] = [PLAN, ROWS, STATISTICS, MAP, PAGE, ANSWER];
+
+/// Holds the plan of a sweep, empty where there was none; an error where another sweep holds it. No command puts another file in
+/// its place, so that two which begin at the same moment meet at the same one.
+pub(super) fn begin(directory: &Path) -> Result<Locked, Failure> {
+    let path = directory.join(PLAN);
+    let locked = lock::create(&path).map_err(|e| Failure::write(&path, e))?;
+    locked.ok_or_else(|| goes_on(directory))
+}
+
+/// Holds the plan of the sweep in a folder, if it has one; an error where the sweep is going on.
+pub(super) fn hold(directory: &Path) -> Result<Option<Locked>, Failure> {
+    let path = directory.join(PLAN);
+    match lock::open(&path) {
+        Ok(locked) => locked.map(Some).ok_or_else(|| goes_on(directory)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Failure::write(path, error)),
+    }
+}
+
+fn goes_on(directory: &Path) -> Failure {
+    Failure::sweep(format!(
+        "{}: a sweep is going on here; wait for its end, or stop it first",
+        directory.display()
+    ))
+}

@@ -2,8 +2,8 @@
 
 use super::failure::Failure;
 use super::folder;
-use super::lock::{self, Locked};
-use super::sweep_files::{ALL, PLAN, ROWS, STATISTICS};
+use super::lock::Locked;
+use super::sweep_files::{self, ALL, PLAN, ROWS, STATISTICS};
 use super::sweep_grid::Grid;
 use super::sweep_row::{COLUMNS, Row, Rows};
 use super::sweep_statistics as statistics;
@@ -42,10 +42,8 @@ impl Ledger {
         // Before anything of the folder is touched ..
         let (found, begun) = look(directory, &plan, force).or_else(|_| {
             // A plan that is being written this instant is not whole.
-            match lock::open(&path) {
-                Ok(None) => Err(goes_on(directory)),
-                _ => look(directory, &plan, force),
-            }
+            drop(sweep_files::hold(directory)?);
+            look(directory, &plan, force)
         })?;
         if found.is_none() && !begun {
             folder::refuse_all_but_sweeps(directory, force)?;
@@ -54,7 +52,7 @@ impl Ledger {
             folder::clear_run(directory)?;
         }
         fs::create_dir_all(directory).map_err(|e| Failure::write(directory, e))?;
-        let mut hold = hold(directory, &path)?;
+        let mut hold = sweep_files::begin(directory)?;
         // .. and again: another sweep may have begun here, and ended, since.
         let (found, begun) = look(directory, &plan, force)?;
         let goes_on = found.as_ref() == Some(&plan) && !force;
@@ -252,20 +250,6 @@ fn look(directory: &Path, plan: &Value, force: bool) -> Result<(Option<Value>, b
         ))),
         None => Ok((found, begun)),
     }
-}
-
-/// Holds the plan of a sweep, empty where there was none; an error where another sweep holds it. No command puts another file in
-/// its place, so that two which begin at the same moment meet at the same one.
-fn hold(directory: &Path, path: &Path) -> Result<Locked, Failure> {
-    let held = lock::create(path).map_err(|e| Failure::write(path, e))?;
-    held.ok_or_else(|| goes_on(directory))
-}
-
-fn goes_on(directory: &Path) -> Failure {
-    Failure::sweep(format!(
-        "{}: a sweep is going on here; wait for its end, or stop it first",
-        directory.display()
-    ))
 }
 
 /// Puts a table in the place of the old one.

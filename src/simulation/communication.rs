@@ -68,7 +68,7 @@ impl Simulation {
         }
         let told = Told::new(inputs, &rates, dt);
         let before = self.talk.told.replace(told);
-        let meant = as_meant(self.scene(), inputs, rates, before.as_ref());
+        let meant = as_meant(self.scene(), inputs, rates, dt, before.as_ref());
         let gone = self.advance_as_meant(meant, dt);
         if gone.is_err() {
             self.talk.told = before;

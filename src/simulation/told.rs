@@ -57,12 +57,16 @@ pub(super) fn with_brake(scene: &Scene, inputs: Inputs) -> Inputs {
     adding(scene, inputs, torque)
 }
 
-/// The same of the `rates` of these inputs, per s: a brake at its largest torque gets no stronger.
-pub(super) fn rates_with_brake(scene: &Scene, inputs: &Inputs, rates: Inputs) -> Inputs {
+/// The same of the `rates` of these inputs, per s, over a step of `dt`, s: a brake that comes to its largest torque, or back from
+/// it, within the step pulls evenly from what it holds by at the start to what it holds by at the end.
+fn rates_with_brake(scene: &Scene, inputs: &Inputs, rates: Inputs, dt: f64) -> Inputs {
     let most = scene.tensioner.most_torque();
-    let at_most =
-        inputs.brake_torque > most || inputs.brake_torque == most && rates.brake_torque > 0.0;
-    let rate = if at_most { 0.0 } else { rates.brake_torque };
+    let end = inputs.after(&rates, dt).brake_torque;
+    let rate = if dt > 0.0 && inputs.brake_torque.max(end) > most {
+        (end.min(most) - inputs.brake_torque.min(most)) / dt
+    } else {
+        rates.brake_torque
+    };
     adding(scene, rates, rate)
 }
 
@@ -74,11 +78,12 @@ fn adding(scene: &Scene, inputs: Inputs, brake: f64) -> Inputs {
     }
 }
 
-/// Inputs and rates of a step as the winding takes them, where those of the step `before` are known.
+/// Inputs and rates of a step of `dt`, s, as the winding takes them, where those of the step `before` are known.
 pub(super) fn as_meant(
     scene: &Scene,
     inputs: Inputs,
     mut rates: Inputs,
+    dt: f64,
     before: Option<&Told>,
 ) -> (Inputs, Inputs) {
     if let Some(before) = before.filter(|_| scene.nozzle.position_at_start) {
@@ -93,6 +98,6 @@ pub(super) fn as_meant(
     }
     (
         with_brake(scene, inputs),
-        rates_with_brake(scene, &inputs, rates),
+        rates_with_brake(scene, &inputs, rates, dt),
     )
 }
