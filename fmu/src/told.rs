@@ -3,6 +3,7 @@
 use crate::ffi::Status;
 use crate::instance::Instance;
 use crate::message::Message;
+use coilwind::settings::SceneSettings;
 use coilwind::signals::{Event, EventKind};
 use coilwind::variables::by_name;
 use coilwind_model_description::Category;
@@ -171,4 +172,33 @@ fn what_moves_in_a_step_too_short_to_solve_for_moves_in_the_next() {
         assert!(refused.to_string().contains("1e-18 s or more"), "{refused}");
     }
     assert!(saved(&mut instance) == before);
+}
+
+/// The nozzle stood at `nozzle.y_start` and the lead, where the scene's law begins elsewhere, until an input moved it.
+#[test]
+fn the_nozzle_starts_where_the_law_of_the_scene_begins() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).expect("written");
+        path.display().to_string()
+    };
+    write("way.csv", "turns,y_m\n0,0.0005\n5,0.004\n");
+    let table = "[traverse]\nmode = \"table\"\nfile = \"way.csv\"\n";
+    let table = write("table.toml", table);
+    let starts = |scene: &str| {
+        let (mut instance, _) = started(|i| {
+            i.set(&[reference("scene.file")], [scene.to_owned()])
+                .expect("set");
+        });
+        instance
+            .get::<f64>(&[reference("nozzle_y")])
+            .expect("a place")[0]
+    };
+    assert_eq!(starts(&table), 5e-4);
+    for scene in ["fig8", "tooth", "bobbin", "fine"] {
+        let settings = SceneSettings::load(scene).expect("a scene");
+        let law = settings.build().expect("valid").nozzle_law;
+        assert_eq!(starts(scene), law.start(), "{scene}");
+    }
 }
