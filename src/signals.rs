@@ -181,31 +181,40 @@ pub struct Outputs {
     pub energy_residual: f64,
 }
 
-/// The outputs that follow the inputs of a communication step smoothly, wherever no wire lands and none comes to rest in it.
-macro_rules! smooth {
-    ($($field:ident),* $(,)?) => {
+/// Groups of Real outputs by how they follow the inputs of a communication step.
+macro_rules! group {
+    ($(#[$about:meta])* $names:ident, $get:ident, $with:ident: $($field:ident),* $(,)?) => {
         impl Outputs {
-            /// Names of the outputs that have derivatives by the inputs of the last communication step.
-            pub const SMOOTH: &'static [&'static str] = &[$(stringify!($field)),*];
+            $(#[$about])*
+            pub const $names: &'static [&'static str] = &[$(stringify!($field)),*];
 
-            /// Values of [`Self::SMOOTH`], in its order and in the units of the outputs.
-            pub(crate) fn smooth(&self) -> [f64; Self::SMOOTH.len()] {
+            /// Values of the group, in its order and in the units of the outputs.
+            pub(crate) fn $get(&self) -> [f64; Self::$names.len()] {
                 [$(self.$field),*]
             }
 
-            /// These outputs with other values of [`Self::SMOOTH`].
-            pub(crate) fn with_smooth(self, [$($field),*]: [f64; Self::SMOOTH.len()]) -> Self {
+            /// These outputs with other values of the group.
+            pub(crate) fn $with(self, [$($field),*]: [f64; Self::$names.len()]) -> Self {
                 Self { $($field,)* ..self }
             }
         }
     };
 }
 
-smooth! {
+group! {
+    /// Names of the outputs that follow the inputs smoothly, wherever no wire lands and none comes to rest in the step.
+    SMOOTH, smooth, with_smooth:
     wire_tension, wire_tension_min, wire_tension_max, turns_wound, spindle_angle, spindle_torque,
     feed_speed, fed_length, free_length, layon_position, layon_angle, tensioner_position,
     tensioner_speed, nozzle_angle, nozzle_y, layon_x, layon_z, spindle_torque_total, wire_length,
     wire_resistance, flange_clearance, turn_in_layer,
+}
+
+group! {
+    /// Names of the measures of settled wire: they follow the inputs where wire comes to rest in the step.
+    SETTLED, settled, with_settled:
+    turns_settled, bulge_height, gap_width, overlap_depth, coil_width, mean_pitch, fill_factor,
+    wire_strain, coil_inertia,
 }
 
 impl Outputs {

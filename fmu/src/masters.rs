@@ -248,7 +248,7 @@ fn outputs_with_derivatives_declare_their_dependencies() {
     let structure = &text[text.find("<Outputs>").expect("a structure")
         ..text.find("<InitialUnknowns>").expect("the next")];
     let declared = structure.matches(r#"dependencies="1 2 3 4 5 6 7""#).count();
-    assert_eq!(declared, Outputs::SMOOTH.len());
+    assert_eq!(declared, Outputs::SMOOTH.len() + Outputs::SETTLED.len());
     assert!(!text.contains("layers closed"));
 }
 

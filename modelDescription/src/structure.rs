@@ -8,12 +8,16 @@ use std::io;
 
 /// Writes the element `ModelStructure`.
 ///
-/// In step mode an output is a result of the last step. The outputs that follow its inputs smoothly depend on them, as
-/// `fmi2GetDirectionalDerivative` says; the others change only when wire comes to rest and declare no dependency. At the
-/// start every output may follow from the inputs and from every parameter of the scene.
+/// In step mode an output is a result of the last step. The outputs that follow its inputs, always or where wire comes to rest in
+/// it, depend on them, as `fmi2GetDirectionalDerivative` says; the others go in jumps and declare no dependency. At the start
+/// every output may follow from the inputs and from every parameter of the scene.
 pub(crate) fn write(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
     let outputs = indices(|variable| variable.causality == Causality::Output);
-    let smooth = indices(|variable| Outputs::SMOOTH.contains(&variable.name));
+    let following = indices(|variable| {
+        [Outputs::SMOOTH, Outputs::SETTLED]
+            .iter()
+            .any(|group| group.contains(&variable.name))
+    });
     let inputs = indices(|variable| variable.causality == Causality::Input);
     let by_inputs = join(&inputs, ToString::to_string);
     let of_inputs = join(&inputs, |_| "dependent".to_owned());
@@ -27,7 +31,7 @@ pub(crate) fn write(writer: &mut Writer<Vec<u8>>) -> io::Result<()> {
                 .create_element("Outputs")
                 .write_inner_content(|writer| {
                     for index in &outputs {
-                        match smooth.contains(index) {
+                        match following.contains(index) {
                             true => write_unknown(writer, *index, &by_inputs, &of_inputs)?,
                             false => write_unknown(writer, *index, "", "")?,
                         }

@@ -18,8 +18,10 @@ const CELL: (u32, u32) = (92, 52);
 const MARGIN: (u32, u32) = (110, 110);
 /// Cells along an axis from which on texts would not be read: the table has the numbers.
 const MOST: u32 = 60;
-/// Colours of no defect, of a defect in every run, and of runs that tell nothing; told apart also by the colour-blind.
+/// Colours of no defect, of the first defects, of a defect in every run, and of runs that tell nothing; told apart also by the
+/// colour-blind. From blue to orange there is a grey halfway, so one defect already counts as orange.
 const FREE: [f64; 3] = [214.0, 232.0, 244.0];
+const FEW: [f64; 3] = [253.0, 228.0, 205.0];
 const DEFECT: [f64; 3] = [213.0, 94.0, 0.0];
 const UNKNOWN: [f64; 3] = [150.0, 150.0, 150.0];
 /// Digits of a value at an axis: what a cell has room for.
@@ -106,12 +108,15 @@ fn draw(grid: &Grid, rows: &Rows) -> Result<String, String> {
     Ok(text)
 }
 
-/// From free to defect by the share of runs, and grey by the share that failed or could not be judged.
+/// Free, or from few to all by the share of runs with a defect; grey by the share that failed or could not be judged.
 fn colour(ensemble: &Ensemble) -> RGBColor {
     let bad = ensemble.defect_share();
     let unknown = ensemble.failed_share() + ensemble.unjudged_share();
     let part = |k: usize| {
-        let judged = FREE[k] + bad * (DEFECT[k] - FREE[k]);
+        let judged = match bad > 0.0 {
+            true => FEW[k] + bad * (DEFECT[k] - FEW[k]),
+            false => FREE[k],
+        };
         (judged + unknown * (UNKNOWN[k] - judged)).round() as u8
     };
     RGBColor(part(0), part(1), part(2))

@@ -6,6 +6,7 @@ mod block;
 mod frame;
 mod persistent_vec;
 mod scale;
+mod segment;
 pub mod simd;
 mod vector;
 
@@ -14,4 +15,5 @@ pub use block::{Block, add_identity, add_outer, block_difference, block_times, s
 pub use frame::{align, frame_along, relative, rotate, rotate_back, turn_about_y};
 pub use persistent_vec::PersistentVec;
 pub use scale::scaled;
+pub use segment::{closest_point_segment, nearest_shares};
 pub use vector::{M3, Quat, Spin, V3, spin_velocity};

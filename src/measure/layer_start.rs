@@ -1,4 +1,4 @@
-//! Where the layer begins that is being wound, of wire that may not have come to rest yet.
+//! The layer that is being wound, of wire that may not have come to rest yet, and where it begins.
 
 use super::coil::{Coil, STEP_UP};
 use std::f64::consts::TAU;
@@ -8,11 +8,11 @@ use std::f64::consts::TAU;
 const ASTRAY: f64 = TAU;
 
 impl Coil {
-    /// Winding angle at which the layer of the wire at this winding angle begins, rad, as far as is known by now.
+    /// Layer, from 1, of the wire at this winding angle, and the winding angle at which that layer begins, rad, as far as is known by now.
     ///
     /// Where wire has come to rest in that layer, it says so. Until then the plan does, in the middle of the climb, or without a plan the
     /// nozzle, which has turned. A swing of the nozzle past its place is no turn of it.
-    pub fn layer_begins(&self, angle: f64) -> f64 {
+    pub fn layer_being_laid(&self, angle: f64) -> (u32, f64) {
         let (layer, since, end) = self.records.last().map_or((1, 0.0, 0.0), |last| {
             let station = &last.station;
             (
@@ -24,7 +24,11 @@ impl Coil {
         let jumps = &self.spec.jumps;
         if jumps.is_empty() {
             let climbed = (layer > 1).then_some(since);
-            return self.passes.begins(angle, climbed).max(0.0);
+            let begins = self.passes.begins(angle, climbed).max(0.0);
+            return match begins > end {
+                true => (self.layer_at(angle), begins),
+                false => (self.layer(), begins),
+            };
         }
         let middle = |jump: &[f64; 2]| 0.5 * (jump[0] + jump[1]);
         let planned = |climbs: usize| match climbs {
@@ -36,14 +40,16 @@ impl Coil {
         if climbs > due {
             // it has climbed early, for good or for a while
             let is_early = end - since > ASTRAY;
-            return if is_early { since } else { planned(due) };
+            return match is_early {
+                true => (climbs as u32 + 1, since),
+                false => (due as u32 + 1, planned(due)),
+            };
         }
         let [from, to] = jumps.get(climbs).copied().unwrap_or([f64::INFINITY; 2]);
         let is_late = climbs < due && since < from && end > to + STEP_UP;
         let begun = if is_late { climbs } else { due };
-        match climbs == begun && (since - planned(begun)).abs() < ASTRAY {
-            true => since,
-            false => planned(begun),
-        }
+        let has_climbed = climbs == begun && (since - planned(begun)).abs() < ASTRAY;
+        let begins = if has_climbed { since } else { planned(begun) };
+        (begun as u32 + 1, begins)
     }
 }

@@ -2,8 +2,8 @@
 
 use super::coil::Coil;
 use super::row::Row;
-use super::station::{NEIGHBOUR_WINDOW, Neighbour, closest_point_segment};
-use crate::math::V3;
+use super::station::{NEIGHBOUR_WINDOW, Neighbour};
+use crate::math::{V3, closest_point_segment};
 use std::f64::consts::TAU;
 
 impl Coil {

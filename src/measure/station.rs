@@ -86,28 +86,3 @@ impl Station {
         (self.position.x * self.position.x + self.position.z * self.position.z).sqrt()
     }
 }
-
-/// Point of the segment `a b` nearest to `p`.
-pub(crate) fn closest_point_segment(p: V3, a: V3, b: V3) -> V3 {
-    let along = b - a;
-    let length2 = along.norm_squared();
-    if length2 == 0.0 {
-        return a;
-    }
-    a + along * ((p - a).dot(&along) / length2).clamp(0.0, 1.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn nearest_point_lies_inside_or_at_the_ends() {
-        let (a, b) = (V3::new(0.0, 0.0, 0.0), V3::new(2.0, 0.0, 0.0));
-        let near = |x, y| closest_point_segment(V3::new(x, y, 0.0), a, b);
-        assert_eq!(near(0.5, 3.0), V3::new(0.5, 0.0, 0.0));
-        assert_eq!(near(-1.0, 3.0), a);
-        assert_eq!(near(5.0, -1.0), b);
-        assert_eq!(closest_point_segment(b, a, a), a);
-    }
-}

@@ -24,6 +24,9 @@ impl Winding {
         let slack = t < self.slack_tension();
         if slack {
             self.note_slack();
+        } else if self.run.slack_at.is_some_and(|at| !self.is_same_slack(at)) {
+            // the core may come back to where it was
+            self.run.slack_at = None;
         }
         self.run.was_slack = slack;
         self.watch_yardstick();
@@ -35,11 +38,16 @@ impl Winding {
         weight * 0.5 * self.scene.nozzle.distance
     }
 
+    /// Whether wire that is slack now is so still where it was slack with the core at this angle, rad.
+    fn is_same_slack(&self, core: f64) -> bool {
+        (self.sys.state.spindle.angle - core).abs() < SAME_SLACK
+    }
+
     fn note_slack(&mut self) {
         let (core, now) = (self.sys.state.spindle.angle, self.sys.state.time);
         let last = self.run.slack_at.replace(core);
         let slack = |fault: &&mut Defect| fault.kind == DefectKind::Slack;
-        if last.is_some_and(|last| (core - last).abs() < SAME_SLACK)
+        if last.is_some_and(|last| self.is_same_slack(last))
             && let Some(fault) = self.run.faults.iter_mut().rev().find(slack)
         {
             fault.until_s = Some(now);

@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 /// Outputs for a model of the machine.
 pub(super) struct Machine {
     layon: [f64; 2],
+    layer: u32,
     turn_in_layer: f64,
     clearance: f64,
     resistance: f64,
@@ -18,6 +19,7 @@ pub(super) struct Machine {
 impl Machine {
     pub(super) fn write(self, o: &mut Outputs) {
         [o.layon_x, o.layon_z] = self.layon;
+        o.layer = self.layer as i32;
         o.turn_in_layer = self.turn_in_layer;
         o.flange_clearance = self.clearance;
         o.wire_resistance = self.resistance;
@@ -32,9 +34,11 @@ impl Winding {
         let y = layon.point.y;
         let on_core = Spin::new(self.sys.state.spindle.angle).to_core(layon.point);
         let way = self.flange_beside(on_core);
+        let (layer, begins) = self.coil.layer_being_laid(layon.angle);
         Machine {
             layon: [layon.point.x, layon.point.z],
-            turn_in_layer: (layon.angle - self.coil.layer_begins(layon.angle)).max(0.0) / TAU,
+            layer,
+            turn_in_layer: (layon.angle - begins).max(0.0) / TAU,
             clearance: way.map_or((y - low).min(high - y), f64::abs) - self.scene.wire.radius(),
             resistance: self.resistance_of(layon.arc, layon.added_by_stretch),
             inertia: self.coil_inertia(),

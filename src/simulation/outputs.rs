@@ -164,7 +164,6 @@ impl Winding {
         o.meet_tension(tension);
         o.turns_wound = layon.angle.max(0.0) / std::f64::consts::TAU;
         o.turns_settled = self.coil.turns_settled();
-        o.layer = self.coil.layer().max(1) as i32;
         o.spindle_angle = self.sys.state.spindle.angle - self.run.angle0;
         o.fed_length = feed.fed;
         o.free_length = layon.free_length;

@@ -4,7 +4,7 @@ use super::{REMESH_STEPS, SimError, Winding};
 use crate::geometry::FrozenNode;
 use crate::math::Spin;
 use crate::math::turn_about_y;
-use crate::math::{polar_angle, spin_velocity, wrap_to_pi};
+use crate::math::{polar_angle, wrap_to_pi};
 use crate::measure::DefectKind;
 use crate::scene::LiveContact;
 use crate::system::HALF_TURN;
@@ -18,7 +18,7 @@ const STRAIGHT: f64 = 0.99995;
 
 /// Angle between edges from which on the longer one is halved, rad. Chosen: from 0.3 rad on, a split made as much energy as
 /// slack wire has. A look comes after the step in which an edge bends beyond it, so halved edges bend by more.
-const BENT: f64 = 0.05;
+pub(super) const BENT: f64 = 0.05;
 
 /// Share of the spacing below which an edge of bent wire goes back into the nozzle whole. The chord then loses a 22nd of the spacing
 /// times the square of the angle; steps take a quarter of the edge each.
@@ -26,9 +26,6 @@ const SHORTEST_BENT: f64 = 0.1;
 /// Angle from which on that share goes down with its square, so that the chord loses no more, rad. Four times [`BENT`]: wire that
 /// turns by more from edge to edge is folded.
 const WELL_BENT: f64 = 4.0 * BENT;
-
-/// Longest step over the one before it, rounded up: no step that lands before the next look is longer.
-const AHEAD: f64 = 2.0;
 
 /// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
 /// turn back.
@@ -104,7 +101,7 @@ impl Winding {
         }
     }
 
-    fn split(&mut self, edge: usize) {
+    pub(super) fn split(&mut self, edge: usize) {
         self.sys.split(edge);
         self.run.watch.insert(edge + 1);
     }
@@ -157,89 +154,12 @@ impl Winding {
     }
 
     /// Whether the edges at a node turn by more than `angle`, rad.
-    fn bends_by(&self, node: usize, angle: f64) -> bool {
+    pub(super) fn bends_by(&self, node: usize, angle: f64) -> bool {
         self.cosine_at(node) < libm::cos(angle)
     }
 
-    /// Edges that are too long for where they came in a step of `dt`, s, or how they bend, ascending.
-    fn edges_to_refine(&self, dt: f64) -> Vec<usize> {
-        let near = self.scene.solver.refine_distance;
-        self.long_edges(|j| {
-            self.is_bent(j) || self.comes_near_core(j, near.max(self.way_ahead(j, dt)))
-        })
-    }
-
-    /// Halves long edges that a step after one of `dt`, s, may bring to the core until they are fine.
-    ///
-    /// At the next look it would be too late: new points between those that touch would lie deep in the core.
-    fn refine_ahead_of_touch(&mut self, dt: f64) {
-        loop {
-            let soon = self.long_edges(|j| self.comes_near_core(j, self.way_ahead(j, dt)));
-            if soon.is_empty() {
-                break;
-            }
-            for j in soon.into_iter().rev() {
-                self.split(j);
-            }
-        }
-    }
-
-    /// Edges ahead of settled wire, but for that at the nozzle, that are longer than fine ones and `wanted`, ascending.
-    fn long_edges(&self, wanted: impl Fn(usize) -> bool) -> Vec<usize> {
-        let solver = self.scene.solver;
-        if solver.spacing_free < 1.5 * solver.spacing_near {
-            return Vec::new();
-        }
-        let rod = &self.sys.state.rod;
-        // the edge at the nozzle keeps its length for the feed
-        let first = if self.stepper.is_implicit() {
-            self.first_fine_edge()
-        } else {
-            0
-        };
-        (first..rod.edges() - 1)
-            .filter(|&j| rod.rest[j] > 1.5 * solver.spacing_near && wanted(j))
-            .collect()
-    }
-
-    /// How far edge `j` may come towards the core in a step after one of `dt`, s, m.
-    fn way_ahead(&self, j: usize, dt: f64) -> f64 {
-        let (rod, core) = (&self.sys.state.rod, self.sys.state.spindle);
-        let speed = |i: usize| (rod.v[i] - spin_velocity(core.speed, rod.x[i])).norm();
-        AHEAD * dt * speed(j).max(speed(j + 1))
-    }
-
-    /// Whether edge `j` comes so `near` (m) to the core or the layers below: looked at in places so close together that where it
-    /// touches between them, one is.
-    fn comes_near_core(&self, j: usize, near: f64) -> bool {
-        let spin = Spin::new(self.sys.state.spindle.angle);
-        let rod = &self.sys.state.rod;
-        let radius = self.scene.wire.radius();
-        let reach = self.layers_below() + near + radius;
-        let half = (rod.rest[j] / (4.0 * near.max(radius))).ceil().max(1.0);
-        (-half as i32..=half as i32).any(|k| {
-            let from_centre = f64::from(k) / half;
-            let end = rod.x[if k < 0 { j } else { j + 1 }];
-            let place = self.sys.centre(j).lerp(&end, from_centre.abs());
-            self.sys.is_near_core(spin.to_core(place), reach)
-        })
-    }
-
-    /// Whether the wire bends strongly at an end of edge `j`, and the edge there is no shorter than its neighbour.
-    fn is_bent(&self, j: usize) -> bool {
-        let rod = &self.sys.state.rod;
-        [(j, j.wrapping_sub(1)), (j + 1, j + 1)]
-            .into_iter()
-            .any(|(node, next)| {
-                node > 0
-                    && node < rod.edges()
-                    && rod.rest[j] >= rod.rest[next]
-                    && self.bends_by(node, BENT)
-            })
-    }
-
     /// Height of the layers below the one that is wound, m: lengths that count from the core count from there.
-    fn layers_below(&self) -> f64 {
+    pub(super) fn layers_below(&self) -> f64 {
         f64::from(self.coil.layer() - 1) * self.scene.wire.diameter
     }
 
@@ -355,6 +275,7 @@ impl Winding {
         let thaw = self.nodes_to_thaw();
         let returning = self.sys.state.feed.is_some_and(|f| f.rate < 0.0);
         let join = if returning {
+            self.older_wire.measure(&self.sys);
             self.nodes_to_join()
         } else {
             Vec::new()
@@ -420,6 +341,10 @@ impl Winding {
                 && rod.x[i - 1..=i + 1]
                     .iter()
                     .all(|x| !self.sys.is_near_core(spin.to_core(*x), reach))
+                && !(i - 1..=i).any(|j| {
+                    self.older_wire
+                        .lies_near(&self.sys, j, 2.0 * solver.refine_distance)
+                })
             {
                 nodes.push(i);
                 i += 1;

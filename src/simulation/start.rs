@@ -7,6 +7,7 @@ use super::doubt::Throughput;
 use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_place::nozzle_of;
 use super::nozzle_way::Traverse;
+use super::older_wire::OlderWire;
 use super::run_state::RunState;
 use super::straight_wire::{check_way, clear_angle};
 use super::{MotionProfile, SimError, Winding};
@@ -289,6 +290,7 @@ impl Winding {
             stepper,
             run,
             behind: Vec::new(),
+            older_wire: OlderWire::default(),
             ends,
             most_work: u64::MAX,
             stop: None,

@@ -28,8 +28,8 @@ const SLOW: f64 = 0.1;
 /// came nearest to differences of any size in it.
 const SIZES: [f64; 3] = [0.3, 1.0, 10.0];
 
-/// How the outputs change with the inputs of a communication step. Outputs beyond [`Outputs::SMOOTH`] change only when wire
-/// comes to rest and have 0.
+/// How the outputs change with the inputs of a communication step: those of [`Outputs::SMOOTH`], and those of [`Outputs::SETTLED`],
+/// which keep out that wire comes to rest in one step and not in one close by. Counts and what is kept of a defect have 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Derivative {
     /// the derivatives: for each output the middle of its slopes over changes of three sizes
@@ -43,14 +43,13 @@ pub struct Derivative {
 }
 
 impl Derivative {
-    fn of(slopes: &[Smooth], change: f64) -> Self {
-        let mut sorted: [Vec<f64>; Outputs::SMOOTH.len()] =
-            std::array::from_fn(|k| slopes.iter().map(|slope| slope[k]).collect());
-        for values in &mut sorted {
-            values.sort_by(f64::total_cmp);
-        }
+    fn of(slopes: &[Slope], change: f64) -> Self {
+        let smooth = ascending(slopes.iter().map(|slope| &slope.smooth));
+        let settled = ascending(slopes.iter().map(|slope| &slope.settled));
         let outputs = |value: &dyn Fn(&[f64]) -> f64| {
-            Outputs::default().with_smooth(std::array::from_fn(|k| value(&sorted[k])))
+            Outputs::default()
+                .with_smooth(std::array::from_fn(|k| value(&smooth[k])))
+                .with_settled(std::array::from_fn(|k| value(&settled[k])))
         };
         Self {
             slopes: outputs(&middle),
@@ -80,7 +79,7 @@ impl Simulation {
         let outcome = |by: f64| {
             let mut run = self.clone();
             run.advance_ramped(inputs.after(&along, by), rates, dt)?;
-            Ok(*run.outputs())
+            Ok(Outcome::of(&run))
         };
         let reach = reach(self, &inputs, &along, dt);
         let mut slopes = Vec::with_capacity(SIZES.len());
@@ -114,7 +113,7 @@ impl Simulation {
             if (there.spindle_speed < 0.0) != (inputs.spindle_speed < 0.0) {
                 there.spindle_speed = inputs.spindle_speed;
             }
-            Ok(*Self::starting_with(scene, there)?.outputs())
+            Ok(Outcome::of(&Self::starting_with(scene, there)?))
         };
         let start = Self::starting_with(scene, inputs)?;
         let reach = reach(&start, &inputs, &along, 1.0);
@@ -123,8 +122,59 @@ impl Simulation {
     }
 }
 
-/// Values of the outputs that have derivatives.
-type Smooth = [f64; Outputs::SMOOTH.len()];
+/// What a step led to.
+struct Outcome {
+    outputs: Outputs,
+    /// how many places of the wire are at rest
+    settled: usize,
+}
+
+impl Outcome {
+    fn of(run: &Simulation) -> Self {
+        Self {
+            outputs: *run.outputs(),
+            settled: run.winding().coil.stations().len(),
+        }
+    }
+}
+
+/// How the outputs that have derivatives change.
+struct Slope {
+    smooth: [f64; Outputs::SMOOTH.len()],
+    settled: [f64; Outputs::SETTLED.len()],
+}
+
+impl Slope {
+    /// From one outcome to another that is this far off.
+    fn between(from: &Outcome, to: &Outcome, way: f64) -> Self {
+        let [a, b] = [&from.outputs, &to.outputs];
+        // wire that came to rest in one of them only is a jump
+        let jump = from.settled != to.settled;
+        let settled = match jump {
+            true => [0.0; Outputs::SETTLED.len()],
+            false => over(a.settled(), b.settled(), way),
+        };
+        Self {
+            smooth: over(a.smooth(), b.smooth(), way),
+            settled,
+        }
+    }
+}
+
+fn over<const N: usize>(from: [f64; N], to: [f64; N], way: f64) -> [f64; N] {
+    std::array::from_fn(|k| (to[k] - from[k]) / way)
+}
+
+/// The values of each output, ascending.
+fn ascending<'a, const N: usize>(
+    slopes: impl Iterator<Item = &'a [f64; N]> + Clone,
+) -> [Vec<f64>; N] {
+    std::array::from_fn(|k| {
+        let mut values: Vec<f64> = slopes.clone().map(|slope| slope[k]).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    })
+}
 
 /// How far to go in the direction `along`, so that no input of a step of `dt`, s, changes by more than its share.
 fn reach(run: &Simulation, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
@@ -155,15 +205,11 @@ fn reach(run: &Simulation, inputs: &Inputs, along: &Inputs, dt: f64) -> f64 {
 /// Slope from `by` on both sides; on one side where there is nothing on the other, as below a tension of 0. The step with the
 /// inputs as they are is none of the two: with inputs that go on the method may step beyond it, and the difference of both
 /// ways of stepping is no slope.
-fn slope(outcome: &impl Fn(f64) -> Result<Outputs, SimError>, by: f64) -> Result<Smooth, SimError> {
-    let over = |a: &Outputs, b: &Outputs, way: f64| {
-        let (a, b) = (a.smooth(), b.smooth());
-        std::array::from_fn(|k| (a[k] - b[k]) / way)
-    };
+fn slope(outcome: &impl Fn(f64) -> Result<Outcome, SimError>, by: f64) -> Result<Slope, SimError> {
     match (outcome(by), outcome(-by)) {
-        (Ok(ahead), Ok(behind)) => Ok(over(&ahead, &behind, 2.0 * by)),
-        (Ok(ahead), Err(_)) => Ok(over(&outcome(2.0 * by)?, &ahead, by)),
-        (Err(_), Ok(behind)) => Ok(over(&behind, &outcome(-2.0 * by)?, by)),
+        (Ok(ahead), Ok(behind)) => Ok(Slope::between(&behind, &ahead, 2.0 * by)),
+        (Ok(ahead), Err(_)) => Ok(Slope::between(&ahead, &outcome(2.0 * by)?, by)),
+        (Err(_), Ok(behind)) => Ok(Slope::between(&outcome(-2.0 * by)?, &behind, by)),
         (Err(error), Err(_)) => Err(error),
     }
 }

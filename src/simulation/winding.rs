@@ -1,6 +1,7 @@
 //! Wire, coil and method of a run, and what it remembers: what a step of the method changes.
 
 use super::core_model::core_surface;
+use super::older_wire::OlderWire;
 use super::run_state::RunState;
 use super::{MotionProfile, SimError};
 use crate::geometry::Surface;
@@ -25,6 +26,8 @@ pub struct Winding {
     pub(super) run: RunState,
     /// polar angle from each laid node to lift-off, at the last look, rad
     pub(super) behind: Vec<f64>,
+    /// work space of a look
+    pub(super) older_wire: OlderWire,
     /// between which wire can be wound along y, m
     pub(super) ends: [f64; 2],
     /// how much [`RunState::work`] may become; the caller's
@@ -156,6 +159,7 @@ impl Winding {
             stepper,
             run,
             behind,
+            older_wire: _,
             ends: _,
             most_work,
             stop,

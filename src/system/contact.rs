@@ -117,6 +117,15 @@ impl ContactState {
             Self::Line(line) => line.watch_live_wire(),
         }
     }
+
+    /// Whether live wire may touch live wire.
+    pub fn watches_live_wire(&self) -> bool {
+        match self {
+            Self::None => false,
+            Self::Nodal(nodal) => nodal.live.is_some(),
+            Self::Line(line) => line.self_contact.is_some(),
+        }
+    }
 }
 
 impl ContactScratch {

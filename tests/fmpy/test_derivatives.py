@@ -154,23 +154,33 @@ def test_directional_derivatives_over_a_millisecond(make_slave):
 
 
 def test_what_declares_no_dependency_does_not_move_with_the_inputs(slave):
-    """turn_in_layer, flange_clearance, wire_length and wire_resistance declared none, and moved as turns_wound does."""
+    """Measures of settled wire declared none, and moved with the inputs of a step in which wire came to rest."""
     declared = {unknown.variable.name: unknown.dependencies for unknown in slave.description.outputs}
     free = [name for name, on in declared.items() if not on and slave.variables[name].type == "Real"]
-    assert "gap_width" in free and "turns_wound" not in free
+    assert "defect_time" in free and "coil_width" not in free and "turns_wound" not in free
     slave.start(scene__file="fig8")
-    wind(slave, 100, 1e-4)
-    nozzle = slave.get("nozzle_position")
-    before = slave.fmu.getFMUstate()
-    moved = {}
-    for changes in ({}, {"spindle_speed": 1e-3}, {"nozzle_position": 1e-7}, {"tension_setpoint": 1e-3}):
-        slave.fmu.setFMUstate(before)
-        base = {"spindle_speed": RATE * 1e-2, "nozzle_position": nozzle, "tension_setpoint": 15.0}
-        slave.set(**{name: value + changes.get(name, 0.0) for name, value in base.items()})
-        slave.fmu.doStep(1e-2, 1e-4)
-        for name in free:
-            moved.setdefault(name, set()).add(slave.get(name))
-    assert [name for name, values in moved.items() if len(values) > 1] == []
+    size, clean = 4e-3, 0
+    for k in range(40):
+        if k < 12 or k % 3:
+            slave.set(spindle_speed=min(100.0, 1e3 * (k + 0.5) * size), nozzle_position=0.7e-3 * slave.get("spindle_angle") / math.tau)
+            slave.fmu.doStep(k * size, size)
+            continue
+        before, base = slave.fmu.getFMUstate(), {name: slave.get(name) for name in ("nozzle_position", "tension_setpoint")}
+        after = {}
+        for by in (0.0, 0.01, -0.01):
+            slave.fmu.setFMUstate(before)
+            slave.set(spindle_speed=100.0, **{**base, "tension_setpoint": 15.0 + by})
+            slave.fmu.doStep(k * size, size)
+            after[by] = {name: slave.get(name) for name in ("turns_settled", "coil_width", *free)}
+            if by == 0.0:
+                known = slave.references(["tension_setpoint"])
+                slopes = slave.fmu.getDirectionalDerivative(slave.references(["turns_settled", "coil_width"]), known, [0.01])
+        assert [name for name in free if len({values[name] for values in after.values()}) > 1] == []
+        for name, slope in zip(("turns_settled", "coil_width"), slopes):
+            plus, minus = after[0.01][name], after[-0.01][name]
+            clean += slope != 0.0 and slope == pytest.approx((plus - minus) / 2, rel=0.1)
+        slave.fmu.freeFMUstate(before)
+    assert clean >= 4, clean
 
 
 def test_directional_derivatives_of_the_start(slave):

@@ -259,7 +259,9 @@ def test_the_turn_of_a_layer_is_that_which_is_laid(slave, tmp_path):
     slave.fmu.terminate()
     with open(tmp_path / "turns.csv", encoding="utf-8", newline="") as file:
         table = {int(row["turn"]): row for row in csv.DictReader(file)}
-    for wound, in_layer, _ in told:
+    for wound, in_layer, layer in told:
+        # it rose only once wire of the new layer had settled
+        assert layer == round((wound - in_layer) / 20) + 1, (wound, in_layer, layer)
         row = table.get(math.ceil(wound))
         assert abs(wound % 20 - in_layer) < 0.4 or abs(wound % 20 - in_layer) > 19.6, (wound, in_layer)
         middle = 0.4 < wound % 1 < 0.6

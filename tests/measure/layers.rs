@@ -161,7 +161,7 @@ fn a_layer_begins_where_wire_climbs_to_it() {
             }
             // wire is laid a little ahead of what has come to rest
             let laid = coil.turns_settled() + 0.3;
-            told.push((laid, laid - coil.layer_begins(laid * TAU) / TAU));
+            told.push((laid, laid - coil.layer_being_laid(laid * TAU).1 / TAU));
         }
         for (laid, told) in told {
             let climbed = ((laid + CLIMB) / TURNS).floor().min(2.0) * TURNS;

@@ -1,0 +1,89 @@
+//! Older live wire that an edge of the free span comes to: wire off the core, which how near the core is does not tell.
+
+use crate::contact::own_wire;
+use crate::math::{V3, nearest_shares};
+use crate::system::System;
+
+/// Length of wire over its unstretched length that no wire exceeds.
+const MOST_STRETCHED: f64 = 2.0;
+
+/// What a look needs to know of the live wire as a whole. Work space: it is measured before it is used.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OlderWire {
+    /// unstretched lengths of wire from the clamp to the nodes, m; none where live wire cannot touch live wire
+    arcs: Vec<f64>,
+    /// the highest speed of a node, m/s
+    fastest: f64,
+}
+
+impl OlderWire {
+    /// Measures the live wire as it is now.
+    pub(super) fn measure(&mut self, sys: &System) {
+        self.arcs.clear();
+        if !sys.state.contact.watches_live_wire() {
+            return;
+        }
+        let rod = &sys.state.rod;
+        let mut arc = 0.0;
+        self.arcs.extend(rod.rest.iter().map(|rest| {
+            arc += rest;
+            arc - rest
+        }));
+        let squares = rod.v.iter().map(V3::norm_squared);
+        self.fastest = squares.fold(0.0, f64::max).sqrt();
+    }
+
+    /// Whether edge `j` comes to older live wire within `time`, s, at the speeds that they have.
+    ///
+    /// Contact points are as far apart as nodes, and wire would go through the older wire between two that are.
+    pub(super) fn may_meet(&self, sys: &System, j: usize, time: f64) -> bool {
+        let v = &sys.state.rod.v;
+        let own = v[j].norm().max(v[j + 1].norm());
+        self.is_by(sys, j, time * (own + self.fastest), |room, closing| {
+            room <= time * closing.max(0.0)
+        })
+    }
+
+    /// Whether edge `j` lies so `near` (m) to touching older live wire.
+    pub(super) fn lies_near(&self, sys: &System, j: usize, near: f64) -> bool {
+        self.is_by(sys, j, near, |room, _| room <= near)
+    }
+
+    /// Whether there is older live wire such that `counts` holds of the room between it and edge `j` (m) and the speed (m/s) at
+    /// which the room shrinks. It does not hold of wire farther off than `far`, m.
+    fn is_by(&self, sys: &System, j: usize, far: f64, counts: impl Fn(f64, f64) -> bool) -> bool {
+        let Some(here) = self.arcs.get(j) else {
+            return false;
+        };
+        let rod = &sys.state.rod;
+        let edge = |k: usize| [rod.x[k], rod.x[k + 1]];
+        let at = |x: &[V3], k: usize, share: f64| x[k].lerp(&x[k + 1], share);
+        let length = |k: usize| (rod.x[k + 1] - rod.x[k]).norm();
+        let (middle, half) = (at(&rod.x, j, 0.5), 0.5 * length(j));
+        let diameter = sys.model.section.diameter;
+        let touch = diameter + (sys.centre(j) - middle).norm();
+        // Wire that leads to the edge is near it. To come back to it, wire makes a loop longer than twice its width.
+        let leads = own_wire(*here, diameter) - 2.0 * touch;
+        let mut end = self.arcs[..j].partition_point(|arc| *arc < leads);
+        while end > 1 {
+            let k = end - 2;
+            let from_ends = (middle - rod.x[k]).norm() - half - length(k) - touch;
+            let room = if from_ends > far {
+                from_ends
+            } else {
+                let [here, there] = nearest_shares(edge(j), edge(k));
+                let apart = at(&rod.x, j, here) - at(&rod.x, k, there);
+                let opening = at(&rod.v, j, here) - at(&rod.v, k, there);
+                let room = apart.norm() - touch;
+                if counts(room, -opening.dot(&apart) / apart.norm()) {
+                    return true;
+                }
+                room
+            };
+            // past all wire that is too far off to come near
+            let next = self.arcs[k] - (room - far) / MOST_STRETCHED;
+            end = self.arcs[..k].partition_point(|arc| *arc < next) + 1;
+        }
+        false
+    }
+}
