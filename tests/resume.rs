@@ -426,6 +426,48 @@ fn a_damaged_run_that_has_ended_is_to_begin_again() {
     assert!(!said(&output).contains("--resume"), "{}", said(&output));
 }
 
+/// The list of frames named files that were gone, and no film could be made of the others.
+#[test]
+fn frames_that_are_gone_are_told_and_listed_no_more() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut run = coilwind();
+    run.args([
+        "run",
+        "fig8",
+        "--quiet",
+        "--frames",
+        "60",
+        "--checkpoint-every",
+        "0.02",
+    ]);
+    run.args([
+        "--set",
+        "spindle.turns=12",
+        "--set",
+        "solver.spacing_near_mm=0.8",
+    ]);
+    let mut child = run.arg("--out").arg(&out).spawn().unwrap();
+    let first = out.join("frames/frame_0001.vtp");
+    while !first.exists() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(300));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    std::fs::remove_file(&first).unwrap();
+    let mut resume = coilwind();
+    let output = resume.args(["run", "--resume"]).arg(&out).output().unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let line = "warning: 59 of 60 frames are kept: 1 were gone when the run went on";
+    assert!(said(&output).contains(line), "{}", said(&output));
+    let list = std::fs::read_to_string(out.join("frames.pvd")).unwrap();
+    assert!(
+        list.contains("frame_0060.vtp") && !list.contains("frame_0001.vtp"),
+        "{list}"
+    );
+}
+
 /// The command that was told wound the scene's own motion, to its end and without frames.
 #[test]
 fn a_run_that_begins_again_takes_its_inputs_its_end_and_its_frames() {

@@ -265,6 +265,10 @@ fn what_is_wound_is_not_wound_again() {
         assert!(said.contains(part) && said.contains("--force"), "{said}");
         assert_eq!(std::fs::read_to_string(&table).unwrap(), again);
     }
+    // a last row that is torn was refused
+    std::fs::write(&table, &again[..again.len() - 5]).unwrap();
+    finished(coilwind("sweep", out, &over), 0);
+    assert_eq!(rows(&table).len(), 3);
     let plan = out.join("sweep.json");
     let text = std::fs::read_to_string(&plan).unwrap();
     std::fs::write(&plan, &text[..text.len() / 2]).unwrap();

@@ -47,7 +47,9 @@ pub(super) fn hold(directory: &Path) -> Result<Option<Locked>, Failure> {
     let path = directory.join(PLAN);
     match lock::open(&path) {
         Ok(locked) => locked.map(Some).ok_or_else(|| goes_on(directory)),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            Ok(None)
+        }
         Err(error) => Err(Failure::write(path, error)),
     }
 }

@@ -15,6 +15,8 @@ pub(super) struct Frames {
     end: f64,
     /// number, from 1, and time in s of the frames written
     written: Vec<(u32, f64)>,
+    /// frames that were written, and gone when the run went on
+    lost: usize,
 }
 
 impl Frames {
@@ -29,6 +31,7 @@ impl Frames {
             count,
             end,
             written: Vec::new(),
+            lost: 0,
         })
     }
 
@@ -37,14 +40,23 @@ impl Frames {
         &self.written
     }
 
-    /// Goes on after these frames.
-    pub(super) fn go_on(&mut self, written: Vec<(u32, f64)>) {
+    /// Goes on after these frames, as far as they are still there.
+    pub(super) fn go_on(&mut self, mut written: Vec<(u32, f64)>) {
+        let before = written.len();
+        written.retain(|&(number, _)| self.directory.join(name(number)).is_file());
+        self.lost = before - written.len();
         self.written = written;
     }
 
     /// What to say where there are fewer frames than were asked for.
     pub(super) fn fewer(&self) -> Option<String> {
         let (kept, asked) = (self.written.len(), self.count);
+        if self.lost > 0 {
+            let lost = self.lost;
+            return Some(format!(
+                "{kept} of {asked} frames are kept: {lost} were gone when the run went on; for all, wind the scene again"
+            ));
+        }
         (kept < asked as usize).then(|| {
             format!(
                 "{kept} of {asked} frames are kept, one at each row of history.csv; for more, lower output.history_interval, or --step with --inputs"

@@ -39,11 +39,15 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
     }
     write_report(&directories, &page).map_err(what_would_do)?;
     for directory in &directories {
-        for name in missing_files(directory) {
+        let missing = missing_files(directory);
+        for name in &missing {
             eprintln!(
                 "warning: {} is missing, and the page goes without it",
                 directory.join(name).display()
             );
+        }
+        if !missing.is_empty() && directory.join(SCENE).exists() {
+            eprintln!("for a whole page, {}", begin_again(directory));
         }
     }
     print(&format!("report: {}\n", page.display()))
@@ -111,10 +115,14 @@ fn what_would_do(error: ReportError) -> Failure {
         _ => return error.into(),
     };
     let directory = path.parent().unwrap_or(path);
+    let directory = match directory.ends_with("frames") {
+        true => directory.parent().unwrap_or(directory),
+        false => directory,
+    };
     if directory.join(checkpoint::FILE).exists() {
         return error.into();
     }
-    let next = match directory.join("scene.toml").exists() {
+    let next = match directory.join(SCENE).exists() {
         true => begin_again(directory),
         false => "wind the scene again".to_owned(),
     };

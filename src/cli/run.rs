@@ -362,9 +362,9 @@ fn reaches_beyond(motion: &Motion, scene: &Scene) -> bool {
 
 /// The run of a folder, where its last checkpoint was written.
 fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
-    let refuse = |reason: String| Failure::Resume {
+    let begin_again = |why: &str| Failure::Resume {
         directory: directory.display().to_string(),
-        reason,
+        reason: format!("{why}; {}", begin_again(directory)),
     };
     let hold = folder::hold(directory)?;
     folder::clear_partial(directory);
@@ -374,20 +374,17 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let follows = plan.motion.nozzle_follows(&plan.settings);
     let (scene, _): (Scene, _) = plan.settings.build_for(follows)?;
     let mut simulation = Simulation::from_bytes(&scene, &checkpoint.state)
-        .map_err(|error| refuse(format!("{error}; begin again with --force")))?;
+        .map_err(|error| begin_again(&error.to_string()))?;
     simulation.step_beyond(reaches_beyond(&plan.motion, &scene));
     let mut drive = Drive::new(&plan.motion, &scene, follows)?;
     if !drive.go_on(checkpoint.place) {
-        return Err(refuse(
-            "the checkpoint contradicts itself; begin again with --force".to_owned(),
-        ));
+        return Err(begin_again("the checkpoint contradicts itself"));
     }
     // (from here on the history holds it)
     drop(hold);
     let history = History::resume(&directory.join("history.csv"), &checkpoint.history)?;
-    let history = history.ok_or_else(|| {
-        refuse("history.csv is not the one that the run wrote; begin again with --force".to_owned())
-    })?;
+    let history =
+        history.ok_or_else(|| begin_again("history.csv is not the one that the run wrote"))?;
     let mut frames = Frames::new(directory, plan.frames, drive.end())?;
     frames.go_on(checkpoint.frames);
     if !args.quiet {

@@ -94,7 +94,14 @@ impl Ledger {
                 path.display()
             ))
         };
-        let mut reader = csv::Reader::from_path(&path).map_err(|_| headless())?;
+        let mut text = fs::read(&path).map_err(|_| headless())?;
+        // A machine that went down may have left the last line torn: its run is wound again.
+        text.truncate(
+            text.iter()
+                .rposition(|byte| *byte == b'\n')
+                .map_or(0, |end| end + 1),
+        );
+        let mut reader = csv::Reader::from_reader(text.as_slice());
         let columns = grid.ranges.len();
         let names = csv::StringRecord::from(COLUMNS.to_vec());
         let runs = (0..grid.runs()).map(|run| ((grid.values(run), grid.member(run)), run));

@@ -241,6 +241,16 @@ async function look(scheme) {
     await row.click();
     const there = await place();
     check(`${scheme}: a click on a defect brings the view into sight`, away.top < 0 && there.top >= 0 && there.bottom <= there.high, `${away.top} px, then ${there.top} px`);
+    if (given.frames) {
+      // with the slider before the defect the wire of another turn stood under its name
+      const time = run.locator(".time input").first();
+      await time.evaluate((input) => {
+        input.value = 0;
+        input.dispatchEvent(new Event("input"));
+      });
+      await row.dispatchEvent("click");
+      check(`${scheme}: and shows the wire that has it`, await time.evaluate((input) => input.value === input.max));
+    }
     const { different } = await compare(page, before, await shot());
     check(`${scheme}: a click on a defect moves the view there`, different > 0.05, different.toFixed(3));
     await page.evaluate(() => scrollBy(0, -7));

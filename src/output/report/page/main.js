@@ -74,6 +74,12 @@ class Run {
     return Math.abs(this.history.angle[k]) / TURN;
   }
 
+  /** The first time, s, by which the spindle has made so many turns; Infinity where it never has. */
+  timeOf(turns) {
+    const k = this.history ? this.history.angle.findIndex((angle) => Math.abs(angle) / TURN >= turns) : -1;
+    return k < 0 ? Infinity : this.history.time[k];
+  }
+
   /** Moves the view to a place of the wire, in turns from the clamp. */
   goTo(turn) {
     this.choose(null);
@@ -84,12 +90,13 @@ class Run {
     const words = [`turn ${Math.floor(at) + 1}, ${Math.round((at % 1) * STATIONS)}°`, `tension ${digits(tension[k])} N`];
     if (Number.isFinite(gap[k])) words.push(`gap ${mm(gap[k])}`);
     if (Number.isFinite(bulge[k])) words.push(`height ${mm(bulge[k])}`, `layer ${layer[k]}`);
-    this.view.goTo(points.subarray(3 * k, 3 * k + 3), words.join("  ·  "), at);
+    this.view.goTo(points.subarray(3 * k, 3 * k + 3), words.join("  ·  "), at, this.timeOf(at));
   }
 
   goToDefect(defect) {
     const size = defect.size_m == null ? "" : `  ·  ${sizeOf(defect)}`;
-    this.view?.renderer && this.view.goTo(defect.place_m, `${plainName(defect.kind)}  ·  turn ${defect.turn}, ${Math.round(defect.angle_deg)}°${size}`, defect.turn - 1 + defect.angle_deg / STATIONS);
+    const words = `${plainName(defect.kind)}  ·  turn ${defect.turn}, ${Math.round(defect.angle_deg)}°${size}`;
+    if (this.view?.renderer) this.view.goTo(defect.place_m, words, defect.turn - 1 + defect.angle_deg / STATIONS, defect.time_s);
     this.choose(defect);
   }
 

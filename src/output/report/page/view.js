@@ -169,8 +169,9 @@ class View {
   }
 
   /** Goes to a place of the wire, m, at so many turns, seen from outside and from the middle of the coil. Wire that was
-   * wound over it later is hidden. */
-  goTo(point, words, turns) {
+   * wound over it later is hidden. A frame of before the place was wound, at a time in s, gives way to the end of the run. */
+  goTo(point, words, turns, time) {
+    if (this.frame != null && this.run.frames[this.frame].time * (1 + SAME) < time) this.toEnd();
     const node = lowerBound(this.run.turnOf, turns);
     const layers = this.run.wire.layer;
     const covered = node < layers.length && layers[node] > 0 && layers.subarray(node).some((layer) => layer > layers[node]);
@@ -278,6 +279,10 @@ class View {
       clearInterval(timer);
       timer = null;
       play.textContent = "Play";
+    };
+    this.toEnd = () => {
+      halt();
+      set(last);
     };
     name(last);
     return el("div", { class: "time" }, play, el("span", { class: "soft" }, "Time"), input, output);
