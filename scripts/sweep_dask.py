@@ -4,9 +4,9 @@
     sweep_dask.py fig8 --over spindle.speed=100:400:4 --ensemble 4 --set spindle.turns=2.5 --out target/speeds
     sweep_dask.py SCENE.toml --over tensioner.tension=5:15:3 --scheduler tcp://HOST:8786
 
-The Python is that of `scripts/venv.sh study`. Without --scheduler the workers are processes of this machine. The FMU and the
-scene travel to the workers; they need fmpy and dask, and no coilwind. Each run follows the scene's own motion, as `coilwind
-motion` samples it. A run whose worker dies is wound again elsewhere.
+The Python is that of `scripts/venv.sh study`. Without --scheduler the workers are processes of this machine. The FMU, the scene
+and the files that it names travel to the workers; they need fmpy and dask, and no coilwind. Each run follows the scene's own motion,
+as `coilwind motion` samples it. A run whose worker dies is wound again elsewhere.
 
 DIR gets sweep.csv, a row a run in the order of the grid, the same bytes for any number of workers; times.csv, which says
 where and how long each run was wound; and sweep.json, which says what the sweep is. Rows are written as runs end. After Ctrl-C,
@@ -35,6 +35,7 @@ import time
 from pathlib import Path
 
 import folder as folders
+from carried import carried
 from failure import Interrupted, Mistake, Stuck, same_command, told
 from progress import Progress
 from sweep_ledger import ROWS, TIMES, Ledger
@@ -67,14 +68,21 @@ RESULTS = [
 # What workers do. It is sent to them whole, so it imports what it needs.
 
 
-def unpack(fmu, folder):
-    """Unpacks the bytes of an FMU; what `wind` needs of it."""
+def unpack(fmu, folder, files=None):
+    """Unpacks the bytes of an FMU, and of the files that the scene names; what `wind` needs of them."""
     import fmpy
 
+    # The scene of a run names a file from its own folder, which is one below.
+    scenes = Path(folder) / "scenes"
+    scenes.mkdir()
+    for name, data in (files or {}).items():
+        (scenes / name).parent.mkdir()
+        (scenes / name).write_bytes(data)
     path = Path(folder) / "sweep.fmu"
     path.write_bytes(fmu)
     description = fmpy.read_model_description(str(path))
     return {
+        "scenes": str(scenes),
         "folder": fmpy.extract(str(path), str(Path(folder) / "fmu")),
         "guid": description.guid,
         "model": description.coSimulation.modelIdentifier,
@@ -83,7 +91,7 @@ def unpack(fmu, folder):
 
 
 def wind(fmu, task):
-    """One run: its results, and when and how long it was wound."""
+    """One run: its results, and when and how long it was wound; or why the FMU does not begin it."""
     import ctypes
     import tempfile
     import time
@@ -111,7 +119,8 @@ def wind(fmu, task):
     extremes = {"gap_width": 0.0, "bulge_height": 0.0, "wire_tension_min": math.inf, "wire_tension_max": -math.inf}
     wanted = [reference[name] for name in extremes]
     result = {"outcome": "done", "reason": ""}
-    with tempfile.TemporaryDirectory() as folder:
+    started, refused = False, ""
+    with tempfile.TemporaryDirectory(dir=fmu["scenes"]) as folder:
         scene = task["scene"]
         if "\n" in scene:
             path = Path(folder) / "scene.toml"
@@ -130,6 +139,7 @@ def wind(fmu, task):
             if task["offset"]:
                 slave.setReal([reference["nozzle.distance"]], [get("nozzle.distance") + task["offset"] * get("wire.diameter")])
             slave.exitInitializationMode()
+            started = True
             for row, after in zip(motion, motion[1:]):
                 slave.setReal(inputs, row[1:])
                 slave.doStep(row[0], after[0] - row[0])
@@ -139,11 +149,16 @@ def wind(fmu, task):
                 extremes["wire_tension_min"] = min(extremes["wire_tension_min"], least)
                 extremes["wire_tension_max"] = max(extremes["wire_tension_max"], most)
         except FMICallException as error:
-            result = {"outcome": "failed", "reason": said[0] if said else str(error)}
-        values = slave.getInteger([reference[name] for name in counts])
-        every = slave.getInteger([reference["defect_count"]])[0]
-        settled = get("turns_settled")
+            reason = said[0] if said else str(error)
+            result = {"outcome": "failed", "reason": reason}
+            refused = "" if started else reason.replace(f"{folder}{os.sep}", "")
+        if not refused:
+            values = slave.getInteger([reference[name] for name in counts])
+            every = slave.getInteger([reference["defect_count"]])[0]
+            settled = get("turns_settled")
         slave.freeInstance()
+    if refused:
+        return {"refused": refused}
     result["defect"] = str(every > 0).lower()
     result["judged"] = str(every > 0 or settled >= task["beside"]).lower()
     result.update(zip([name.replace("defect_count_", "defects_") for name in counts], values))
@@ -204,9 +219,7 @@ def tasks_of(args):
         if not equals:
             raise Mistake(f"--set {text}: expected NAME=VALUE")
         given.append((name, value))
-    scene = args.scene
-    if Path(scene).is_file():
-        scene = Path(scene).read_text(encoding="utf-8") + "\n"
+    scene, files = args.scene, {}
     if args.ensemble < 1:
         raise Mistake(f"--ensemble {args.ensemble}: at least 1")
     tasks = []
@@ -217,25 +230,31 @@ def tasks_of(args):
         except ValueError as error:
             raise Mistake(f"--set: {error}") from None
         motion = motion_of(args.command, args.scene, settings, args.step)
+        # The command has told by now what is wrong with a scene.
+        if not tasks and Path(scene).is_file():
+            scene, files = carried(scene, [name for name in table if name.endswith(".file") and name != "scene.file"])
+            scene += "\n"
         for member in range(args.ensemble):
             offset = SPREAD * (2.0 * member / (args.ensemble - 1) - 1.0) if args.ensemble > 1 else 0.0
             tasks.append({
-                "run": len(tasks), "scene": scene, "parameters": dict(start for start in starts if start), "motion": motion,
+                "run": len(tasks), "scene": scene, "files": files, "parameters": dict(start for start in starts if start), "motion": motion,
                 "offset": offset, "columns": [*point, member + 1], "beside": BESIDE,
             })
     return list(swept), tasks
 
 
-def plugin_of(fmu):
-    """Unpacks the FMU on every worker, also on one that is started in place of a dead one."""
+def plugin_of(fmu, files):
+    """Unpacks the FMU and the files of the scene on every worker, also on one that is started in place of a dead one."""
     from distributed import WorkerPlugin
 
+    whole = hashlib.sha256(b"".join([fmu, *(part for name, data in files.items() for part in (name.encode(), data))]))
+
     class Fmu(WorkerPlugin):
-        name = f"coilwind-{hashlib.sha256(fmu).hexdigest()[:16]}"
+        name = f"coilwind-{whole.hexdigest()[:16]}"
 
         def setup(self, worker):
             self.folder = tempfile.TemporaryDirectory()
-            self.unpacked = unpack(fmu, self.folder.name)
+            self.unpacked = unpack(fmu, self.folder.name, files)
 
         def teardown(self, worker):
             self.folder.cleanup()
@@ -281,13 +300,15 @@ def wind_all(client, fmu, tasks, keep, wait=60.0):
 
     Raises `Stuck` where the scheduler is lost or has no worker for `wait` seconds; `Mistake` where no worker can wind.
     """
-    plugin = plugin_of(fmu)
+    # They are the same for every task, and may be large.
+    plugin = plugin_of(fmu, tasks[0].get("files", {}))
     address = client.scheduler.address
     lost = Stuck(f"the scheduler {address} was lost")
     ended = queue.SimpleQueue()
     try:
         client.register_plugin(plugin)
-        futures = {client.submit(wind_on_worker, plugin.name, task, pure=False, retries=2): task for task in tasks}
+        light = [{name: part for name, part in task.items() if name != "files"} for task in tasks]
+        futures = {client.submit(wind_on_worker, plugin.name, sent, pure=False, retries=2): task for sent, task in zip(light, tasks)}
     except OSError:
         raise lost from None
     except Exception as error:
@@ -321,7 +342,10 @@ def wind_all(client, fmu, tasks, keep, wait=60.0):
         task = futures.pop(future)
         if future.status not in ("finished", "error"):
             raise lost
-        keep(task, report_of(future))
+        report = report_of(future)
+        if "refused" in report:
+            raise Mistake(f"the FMU does not begin run {task['run']}: {report['refused']}")
+        keep(task, report)
 
 
 def report_of(future):
@@ -352,10 +376,11 @@ def keep_in(ledger, task, report):
 def plan_of(args, tasks, fmu):
     """What makes a sweep the same sweep."""
     motions = json.dumps([task["motion"] for task in tasks]).encode()
+    files = {name: hashlib.sha256(data).hexdigest() for name, data in tasks[0]["files"].items()}
     return {
         "over": args.over, "ensemble": args.ensemble, "set": args.set, "step": args.step, "scene": tasks[0]["scene"],
         "motion": hashlib.sha256(motions).hexdigest(), "fmu": hashlib.sha256(fmu).hexdigest(),
-    }
+    } | ({"files": files} if files else {})
 
 
 def most_at_once(reports):

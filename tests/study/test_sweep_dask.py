@@ -149,6 +149,81 @@ def test_a_run_has_the_numbers_of_the_command(alone, scene, command, tmp_path):
     assert json.loads((tmp_path / "run/summary.json").read_text(encoding="utf-8"))["status"] == "done"
 
 
+# A core of 2 by 2 cm and 3 cm long, its two files as a user may write them.
+BESIDE = """
+[core]
+shape = "mesh"
+'file' = "shapes/box \\"of me\\".stl" # file = "another"
+[spindle]
+turns = 0.7
+file = 'speed.csv'
+[traverse]
+per_turn_mm = 0.8
+"""
+# Its eight corners and twelve triangles, seen from outside.
+CORNERS = [(x, y, z) for x in (-10, 10) for y in (-15, 15) for z in (-10, 10)]
+FACES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+SLOW = "angle_deg,share\n0,1\n180,0.5\n360,1\n"
+
+
+@pytest.fixture
+def beside(tmp_path):
+    """A scene with files beside it."""
+    folder = tmp_path / "scene"
+    (folder / "shapes").mkdir(parents=True)
+    facets = [(face[0], *face[at : at + 2]) for face in FACES for at in (1, 2)]
+    shown = ["\n".join("vertex {} {} {}".format(*CORNERS[at]) for at in facet) for facet in facets]
+    solid = "".join(f"facet normal 0 0 0\nouter loop\n{vertices}\nendloop\nendfacet\n" for vertices in shown)
+    (folder / 'shapes/box "of me".stl').write_text(f"solid box\n{solid}endsolid box\n", encoding="ascii")
+    (folder / "speed.csv").write_text(SLOW, encoding="ascii")
+    (folder / "machine.toml").write_text(BESIDE, encoding="utf-8")
+    return folder / "machine.toml"
+
+
+def test_files_that_a_scene_names_travel_with_it(beside, fmu, command, script, tmp_path):
+    """The workers looked for them in a folder of their own, and the packages of Python were to blame."""
+    words = ["--over", "spindle.speed=100:100:1", "--ensemble", "2", "--command", command, "--fmu", fmu, "--workers", "1", "--out", tmp_path / "out"]
+    code, said = script("scripts/sweep_dask.py", beside, *words)
+    assert code == 0, said
+    table = (tmp_path / "out/sweep.csv").read_bytes()
+    code, said = script("scripts/sweep_dask.py", beside, *words)
+    assert code == 0 and "2 runs, 0 of them new" in said, said
+    # The same sweep from another place, of files that are elsewhere.
+    moved = beside.parent.rename(tmp_path / "moved") / "machine.toml"
+    text = moved.read_text(encoding="utf-8")
+    (moved.parent / "speed.csv").rename(tmp_path / "speed.csv")
+    moved.write_text(text.replace("'speed.csv'", f"'{tmp_path / 'speed.csv'}'"), encoding="utf-8")
+    code, said = script("scripts/sweep_dask.py", moved, *words, "--force")
+    assert code == 0 and (tmp_path / "out/sweep.csv").read_bytes() == table, said
+    stl = moved.parent / 'shapes/box "of me".stl'
+    stl.write_bytes(stl.read_bytes().replace(b"15", b"16"))
+    code, said = script("scripts/sweep_dask.py", moved, *words)
+    assert code == 2 and "holds another sweep (another files)" in said and len(said.splitlines()) == 1, said
+
+
+@pytest.mark.parametrize("line", ['file = """tooth.stl"""', '"fil\\u0065" = "tooth.stl"'])
+def test_a_file_that_is_named_in_another_way_is_told(line, sweep_dask, tmp_path):
+    scene = tmp_path / "machine.toml"
+    scene.write_text(f"# file\n[core]\n{line}\n", encoding="utf-8")
+    (tmp_path / "tooth.stl").write_bytes(b"solid")
+    with pytest.raises(sweep_dask.Mistake, match="write each of core.file on one line, in quotes"):
+        sweep_dask.carried(scene, ["core.file"])
+
+
+def test_what_the_fmu_refuses_is_told_in_its_words(sweep_dask, tasks, fmu, tmp_path):
+    """A later call failed too, and its error hid what the FMU had said."""
+    from distributed import Client, LocalCluster
+
+    task = {**tasks[1][0], "scene": '[core]\nshape = "mesh"\nfile = "none.stl"\n'}
+    with open(fmu, "rb") as file:
+        data = file.read()
+    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        with pytest.raises(sweep_dask.Mistake) as told:
+            sweep_dask.wind_all(client, data, [task], None)
+    assert str(told.value).startswith("the FMU does not begin run 0: ") and "none.stl" in str(told.value) and str(tmp_path) not in str(told.value)
+    assert "packages" not in str(told.value) and "\n" not in str(told.value)
+
+
 @pytest.mark.parametrize(
     ("words", "complaint"),
     [
