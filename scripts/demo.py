@@ -248,9 +248,9 @@ class Run:
 
     def ending(self):
         """How it went, in words."""
-        run = open_run(self.directory)
         if self.failed:
             return f"failed, see {self.directory / 'log.txt'}"
+        run = open_run(self.directory)
         wall, factor = run.summary.get("wall_s", 0.0), run.summary.get("real_time_factor", 0.0)
         verdict = run.turn(2).get("verdict", "turn 2 not at rest")
         return f"{run.ending}, {verdict}; computed for {wall:.1f} s, real-time factor {factor:.2f}"

@@ -117,6 +117,14 @@ def is_under_way(folder):
     return False
 
 
+def refuse_without_run(folder):
+    """A mistake where there is no folder of a run."""
+    if not folder.is_dir():
+        raise Mistake(f"{folder} is no folder; name that of a run (coilwind run SCENE --out DIR)")
+    if not any(has(folder, name) for name in [*SIGNS["another run"], "stations.csv", "coil.vtp", "frames.pvd"]):
+        raise Mistake(f"{folder} holds no results of a run; wind one with: {shlex.join(['coilwind', 'run', 'SCENE', '--out', str(folder)])}")
+
+
 def wind_again(folder, *words):
     """What gives a run that is not whole, in words."""
     if has(folder, CHECKPOINT):

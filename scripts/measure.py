@@ -11,8 +11,9 @@ import csv
 from pathlib import Path
 
 import numpy as np
-from calibration_curves import UNITS, columns
+from calibration_curves import UNITS
 from failure import Mistake, told
+from runs import broken, table
 
 WHERE = {
     "tension": ("history.csv", "spindle_angle", "wire_tension"),
@@ -58,12 +59,9 @@ def measure(args, text, random):
     if not 0.0 <= sigma < np.inf:
         raise Mistake(f"--noise {text}: the standard deviation has to be at least 0")
     file, over, of = WHERE[quantity]
-    if not (args.run / file).is_file():
-        raise Mistake(f"{args.run / file} is missing; name the folder of a run (coilwind run SCENE --out DIR)")
-    try:
-        angle, values = columns(args.run / file, over, of)
-    except (ValueError, StopIteration):
-        raise Mistake(f"{args.run / file} is not whole; wind the scene again") from None
+    angle, values = table(args.run / file, [over, of]).values()
+    if np.isnan([angle, values]).any():
+        raise broken(args.run / file, f"{over} or {of} has an empty cell")
     turns = np.abs(angle) / (2.0 * np.pi)
     if not (turns.size and 0.0 <= args.from_turn < turns[-1]):
         there = f"goes to turn {turns[-1]:.2f}" if turns.size else "has no rows"

@@ -68,6 +68,9 @@ def main():
             raise Mistake(f"--rate {args.rate:g}: frames a second have to be from {RATES[0]:g} to {RATES[1]:g}")
         if args.film and args.output:
             raise Mistake(f"-o {args.output} names a picture, --film {args.film} a film; leave one out and start again for the other")
+        if args.film and args.film.suffix not in (".mp4", ".gif"):
+            raise Mistake(f"--film {args.film}: the ending has to be .mp4 or .gif")
+        size_of(args.size)
         refuse_unfinished(args.run)
         print(f"wrote {film(args) if args.film else picture(args)}")
 
@@ -126,7 +129,8 @@ def broken(run, name, reason, *words):
 
 
 def refuse_unfinished(run):
-    """A mistake where the folder holds a run without results: one that is under way, or was killed before it wrote them."""
+    """A mistake where the folder holds no run, or one without results: it is under way, or was killed before it wrote them."""
+    folders.refuse_without_run(run)
     ended = (run / "summary.json").exists() and not (run / folders.CHECKPOINT).exists()
     if not ended and folders.is_under_way(run):
         raise Mistake(f"{run}: the run is under way and has not written its results; wait for its end, or stop it first")
@@ -144,8 +148,6 @@ def picture(args):
 
 
 def film(args):
-    if args.film.suffix not in (".mp4", ".gif"):
-        raise Mistake(f"--film {args.film}: the ending has to be .mp4 or .gif")
     frames = frames_of(args.run)
     coil = Coil(args)
     words = ["--frames", str(len(frames))]
@@ -202,8 +204,6 @@ class Coil:
 
     def __init__(self, args):
         self.args, self.size = args, size_of(args.size)
-        if not args.run.is_dir():
-            raise Mistake(f"{args.run} is no folder; name that of a run (coilwind run SCENE --out DIR)")
         surface = read(args.run, "coil.vtp", "wind the run without --no-geometry")
         if surface.n_points == 0:
             raise Mistake(f"{args.run / 'coil.vtp'} holds no wire; wind for longer")

@@ -13,6 +13,7 @@ import html
 import os
 from pathlib import Path
 
+from failure import Mistake, told
 from runs import open_run
 from verdicts import NOTE, STEADY_TURNS, Row, columns, runs_below
 
@@ -80,12 +81,17 @@ def main():
     parser.add_argument("--turn", type=int, default=2, help="turn of the table, from 1")
     parser.add_argument("--more", action="append", default=[], metavar="TITLE=DIR", help="a run of another kind to link")
     arguments = parser.parse_args()
+    with told(parser.prog):
+        write(arguments)
 
+
+def write(arguments):
+    """Writes the page."""
     more = [given.partition("=")[::2] for given in arguments.more]
     apart = {Path(folder).resolve() for _, folder in more}
     runs = [run for run in runs_below(arguments.directory) if run.directory.resolve() not in apart]
     if not runs:
-        raise SystemExit(f"no summary.json below {arguments.directory}")
+        raise Mistake(f"no summary.json below {arguments.directory}; name a folder that holds folders of runs")
     output = arguments.output or arguments.directory / "index.html"
     body = [
         verdict_table(runs, arguments),

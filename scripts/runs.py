@@ -2,6 +2,7 @@
 
 import csv
 import json
+import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +13,7 @@ try:
 except ModuleNotFoundError:  # Python 3.10
     import tomli as tomllib
 
+import folder as folders
 from failure import Mistake
 
 # Calm to alarming: runs are plotted in the order of their speed.
@@ -102,9 +104,20 @@ class Run:
 def open_run(path):
     """The run that a directory, or a file in it, belongs to."""
     path = Path(path)
-    directory = path if path.is_dir() else path.parent
+    directory = path.parent if path.is_file() else path
+    folders.refuse_without_run(directory)
     summary = directory / "summary.json"
-    return Run(directory, json.loads(summary.read_text()) if summary.exists() else {})
+    if not summary.exists():
+        return Run(directory, {})
+    try:
+        return Run(directory, dict(json.loads(summary.read_text(encoding="utf-8"))))
+    except (ValueError, TypeError) as error:
+        raise broken(summary, error) from None
+
+
+def broken(path, reason):
+    """The mistake that a file of a run is not whole, as `coilwind report` tells it."""
+    return Mistake(f"{path.parent}: {path.name} is not whole ({reason}); {folders.wind_again(path.parent)}")
 
 
 def find_file(path, name):
@@ -119,22 +132,35 @@ def by_speed(runs):
 
 
 def read_columns(path, needed):
-    """Columns of a table of a run as arrays; an empty cell is NaN, and a last row that a kill has cut is left out. Exits with a message on bad input."""
+    """Columns of a table of a run as arrays; an empty cell is NaN. Raises `Mistake` where the table has no rows or is not whole."""
+    columns = table(path, needed)
+    if not columns[needed[0]].size:
+        raise Mistake(f"{path} has no rows; wind for longer")
+    return columns
+
+
+def table(path, needed):
+    """As `read_columns`, of a table that may have no rows."""
+    path = Path(path)
     try:
-        with open(path, newline="") as file:
-            lines = file.read().splitlines(keepends=True)
-            rows = list(csv.DictReader(line for line in lines if line.endswith("\n")))
-    except OSError as error:
-        raise SystemExit(f"cannot read {path}: {error.strerror}") from error
-    if not rows:
-        raise SystemExit(f"{path} has no rows")
-    missing = [name for name in needed if name not in rows[0]]
-    if missing:
-        raise SystemExit(f"{path} has no column {', '.join(missing)}")
+        lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+    except FileNotFoundError:
+        raise Mistake(f"{path} is missing; name the folder of a run (coilwind run SCENE --out DIR)") from None
+    except UnicodeDecodeError as error:
+        raise broken(path, error) from None
+    if lines and not lines[-1].endswith("\n"):
+        # The history of a run grows as long as the run goes on, and a kill may cut its last row.
+        if (path.parent / "summary.json").exists() and not folders.is_under_way(path.parent):
+            raise broken(path, f"line {len(lines)} is cut")
+        print(f"warning: {path}: line {len(lines)} is cut and left out, as the run has not ended", file=sys.stderr)
+        del lines[-1]
+    header, *rows = csv.reader(lines) if lines else [[]]
+    for line, row in enumerate(rows, 2):
+        if len(row) != len(header):
+            raise broken(path, f"line {line} has {len(row)} cells, the header has {len(header)}")
     try:
-        return {
-            name: np.array([float(row[name]) if row[name] else np.nan for row in rows])
-            for name in needed
-        }
+        places = {name: header.index(name) for name in needed}
+        return {name: np.array([float(row[place]) if row[place] else np.nan for row in rows]) for name, place in places.items()}
     except ValueError as error:
-        raise SystemExit(f"{path}: {error}") from error
+        missing = [name for name in needed if name not in header]
+        raise broken(path, f"column {missing[0]} is missing" if missing else error) from None

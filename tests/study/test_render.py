@@ -110,8 +110,8 @@ def test_a_film_has_the_frames(run, script, tmp_path):
     ("words", "complaint"),
     [
         (["{folder}/none"], "is no folder"),
-        (["{folder}"], "coil.vtp is missing; wind the run without --no-geometry"),
-        (["{folder}", "--film", "film.mp4"], "frames.pvd is missing; wind the run with --frames N"),
+        (["{folder}"], "{folder} holds no results of a run; wind one with: coilwind run SCENE --out {folder}"),
+        (["{folder}", "--film", "film.mp4"], "{folder} holds no results of a run; wind one with"),
         (["{folder}", "--film", "film.avi"], "the ending has to be .mp4 or .gif"),
         (["{folder}", "--film", "film.mp4", "-o", "x.png"], "-o x.png names a picture, --film film.mp4 a film; leave one out"),
         (["{folder}", "--size", "big"], "--size big is not WIDTHxHEIGHT"),
@@ -120,7 +120,15 @@ def test_a_film_has_the_frames(run, script, tmp_path):
 def test_what_cannot_be_drawn_is_told_in_a_line(words, complaint, script, tmp_path):
     code, said = script("scripts/render.py", *(word.format(folder=tmp_path) for word in words), python=RENDER)
     assert code == 2
-    assert complaint in said and "Traceback" not in said
+    assert complaint.format(folder=tmp_path) in said and "Traceback" not in said
+
+
+@pytest.mark.parametrize(("words", "complaint"), [([], "coil.vtp is missing; wind the run without --no-geometry"), (["--film", "x.gif"], "wind the run with --frames N")])
+def test_a_run_without_geometry_is_told_from_a_folder_without_a_run(words, complaint, run, script, tmp_path):
+    for name in ("summary.json", "scene.toml", "history.csv"):
+        shutil.copy(run / name, tmp_path)
+    code, said = script("scripts/render.py", tmp_path, *words, python=RENDER)
+    assert code == 2 and complaint in said and len(said.splitlines()) == 1, said
 
 
 @pytest.fixture
