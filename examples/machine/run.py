@@ -196,7 +196,8 @@ def main():
     arguments = parser.parse_args()
     if not arguments.fmu.is_file():
         sys.exit(f"run.py: {arguments.fmu} is missing; run scripts/build_fmu.sh")
-    out = arguments.out
+    # URIs of the unpacked FMUs take no path that is relative.
+    out = arguments.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
     archive = pack(arguments.fmu, out)
     rows = by_fmpy(archive, out)
@@ -213,7 +214,7 @@ def main():
     full = [row for row in rows if row[0] > 0.2]
     speed = [row[1 + SHOWN.index(("spindle", "speed"))] for row in full]
     print(f"largest torque {max(torque):.3f} N m; at full speed it dips to {min(speed):.2f} and rises to {max(speed):.2f} rad/s")
-    print(f"{out / 'machine.png'}, {out / 'machine.csv'}, {archive}")
+    print(f"{arguments.out / 'machine.png'}, {arguments.out / 'machine.csv'}, {arguments.out / archive.name}")
 
 
 if __name__ == "__main__":

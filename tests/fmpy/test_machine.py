@@ -14,15 +14,15 @@ INERTIA, TORQUE_LIMIT, FULL_SPEED = 2e-4, 0.5, 100.0
 
 @pytest.fixture(scope="session")
 def machine(fmu_path, tmp_path_factory):
-    """The folder that the one command leaves, and what it says."""
+    """The folder that the one command leaves, and what it says. It is named from the folder where the command is given."""
     python = python_of("COILWIND_MACHINE_PYTHON", "machine")
-    out = tmp_path_factory.mktemp("machine")
+    here = tmp_path_factory.mktemp("machine")
     ran = subprocess.run(
-        [python, ROOT / "examples/machine/run.py", "--fmu", fmu_path, "--out", out],
-        capture_output=True, text=True, timeout=600, check=False,
+        [python, ROOT / "examples/machine/run.py", "--fmu", fmu_path, "--out", "target/machine"],
+        capture_output=True, text=True, timeout=600, check=False, cwd=here,
     )
     assert ran.returncode == 0, ran.stderr[-4000:]
-    return out, ran.stdout
+    return here / "target/machine", ran.stdout
 
 
 @pytest.fixture(scope="session")
