@@ -1,6 +1,7 @@
 """The folder of a sweep: what the sweep is, and rows of the runs that ended, so that a stopped sweep goes on."""
 
 import csv
+import io
 import json
 import time
 
@@ -10,6 +11,7 @@ from failure import Mistake
 PLAN, ROWS, TIMES = "sweep.json", "sweep.csv", "times.csv"
 # Time between two writes of the rows, s.
 EVERY = 0.5
+TIMED = ["run", "worker", "began", "wound_s"]
 
 
 class Ledger:
@@ -49,19 +51,18 @@ class Ledger:
             return
         width = len(next(iter(self.runs)))
         reason = self.header.index("reason")
-        with open(path, newline="", encoding="utf-8") as file:
-            for line, row in enumerate(csv.reader(file), 1):
-                if line == 1 and row == self.header:
-                    continue
-                run = self.runs.get(tuple(row[:width]))
-                if line == 1 or run is None or len(row) != len(self.header):
-                    raise Mistake(f"{path}:{line}: no row of this sweep; remove the line, or begin again with --force")
-                # Chance killed its workers; the numbers of a sweep do not depend on chance.
-                if not row[reason].startswith("its worker died"):
-                    self.rows[run] = row
+        for line, row in enumerate(whole_rows(path, len(self.header)), 1):
+            if line == 1 and row == self.header:
+                continue
+            run = self.runs.get(tuple(row[:width]))
+            if line == 1 or run is None or len(row) != len(self.header):
+                raise Mistake(f"{path}:{line}: no row of this sweep; remove the line, or begin again with --force")
+            # Chance killed its workers; the numbers of a sweep do not depend on chance.
+            if not row[reason].startswith("its worker died"):
+                self.rows[run] = row
         if (self.folder / TIMES).is_file():
-            with open(self.folder / TIMES, newline="", encoding="utf-8") as file:
-                self.times = {int(run): cells for run, *cells in list(csv.reader(file))[1:]}
+            for run, *cells in whole_rows(self.folder / TIMES, len(TIMED))[1:]:
+                self.times[int(run)] = cells
 
     def begin(self):
         """Makes the folder, or takes it in hand again; a mistake where another sweep goes on in it."""
@@ -99,7 +100,7 @@ class Ledger:
     def write(self):
         """Writes what there is, in the order of the grid. A row on disk has its times there."""
         times = [[run, *self.times.get(run, ["", "", ""])] for run in sorted(self.rows)]
-        self.table(TIMES, [["run", "worker", "began", "wound_s"], *times])
+        self.table(TIMES, [TIMED, *times])
         self.table(ROWS, [self.header, *(self.rows[run] for run in sorted(self.rows))])
         self.written = time.monotonic()
 
@@ -114,3 +115,14 @@ class Ledger:
         """How many rows have this value in this column, and others in theirs."""
         places = [(self.header.index(name), wanted) for name, wanted in [(column, value), *others.items()]]
         return sum(all(row[place] == wanted for place, wanted in places) for row in self.rows.values())
+
+
+def whole_rows(path, width):
+    """Rows of a table but for a last one that a crash has cut: it has too few cells, or no end of its line."""
+    # A cut may fall within a character.
+    with open(path, newline="", encoding="utf-8", errors="replace") as file:
+        text = file.read()
+    rows = list(csv.reader(io.StringIO(text, newline="")))
+    if rows and (not text.endswith("\n") or 1 < len(rows) and len(rows[-1]) < width):
+        del rows[-1]
+    return rows

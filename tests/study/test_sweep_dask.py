@@ -384,6 +384,35 @@ def test_the_folder_of_something_else_is_refused(sweep_dask, tasks, tmp_path):
     assert {path.name for path in tmp_path.iterdir()} == {"sweep.json"}
 
 
+@pytest.mark.parametrize("cut", [lambda data: data[:-1], lambda data: data[:-9], lambda data: data[: data[:-1].rindex(b",")] + b"\n"])
+def test_a_last_row_that_a_crash_has_cut_is_wound_again(cut, alone, sweep_dask, tasks, tmp_path):
+    """It was refused, though the same command goes on after a crash."""
+    whole = begun(sweep_dask, tmp_path, tasks)
+    whole.lock.close()
+    (tmp_path / "sweep.csv").write_bytes(cut(alone))
+    (tmp_path / "times.csv").write_bytes(cut(b"run,worker,began,wound_s\n0,here,1,2\n11,there,3,4\n"))
+    ledger = sweep_dask.ledger_of(tmp_path, *tasks, {})
+    assert sorted(ledger.rows) == list(range(RUNS - 1)) and ledger.times == {0: ["here", "1", "2"]}
+    last = alone.decode().splitlines()[-1].split(",")
+    ledger.add(RUNS - 1, last, ["", "", ""])
+    ledger.write()
+    assert (tmp_path / "sweep.csv").read_bytes() == alone
+
+
+def test_a_sweep_whose_header_is_cut_begins_again(sweep_dask, tasks, tmp_path):
+    begun(sweep_dask, tmp_path, tasks).lock.close()
+    (tmp_path / "sweep.csv").write_text("spindle.sp", encoding="utf-8")
+    assert not sweep_dask.ledger_of(tmp_path, *tasks, {}).rows
+
+
+def test_a_row_that_is_cut_before_others_is_refused(alone, sweep_dask, tasks, tmp_path):
+    begun(sweep_dask, tmp_path, tasks).lock.close()
+    header, first, *rest = alone.splitlines(keepends=True)
+    (tmp_path / "sweep.csv").write_bytes(b"".join([header, first[:20] + b"\n", *rest]))
+    with pytest.raises(sweep_dask.Mistake, match=":2: no row of this sweep; remove the line"):
+        sweep_dask.ledger_of(tmp_path, *tasks, {})
+
+
 def test_the_scene_is_not_removed_with_the_run_that_it_lies_in(scene, fmu, command, script, tmp_path):
     inside = tmp_path / "scene.toml"
     inside.write_bytes(scene.read_bytes())
