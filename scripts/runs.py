@@ -105,7 +105,8 @@ def open_run(path):
     """The run that a directory, or a file in it, belongs to."""
     path = Path(path)
     directory = path.parent if path.is_file() else path
-    folders.refuse_without_run(directory)
+    if directory == path:
+        folders.refuse_without_run(path)
     summary = directory / "summary.json"
     if not summary.exists():
         return Run(directory, {})

@@ -80,3 +80,11 @@ def test_a_folder_without_a_run_is_named(name, script, tmp_path):
     assert code == 2 and f"{tmp_path} holds no results of a run; wind one with: coilwind run SCENE --out {tmp_path}\n" in said, said
     code, said = script(f"scripts/{name}.py", tmp_path / "none", "-o", tmp_path / "out")
     assert code == 2 and f"{tmp_path}/none is no folder; name that of a run" in said and len(said.splitlines()) == 1, said
+
+
+def test_a_history_by_itself_is_drawn(run, script, tmp_path):
+    lone = tmp_path / "lone/tension.csv"
+    lone.parent.mkdir()
+    shutil.copy(run / "history.csv", lone)
+    code, said = script("scripts/plot_tension.py", lone, "-o", tmp_path / "out.png")
+    assert code == 0 and (tmp_path / "out.png").exists(), said
