@@ -7,7 +7,8 @@ use super::read_vtp::{self, Arrays};
 use crate::output::vtp::SIDES;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::fs;
+use std::fs::{self, File};
+use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Points of a curve over time; longer histories are thinned such that peaks stay.
@@ -231,14 +232,30 @@ fn core(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportErro
     ])))
 }
 
+/// Whether the last line of a file has no end. The file is then as it was opened.
+fn is_torn(file: &mut File) -> std::io::Result<bool> {
+    let mut last = [b'\n'];
+    if file.seek(SeekFrom::End(0))? > 0 {
+        file.seek(SeekFrom::End(-1))?;
+        file.read_exact(&mut last)?;
+    }
+    file.rewind()?;
+    Ok(last != [b'\n'])
+}
+
 /// Columns of a table by name; an empty cell is not a number.
 fn table<const N: usize>(
     path: &Path,
     names: [&'static str; N],
 ) -> Result<Option<[Vec<f64>; N]>, ReportError> {
-    let Ok(mut reader) = csv::Reader::from_path(path) else {
+    let Ok(mut file) = File::open(path) else {
         return Ok(None);
     };
+    // A number that was cut may read as another one.
+    if is_torn(&mut file).map_err(|e| broken(path, e))? {
+        return Err(broken(path, "its last line has no end"));
+    }
+    let mut reader = csv::Reader::from_reader(file);
     let header = reader.headers().map_err(|e| broken(path, e))?;
     let place = |name| {
         header
@@ -339,5 +356,19 @@ mod tests {
             serde_json::to_string(&history(&path).unwrap()).unwrap()
         };
         assert_eq!(curves(10.0), curves(0.0));
+    }
+
+    /// A history that was cut within its last number was drawn with another one in its place.
+    #[test]
+    fn a_table_whose_last_line_is_torn_is_not_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let text = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque\n0,0,1,15,14,16,0.125\n";
+        for (end, whole) in [(0, true), (1, false), (3, false)] {
+            std::fs::write(&path, &text[..text.len() - end]).unwrap();
+            assert_eq!(history(&path).is_ok(), whole, "{end} bytes less");
+        }
+        std::fs::write(&path, "").unwrap();
+        assert!(history(&path).is_err(), "no header");
     }
 }
