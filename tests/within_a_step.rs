@@ -51,6 +51,21 @@ fn slack_that_passes_within_a_step_is_seen() {
     assert_eq!((o.defect_count, o.defect_kind), (1, 16));
 }
 
+/// A core that turns away and comes back to where the wire was slack has slack of another time there: it was counted once for all.
+#[test]
+fn slack_that_comes_again_after_turns_between_counts_again() {
+    let mut sim = fig8();
+    let mut inputs = sim.inputs();
+    for k in 0..16 {
+        inputs.spindle_speed = if k % 2 == 0 { 300.0 } else { -300.0 };
+        for _ in 0..10 {
+            sim.advance(inputs, 5e-3).unwrap();
+        }
+    }
+    // (each way back begins with slack)
+    assert!(sim.outputs().defect_count_slack >= 8, "{:?}", sim.outputs());
+}
+
 /// A core that turned forth and back had a tension 0.03 N below its smallest: edges at the nozzle are joined after the last look.
 #[test]
 fn a_tension_that_a_change_of_the_mesh_left_is_one_of_its_extremes() {
