@@ -16,6 +16,7 @@ use coilwind::settings::SceneSettings;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -151,8 +152,7 @@ fn quiet(args: &RunArgs) -> RunArgs {
 
 /// What a member that has ended came to, from its folder.
 fn judged(directory: &Path) -> Result<Judged, Failure> {
-    let text = std::fs::read_to_string(directory.join("summary.json")).unwrap_or_default();
-    let summary: Value = serde_json::from_str(&text).unwrap_or_default();
+    let summary = summary(directory);
     let word = |key: &str| summary[key].as_str().unwrap_or_default();
     let mild = [
         Verdict::Unsettled,
@@ -232,8 +232,9 @@ fn wind(args: &RunArgs, directory: &Path, held: Locked, all: Vec<Member>) -> Res
     let defective = ended.iter().flatten().any(|judged| judged.defect);
     let place = directory.display();
     if !args.quiet {
+        let why = why(directory, &ended);
         print(&format!(
-            "verdicts: {words}\nresults: {place}/1 to {place}/{count}\n"
+            "verdicts: {words}\n{why}results: {place}/1 to {place}/{count}\n"
         ))?;
     }
     let first = ended.into_iter().collect::<Result<Vec<_>, _>>();
@@ -253,6 +254,26 @@ fn wind(args: &RunArgs, directory: &Path, held: Locked, all: Vec<Member>) -> Res
         true => Err(Failure::Defect { what: words }),
         false => Ok(()),
     }
+}
+
+/// A line with the first reason of the gravest verdict, and the member that has it; none where no member has a verdict.
+fn why(directory: &Path, ended: &[Result<Judged, Failure>]) -> String {
+    let judged = (1..).zip(ended);
+    let verdicts = judged.filter_map(|(member, one)| Some((one.as_ref().ok()?.verdict, member)));
+    let gravest = verdicts.min_by_key(|(verdict, member)| (Reverse(*verdict), *member));
+    let told = gravest.and_then(|(_, member)| {
+        let place = directory.join(member.to_string());
+        let summary = summary(&place);
+        let reason = summary["reasons"][0].as_str()?;
+        Some(format!("why: {reason} ({})\n", place.display()))
+    });
+    told.unwrap_or_default()
+}
+
+/// What the folder of a member tells of it; nothing where it has no whole summary.
+fn summary(directory: &Path) -> Value {
+    let text = std::fs::read_to_string(directory.join("summary.json")).unwrap_or_default();
+    serde_json::from_str(&text).unwrap_or_default()
 }
 
 /// Runs by verdict, the gravest last; those without one come after those with one.
