@@ -25,10 +25,8 @@ impl Coil {
         if jumps.is_empty() {
             let climbed = (layer > 1).then_some(since);
             let begins = self.passes.begins(angle, climbed).max(0.0);
-            return match begins > end {
-                true => (self.layer_at(angle), begins),
-                false => (self.layer(), begins),
-            };
+            // (after a turn of the nozzle wire may lie beside the layer for a turn or two before it climbs)
+            return (self.layer(), begins);
         }
         let middle = |jump: &[f64; 2]| 0.5 * (jump[0] + jump[1]);
         let planned = |climbs: usize| match climbs {

@@ -281,7 +281,7 @@ table! {
     output(114, overlap_depth, "m", "mm", -10.0, 10.0, 1e-4, "deepest overlap with the neighbouring turn, last settled turn");
     output(115, turns_wound, "1", "", -1e6, 1e6, 1.0, "turns laid, counted from the clamp");
     output(116, turns_settled, "1", "", -1e6, 1e6, 1.0, "turns come to rest; falls on reversal");
-    count(Output, 117, layer, "layer that is being laid, from 1; it rises as turn_in_layer begins anew");
+    count(Output, 117, layer, "layer that is being laid, from 1; that of the last settled wire where no layers are planned");
     output(118, spindle_angle, "rad", "deg", -1e7, 1e7, 10.0, "core angle from the start position");
     output(119, spindle_torque, "N.m", "N.mm", -1e4, 1e4, 0.1, "moment of the wire on the core about +y; negative when it resists positive speed");
     output(120, feed_speed, "m/s", "", -1e4, 1e4, 1.0, "speed of the wire leaving the nozzle; 0 at the end of the step in which winding ends, and from then on");
