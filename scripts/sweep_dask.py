@@ -390,11 +390,14 @@ def most_at_once(reports):
 
 
 def overhead(reports):
-    """Median time between two runs of a worker, s: what Dask costs a run."""
+    """Median time between two runs of a worker, s: what Dask costs a run. A worker that winds several at once does not tell."""
     of_worker = {}
     for report in reports:
         of_worker.setdefault(report["worker"], []).append((report["began"], report["ended"]))
-    between = [b[0] - a[1] for runs in of_worker.values() for a, b in itertools.pairwise(sorted(runs))]
+    between = []
+    for runs in of_worker.values():
+        times = [b[0] - a[1] for a, b in itertools.pairwise(sorted(runs))]
+        between += times if all(time >= 0.0 for time in times) else []
     return statistics.median(between) if between else math.nan
 
 

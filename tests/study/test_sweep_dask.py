@@ -3,6 +3,7 @@
 import contextlib
 import csv
 import json
+import math
 import os
 import signal
 import socket
@@ -479,3 +480,14 @@ def test_a_result_that_died_with_its_worker_is_waited_for(sweep_dask, monkeypatc
     kept = []
     sweep_dask.wind_all(Client(), b"", [{"run": 0}], lambda task, report: kept.append((task, report)))
     assert kept == [({"run": 0}, "a report")]
+
+
+def test_a_worker_that_winds_several_runs_at_once_tells_no_time_between_them(sweep_dask):
+    """The closing words had a negative time."""
+    def report(worker, began, ended):
+        return {"worker": worker, "began": began, "ended": ended}
+
+    one = [report("a", 0.0, 1.0), report("a", 1.2, 2.0), report("a", 2.2, 3.0)]
+    several = [report("b", 0.0, 1.0), report("b", 0.1, 1.1), report("b", 1.2, 2.0)]
+    assert sweep_dask.overhead(one + several) == pytest.approx(0.2)
+    assert math.isnan(sweep_dask.overhead(several))
