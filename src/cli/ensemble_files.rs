@@ -5,7 +5,6 @@ use super::lock::{self, Locked};
 use coilwind::output::write_summary;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// What an ensemble is, in its folder until all members have ended.
@@ -37,21 +36,12 @@ pub(super) fn can_go_on(directory: &Path) -> bool {
 
 /// Holds the plan of an ensemble that is about to be wound, in a folder without one; an error where another process has it.
 pub(super) fn begin(directory: &Path) -> Result<Locked, Failure> {
-    let path = directory.join(PLAN);
-    let locked = lock::create(&path).map_err(|e| Failure::write(&path, e))?;
-    locked.ok_or_else(|| goes_on(directory))
+    lock::begin(&directory.join(PLAN), || goes_on(directory))
 }
 
 /// Holds the plan of the ensemble in a folder, if it has one; an error where the ensemble is going on.
 pub(super) fn hold(directory: &Path) -> Result<Option<Locked>, Failure> {
-    let path = directory.join(PLAN);
-    match lock::open(&path) {
-        Ok(locked) => locked.map(Some).ok_or_else(|| goes_on(directory)),
-        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-            Ok(None)
-        }
-        Err(error) => Err(Failure::write(path, error)),
-    }
+    lock::hold(&directory.join(PLAN), || goes_on(directory))
 }
 
 fn goes_on(directory: &Path) -> Failure {

@@ -1,7 +1,8 @@
 //! Files that one process holds: a plan that two commands follow would be wound twice.
 
+use super::failure::Failure;
 use std::fs::File;
-use std::io::{Error, Write};
+use std::io::{Error, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// A file that no other process holds, until this is dropped. It is never replaced by another of its name: the lock is on the file
@@ -13,7 +14,7 @@ pub(super) struct Locked {
 }
 
 /// Holds a file, empty where there was none; `None` where another process holds it.
-pub(super) fn create(path: &Path) -> Result<Option<Locked>, Error> {
+fn create(path: &Path) -> Result<Option<Locked>, Error> {
     let mut options = File::options();
     let file = options
         .write(true)
@@ -24,8 +25,28 @@ pub(super) fn create(path: &Path) -> Result<Option<Locked>, Error> {
 }
 
 /// Holds a file that is there; `None` where another process holds it.
-pub(super) fn open(path: &Path) -> Result<Option<Locked>, Error> {
+fn open(path: &Path) -> Result<Option<Locked>, Error> {
     Ok(locked(File::options().write(true).open(path)?, path))
+}
+
+/// Holds a plan, empty where there was none; the error of what `goes_on` where another process follows it.
+pub(super) fn begin(path: &Path, goes_on: impl FnOnce() -> Failure) -> Result<Locked, Failure> {
+    let locked = create(path).map_err(|e| Failure::write(path, e))?;
+    locked.ok_or_else(goes_on)
+}
+
+/// Holds a plan, if there is one; the error of what `goes_on` where another process follows it.
+pub(super) fn hold(
+    path: &Path,
+    goes_on: impl FnOnce() -> Failure,
+) -> Result<Option<Locked>, Failure> {
+    match open(path) {
+        Ok(locked) => locked.map(Some).ok_or_else(goes_on),
+        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
+            Ok(None)
+        }
+        Err(error) => Err(Failure::write(path, error)),
+    }
 }
 
 fn locked(file: File, path: &Path) -> Option<Locked> {

@@ -2,7 +2,6 @@
 
 use super::failure::Failure;
 use super::lock::{self, Locked};
-use std::io::ErrorKind;
 use std::path::Path;
 
 /// What the sweep is: scene, ranges, members.
@@ -27,21 +26,12 @@ pub(super) const ALL: [&str; 6] = [PLAN, ROWS, STATISTICS, MAP, PAGE, ANSWER];
 /// Holds the plan of a sweep, empty where there was none; an error where another sweep holds it. No command puts another file in
 /// its place, so that two which begin at the same moment meet at the same one.
 pub(super) fn begin(directory: &Path) -> Result<Locked, Failure> {
-    let path = directory.join(PLAN);
-    let locked = lock::create(&path).map_err(|e| Failure::write(&path, e))?;
-    locked.ok_or_else(|| goes_on(directory))
+    lock::begin(&directory.join(PLAN), || goes_on(directory))
 }
 
 /// Holds the plan of the sweep in a folder, if it has one; an error where the sweep is going on.
 pub(super) fn hold(directory: &Path) -> Result<Option<Locked>, Failure> {
-    let path = directory.join(PLAN);
-    match lock::open(&path) {
-        Ok(locked) => locked.map(Some).ok_or_else(|| goes_on(directory)),
-        Err(error) if matches!(error.kind(), ErrorKind::NotFound | ErrorKind::NotADirectory) => {
-            Ok(None)
-        }
-        Err(error) => Err(Failure::write(path, error)),
-    }
+    lock::hold(&directory.join(PLAN), || goes_on(directory))
 }
 
 fn goes_on(directory: &Path) -> Failure {

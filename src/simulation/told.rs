@@ -57,8 +57,10 @@ pub(super) fn with_brake(scene: &Scene, inputs: Inputs) -> Inputs {
     adding(scene, inputs, torque)
 }
 
-/// The same of the `rates` of these inputs, per s, over a step of `dt`, s: a brake that comes to its largest torque, or back from
-/// it, within the step pulls evenly from what it holds by at the start to what it holds by at the end.
+/// The same of the `rates` of these inputs, per s, over a step of `dt`, s.
+///
+/// A brake may come to its largest torque, or back from it, within the step. It then pulls evenly from what it holds by at the start
+/// to what it holds by at the end.
 fn rates_with_brake(scene: &Scene, inputs: &Inputs, rates: Inputs, dt: f64) -> Inputs {
     let most = scene.tensioner.most_torque();
     let end = inputs.after(&rates, dt).brake_torque;
