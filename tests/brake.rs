@@ -43,39 +43,45 @@ fn a_brake_pulls_by_its_torque_over_the_radius_of_its_wheel() {
     assert!(by_force.turns_wound > 0.3, "{}", by_force.turns_wound);
 }
 
+/// A run at rest at 10 N with a brake of at most 0.2 N m on a wheel of 50 mm, and its inputs while the brake is asked for `torque`.
+fn braked(torque: f64) -> (Simulation, Inputs) {
+    let scene = fig8(&[
+        ("tensioner.tension", "10"),
+        ("tensioner.brake_torque_max", "0.2"),
+    ]);
+    let still = Inputs {
+        tension_setpoint: 10.0,
+        nozzle_position: scene.nozzle_law.start(),
+        brake_torque: torque,
+        ..Inputs::HELD
+    };
+    let run = Simulation::starting_with(&scene, still).expect("starts");
+    (run, still)
+}
+
+fn rising(rate: f64) -> Inputs {
+    Inputs {
+        brake_torque: rate,
+        ..Inputs::HELD
+    }
+}
+
 /// A brake asked for more than it has holds by the most it has, at a rate too.
 #[test]
 fn a_brake_holds_by_its_largest_torque_at_most() {
-    let pull = |asked: f64, rate: f64| {
-        let scene = fig8(&[
-            ("tensioner.tension", "10"),
-            ("tensioner.brake_torque_max", "0.2"),
-        ]);
-        let still = Inputs {
-            tension_setpoint: 10.0,
-            nozzle_position: scene.nozzle_law.start(),
-            brake_torque: asked,
-            ..Inputs::HELD
-        };
-        let rates = Inputs {
-            brake_torque: rate,
-            ..Inputs::HELD
-        };
-        let mut run = Simulation::starting_with(&scene, still).expect("starts");
-        for _ in 0..20 {
-            run.advance_ramped(still, rates, 1e-3).expect("goes on");
-        }
-        assert_eq!(run.inputs().brake_torque, asked + 1e-3 * rate);
-        run.outputs().wire_tension
-    };
-    // 0.2 N m on a wheel of 50 mm
     for (asked, rate, tension) in [
         (0.1, 0.0, 12.0),
         (0.2, 0.0, 14.0),
         (0.9, 0.0, 14.0),
         (0.2, 40.0, 14.0),
     ] {
-        let found = pull(asked, rate);
+        let (mut run, still) = braked(asked);
+        for _ in 0..20 {
+            run.advance_ramped(still, rising(rate), 1e-3)
+                .expect("goes on");
+        }
+        assert_eq!(run.inputs().brake_torque, asked + 1e-3 * rate);
+        let found = run.outputs().wire_tension;
         assert!((found - tension).abs() < 0.02, "{asked}: {found}");
     }
 }
@@ -83,36 +89,19 @@ fn a_brake_holds_by_its_largest_torque_at_most() {
 /// A brake told to rise past its largest torque within a communication step pulled by the whole of the rise at its end.
 #[test]
 fn a_brake_that_reaches_its_largest_torque_within_a_step() {
-    let pull = |asked: f64, rate: f64| {
-        let scene = fig8(&[
-            ("tensioner.tension", "10"),
-            ("tensioner.brake_torque_max", "0.2"),
-        ]);
-        let at = |brake_torque: f64| Inputs {
-            tension_setpoint: 10.0,
-            nozzle_position: scene.nozzle_law.start(),
-            brake_torque,
-            ..Inputs::HELD
-        };
-        let rates = Inputs {
-            brake_torque: rate,
-            ..Inputs::HELD
-        };
-        let mut run = Simulation::starting_with(&scene, at(asked)).expect("starts");
-        for _ in 0..20 {
-            run.advance(at(asked), 1e-3).expect("goes on");
-        }
-        run.advance_ramped(at(asked), rates, 5e-3).expect("goes on");
-        run.outputs().wire_tension
-    };
-    // 0.2 N m on a wheel of 50 mm
     for (asked, rate, tension) in [
         (0.1, 10.0, 13.0),
         (0.1, 40.0, 14.0),
         (0.3, -10.0, 14.0),
         (0.3, -30.0, 13.0),
     ] {
-        let found = pull(asked, rate);
+        let (mut run, still) = braked(asked);
+        for _ in 0..20 {
+            run.advance(still, 1e-3).expect("goes on");
+        }
+        run.advance_ramped(still, rising(rate), 5e-3)
+            .expect("goes on");
+        let found = run.outputs().wire_tension;
         assert!((found - tension).abs() < 0.1, "{asked} {rate}: {found}");
     }
 }
