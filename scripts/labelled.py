@@ -41,6 +41,8 @@ class Found:
     defects: list = field(default_factory=list)
     verdict: str = "none"
     status: str = "none"
+    unexplained: float = 0.0  # by the energy balance, as a share of what spindle and feed did
+    deepest: float = 0.0  # contact, diameters
 
     @classmethod
     def of(cls, folder):
@@ -48,7 +50,10 @@ class Found:
         with open(folder / "defects.csv", newline="", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         defects = [(row["kind"], int(row["turn"]) - 1 + float(row["angle_deg"]) / 360) for row in rows]
-        return cls(defects, summary["verdict"], summary["status"])
+        energy = summary["energy"]
+        through = abs(energy["spindle_work_J"]) + abs(energy["nozzle_work_J"])
+        return cls(defects, summary["verdict"], summary["status"], abs(energy["residual_J"]) / through,
+                   summary["penetration"]["largest_over_d"])
 
     def in_words(self):
         seen = [f"{kind} {place + 1:.1f}" for kind, place in self.defects]
@@ -146,8 +151,18 @@ def main():
         total += f"; {len(again) - len(changed)} of {len(again)} say the same at half the tolerance and half the spacing"
     print(total)
     if arguments.write:
-        write_table(scenes, results, total)
+        write_table(scenes, results, f"{total}. {in_doubt(scenes, results)}")
     return 1 if alarms or changed or len(right) < SHARE * len(scenes) else 0
+
+
+def in_doubt(scenes, results):
+    """What the energy balances leave unexplained and how deep contacts are, at most."""
+    def most(chosen):
+        found = [results[scene.name] for scene in chosen]
+        return (f"{100 * max(each.unexplained for each in found):.1g} % of what spindle and feed did unexplained, and is up to "
+                f"{max(each.deepest for each in found):.1g} diameters deep in what it touches")
+    steady = [scene for scene in scenes if all(label.kind != "runaway" for label in scene.labels)]
+    return f"Wire leaves at most {most(steady)}; with wire that runs away, {most(scenes)}"
 
 
 def write_table(scenes, results, total):

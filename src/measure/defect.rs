@@ -9,13 +9,13 @@ pub struct DefectLimits {
     pub gap: f64,
     /// least length of a run of such stations, as a fraction of a turn
     pub gap_fraction: f64,
-    /// height over the quasi-static height above which wire bulges, diameters
+    /// bulge over the quasi-static height above which it is a defect, diameters
     pub bulge_excess: f64,
     /// absolute bulge limit, m; 0: use `bulge_excess`
     pub bulge_absolute: f64,
     /// axial distance to the neighbour below which wire may overlap, diameters
     pub overlap_axial: f64,
-    /// height over its layer from which on such wire overlaps, diameters
+    /// bulge from which on such wire overlaps, diameters
     pub overlap_height: f64,
     /// polar angle after the clamp in which nothing is judged, rad
     pub skip_angle: f64,
@@ -25,7 +25,7 @@ pub struct DefectLimits {
     pub skipped_groove: f64,
     /// turns by which a change of layer may miss the place where it is planned
     pub jump: f64,
-    /// height over that at rest above which wire touches nothing, diameters
+    /// bulge over the quasi-static height above which wire touches nothing, diameters
     pub loose_height: f64,
     /// largest share of a turn that may touch nothing
     pub loose_fraction: f64,
@@ -39,7 +39,7 @@ pub struct DefectLimits {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "by", rename_all = "snake_case")]
 pub enum BulgeLimit {
-    /// height over the quasi-static height
+    /// the quasi-static height
     OverRest {
         /// allowed over it, m
         limit_m: f64,
@@ -48,17 +48,17 @@ pub enum BulgeLimit {
     },
     /// the absolute limit of the scene
     Absolute {
-        /// allowed height, m
+        /// allowed bulge, m
         limit_m: f64,
     },
     /// an absolute limit of one diameter, since there is no quasi-static height
     Fallback {
-        /// allowed height, m
+        /// allowed bulge, m
         limit_m: f64,
     },
 }
 
-/// Height that is a bulge where no quasi-static height is known, diameters: it takes the room of another wire.
+/// Bulge that is a defect where no quasi-static height is known, diameters: it takes the room of another wire.
 pub(crate) const FALLBACK_BULGE: f64 = 1.0;
 
 /// How many kinds of defect are measured on settled wire.

@@ -146,11 +146,11 @@ pub struct TurnMeasures {
     pub flange_gap: Option<f64>,
     /// mean axial distance to the neighbour, positive in the direction of the traverse
     pub axial_mean: Option<f64>,
-    /// largest height over the faces on +x, +z, -x, -z; 0 where nothing is measured
+    /// largest bulge on the faces on +x, +z, -x, -z; 0 where nothing is measured
     pub bulge_faces: [f64; 4],
-    /// largest height over all faces
+    /// largest bulge on all faces
     pub bulge_max: f64,
-    /// largest height over the quasi-static one; `None` without a profile
+    /// largest bulge over the quasi-static height; `None` without a profile
     pub bulge_excess_max: Option<f64>,
     /// largest overlap depth
     pub overlap_max: f64,

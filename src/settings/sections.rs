@@ -102,17 +102,17 @@ impl Start {
 pub struct Spindle {
     /// final speed about +y, rad/s
     pub speed: f64,
-    /// turns over which the speed rises with constant acceleration
+    /// revolutions over which the speed rises with constant acceleration
     pub ramp_turns: f64,
-    /// turns of the spindle until the run ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle
+    /// revolutions until the run ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle
     pub turns: f64,
     /// path of a CSV file of speed over angle, already resolved against the folder of the scene file; empty: none
     pub file: String,
-    /// turns after which the table in the file begins again; 0: it does not
+    /// revolutions after which the table in the file begins again; 0: it does not
     pub repeat_turns: f64,
     /// largest speed while wire climbs to the next layer, as a share of `speed`
     pub flange_share: f64,
-    /// turns over which the speed falls to that before a climb, and rises again after it
+    /// revolutions over which the speed falls to that before a climb, and rises again after it
     pub flange_turns: f64,
 }
 

@@ -22,7 +22,7 @@ use crate::math::polar_angle;
 use crate::math::turn_about_y;
 use crate::math::{Spin, V3, scaled};
 use crate::measure::{Coil, CoilSpec, Crossover};
-use crate::rod::{Rod, Scalar};
+use crate::rod::{Rod, Scalar, Section};
 use crate::scene::{Core, Integrator, Scene, si};
 use crate::signals::{EventKind, Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
@@ -36,48 +36,104 @@ const MASSLESS: f64 = 1e-6;
 /// takes.
 const STEPS: [f64; 3] = [1e-9, 1e-5, 0.1];
 
-/// Builds the system at rest, an empty coil, the core angle at the start, and what is told of the way of the wire.
-fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64, Option<String>), SimError> {
-    let surface = Arc::new(core_surface(&scene.core)?);
+/// Straight wire before the first step: where it is clamped, where it leaves the nozzle, and how the core is turned.
+struct FirstSpan {
+    /// lab frame, m
+    nozzle: V3,
+    /// core frame, m
+    clamp: V3,
+    /// angle of the core, rad
+    angle: f64,
+    /// +1 or -1 as in [`CoilSpec::direction`]
+    direction: f64,
+    /// what is told of the way of the wire
+    told: Option<String>,
+}
+
+impl FirstSpan {
+    /// The core begins turned towards the nozzle, the way round on which its spindle lays wire.
+    fn new(scene: &Scene, inputs: &Inputs, surface: &Surface) -> Result<Self, SimError> {
+        let radius = scene.wire.radius();
+        let half = half_width(scene, surface)?;
+        let nozzle = nozzle_of(scene, inputs);
+        let distance = libm::hypot(nozzle.x, nozzle.z);
+        if surface.radius_max() + radius >= distance {
+            let set = match (inputs.nozzle_offset_x, inputs.nozzle_offset_z) {
+                (0.0, 0.0) => "nozzle.distance",
+                _ => "nozzle.distance with nozzle_offset_x and nozzle_offset_z",
+            };
+            return Err(SimError::setup(format!(
+                "{set} = {} m lies inside the circle of radius {} m that the core sweeps; allowed: more than that radius",
+                si(distance),
+                si(surface.radius_max() + radius)
+            )));
+        }
+        let aside = libm::atan2(-nozzle.z, nozzle.x);
+        let turned = crate::settings::Start::core_angle(half, radius, distance);
+        let clamp = V3::new(half + radius, scene.start.clamp_y, 0.0);
+        let direction = if inputs.spindle_speed < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        let angle = match &scene.core {
+            Core::Mesh { .. } => clear_angle(scene, surface, (clamp, nozzle), |back| {
+                aside + direction * (turned - back)
+            }),
+            _ => aside + direction * turned,
+        };
+        let told = check_way(scene, surface, (clamp, nozzle), angle)?;
+        Ok(Self {
+            nozzle,
+            clamp,
+            angle,
+            direction,
+            told,
+        })
+    }
+}
+
+/// Builds the system at rest and an empty coil round the first span.
+fn wound_from(
+    scene: &Scene,
+    inputs: &Inputs,
+    surface: Arc<Surface>,
+    span: &FirstSpan,
+) -> (System, Coil) {
+    let mut sys = strung(scene, &surface, span, inputs.tension_setpoint);
+    let feed = feed_spec(scene, &sys.model.section);
+    sys.set_feed(feed, Feed::at_rest(&feed, inputs.tension_setpoint));
+    sys.damp_tensioner(inputs.tensioner_damping);
+    touch(&mut sys, scene, &surface);
+    let tension = yardstick_tension(scene, inputs);
+    let coil = Coil::new(CoilSpec {
+        diameter: scene.wire.diameter,
+        limits: scene.defects,
+        profile: super::quasi_static::profile(scene, &surface, tension),
+        tension,
+        jumps: scene.nozzle_law.jumps().into(),
+        full: scene.nozzle_law.full(),
+        crossover: (scene.nozzle_law.crossover()).map(|[step, angle]| Crossover { step, angle }),
+        start_angle: polar_angle(span.clamp),
+        direction: span.direction,
+        traverse: scene.nozzle_law.sense(),
+        clamp_arc: 0.0,
+        corner_angle: corner_angle(&scene.core),
+    });
+    sys.model.core = Some(surface);
+    sys.model.twist = scene.solver.twist;
+    (sys, coil)
+}
+
+/// Wire under this tension (N) along the first span, with nothing to touch and no feed.
+fn strung(scene: &Scene, surface: &Surface, span: &FirstSpan, tension: f64) -> System {
     let mut section = scene.wire.clone();
     if !scene.solver.features.inertia {
         section.density *= MASSLESS;
         section.enamel_density *= MASSLESS;
     }
-    let radius = section.radius();
-    let half = half_width(scene, &surface)?;
-    let nozzle = nozzle_of(scene, inputs);
-    let distance = libm::hypot(nozzle.x, nozzle.z);
-    if surface.radius_max() + radius >= distance {
-        let set = match (inputs.nozzle_offset_x, inputs.nozzle_offset_z) {
-            (0.0, 0.0) => "nozzle.distance",
-            _ => "nozzle.distance with nozzle_offset_x and nozzle_offset_z",
-        };
-        return Err(SimError::setup(format!(
-            "{set} = {} m lies inside the circle of radius {} m that the core sweeps; allowed: more than that radius",
-            si(distance),
-            si(surface.radius_max() + radius)
-        )));
-    }
-    // the core begins turned towards the nozzle, the way round on which its spindle lays wire
-    let aside = libm::atan2(-nozzle.z, nozzle.x);
-    let turned = crate::settings::Start::core_angle(half, radius, distance);
-    let clamp_core = V3::new(half + radius, scene.start.clamp_y, 0.0);
-    let way_round = if inputs.spindle_speed < 0.0 {
-        -1.0
-    } else {
-        1.0
-    };
-    let angle0 = match &scene.core {
-        Core::Mesh { .. } => clear_angle(scene, &surface, (clamp_core, nozzle), |back| {
-            aside + way_round * (turned - back)
-        }),
-        _ => aside + way_round * turned,
-    };
-    let way = check_way(scene, &surface, (clamp_core, nozzle), angle0)?;
-    let clamp = Spin::new(angle0).to_lab(clamp_core);
-    let points = line_of_nodes(scene, &surface, clamp, nozzle, angle0);
-    let tension = inputs.tension_setpoint;
+    let clamp = Spin::new(span.angle).to_lab(span.clamp);
+    let points = line_of_nodes(scene, surface, clamp, span.nozzle, span.angle);
     let plastic = stretch_at(&section, tension);
     let stretch = 1.0 + tension / section.ea + plastic.strain;
     let rest = points
@@ -86,30 +142,36 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64, Option<Str
         .collect();
     let mut rod = Rod::through(&points, Some(rest));
     rod.stretch.iter_mut().for_each(|s| *s = plastic);
-    let direction = (nozzle - clamp).normalize();
-    let frame = turn_about_y(-angle0) * frame_along(&direction, Some(&rod.frame[0]));
-    let mut sys = System::new(section.clone(), rod);
+    let direction = (span.nozzle - clamp).normalize();
+    let frame = turn_about_y(-span.angle) * frame_along(&direction, Some(&rod.frame[0]));
+    let mut sys = System::new(section, rod);
     sys.state.spindle = Spindle {
-        angle: angle0,
+        angle: span.angle,
         speed: 0.0,
         acceleration: 0.0,
     };
     sys.state.support[0] = Support {
         hold: [true; 3],
-        point: clamp_core,
+        point: span.clamp,
         velocity: V3::zeros(),
         frame: Some(frame),
         turning: true,
     };
-    sys.state.support[1] = Support::pinned(nozzle);
+    sys.state.support[1] = Support::pinned(span.nozzle);
     sys.state.set_tension = tension;
+    sys.state.line_wire = LineWire::at_rest(plastic);
+    sys
+}
+
+/// Tensioner, line and nozzle of the scene.
+fn feed_spec(scene: &Scene, section: &Section) -> FeedSpec {
     let t = scene.tensioner;
     let line_stiffness = if t.line_length > 0.0 {
         section.ea / t.line_length
     } else {
         f64::INFINITY
     };
-    let spec = FeedSpec {
+    FeedSpec {
         mass: t.mass,
         damping: t.damping,
         line_stiffness,
@@ -131,10 +193,12 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64, Option<Str
             friction: t.pulley_friction,
             share: t.pulley_place,
         }),
-    };
-    sys.set_feed(spec, Feed::at_rest(&spec, tension));
-    sys.damp_tensioner(inputs.tensioner_damping);
-    sys.state.line_wire = LineWire::at_rest(plastic);
+    }
+}
+
+/// Lets the wire touch core, flanges and laid wire, along its length or, with an explicit method, at its nodes.
+fn touch(sys: &mut System, scene: &Scene, surface: &Arc<Surface>) {
+    let radius = scene.wire.radius();
     let law = ContactLaw {
         stiffness: scene.contact.stiffness,
         damping_ratio: damping_for_restitution(scene.contact.restitution),
@@ -143,7 +207,7 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64, Option<Str
         slip_speed: scene.friction.slip_speed,
     };
     if scene.solver.integrator == Integrator::Implicit {
-        let shape = core_shape(&scene.core, &surface);
+        let shape = core_shape(&scene.core, surface);
         sys.touch_along(LineModel {
             flanges: core_flanges(&scene.core),
             restitution: scene.contact.restitution,
@@ -154,26 +218,9 @@ fn wire(scene: &Scene, inputs: &Inputs) -> Result<(System, Coil, f64, Option<Str
             surface: surface.clone(),
             law,
             radius,
-            diameter: section.diameter,
+            diameter: scene.wire.diameter,
         });
     }
-    sys.model.core = Some(surface.clone());
-    sys.model.twist = scene.solver.twist;
-    let coil = Coil::new(CoilSpec {
-        diameter: section.diameter,
-        limits: scene.defects,
-        profile: super::quasi_static::profile(scene, &surface, yardstick_tension(scene, inputs)),
-        tension: yardstick_tension(scene, inputs),
-        jumps: scene.nozzle_law.jumps().into(),
-        full: scene.nozzle_law.full(),
-        crossover: (scene.nozzle_law.crossover()).map(|[step, angle]| Crossover { step, angle }),
-        start_angle: polar_angle(clamp_core),
-        direction: way_round,
-        traverse: scene.nozzle_law.sense(),
-        clamp_arc: 0.0,
-        corner_angle: corner_angle(&scene.core),
-    });
-    Ok((sys, coil, angle0, way))
 }
 
 /// Tension that coils are judged by, N: that of the scene, or that at the start where it is more. Wire that is wound looser than
@@ -196,7 +243,7 @@ fn corner_angle(core: &Core) -> f64 {
 }
 
 /// Plastic stretch that belongs to a tension above yield.
-fn stretch_at(section: &crate::rod::Section, tension: f64) -> Scalar {
+fn stretch_at(section: &Section, tension: f64) -> Scalar {
     let law = crate::rod::Laws::new(section).stretch;
     let over = tension - law.limit;
     if over <= 0.0 {
@@ -241,7 +288,9 @@ impl Winding {
     /// The same with these inputs at the start.
     pub(super) fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
         check_finite(&inputs, 0.0)?;
-        let (mut sys, coil, angle0, way) = wire(scene, &inputs)?;
+        let surface = Arc::new(core_surface(&scene.core)?);
+        let span = FirstSpan::new(scene, &inputs, &surface)?;
+        let (mut sys, coil) = wound_from(scene, &inputs, surface, &span);
         let (stepper, last_step) = stepper_for(scene)?;
         sys.refresh();
         sys.state.balance.initial = sys.stored() + sys.kinetic();
@@ -250,7 +299,7 @@ impl Winding {
         let run = RunState {
             watch: Watch::new(sys.state.rod.nodes(), sys.state.spindle.angle),
             policy,
-            angle0,
+            angle0: span.angle,
             last_step,
             acceleration: 0.0,
             time: 0.0,
@@ -301,7 +350,7 @@ impl Winding {
         sim.sys.place_supports();
         sim.reset_extremes();
         sim.update_outputs();
-        if let Some(text) = way {
+        if let Some(text) = span.told {
             sim.report(EventKind::Judgement, text);
         }
         if let Some((kind, text)) = sim.doubt_about_bulge() {

@@ -30,12 +30,14 @@ mod probe;
 mod ramp;
 mod rolls;
 mod scheme;
+mod slope;
 mod statics;
 mod step;
 mod step_control;
 mod stirred;
 mod tensioner;
 mod unknowns;
+mod update;
 mod work;
 
 pub use error::StepError;

@@ -3,11 +3,12 @@
 use super::circle::Circle;
 use super::largest::largest;
 use super::model::Model;
-use super::unknowns::{Unknowns, add_at};
+use super::slope::Slope;
+use super::unknowns::Unknowns;
+use super::update::{load_gradient, solve_linear};
 use super::work::{Axial, Work};
-use crate::contact::{ContactPoint, LimitFrom, NodeWeights};
+use crate::contact::LimitFrom;
 use crate::math::{V3, scaled};
-use crate::rod::{Block, Laws, add_outer};
 
 /// Newton steps after which the coefficients of friction stay what the slide of the first iterate makes them, see
 /// [`LimitFrom::NormalForce`]. Of a prescribed step its caller wants the solution, with coefficients of its own.
@@ -15,8 +16,6 @@ const SLIDES: usize = 1;
 /// Newton steps in which friction limits follow the normal force. Most solves are done after three; where slides still turn to and
 /// fro after so many, the limits stay, and the rest is the minimum of a potential. The solution then lags behind its own limits.
 const FOLLOWS: usize = 6;
-/// Times that an update is solved again for contact and yielding it meets on its way.
-const LOOKS_AHEAD: usize = 8;
 /// An update of more than so many times what is close is not the last but one.
 const CHORD: f64 = 100.0;
 /// Updates with old factors in a row that are tried. Three take a tenth of the time off one (`fig8`, 2e-6 m).
@@ -329,14 +328,6 @@ fn end_by_chords<const D: usize, U: Unknowns<D>>(
     Chord::Nearer
 }
 
-fn load_gradient<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U>) {
-    work.load.resize(D * work.gradient.len(), 0.0);
-    let nodes = work.load.as_chunks_mut::<D>().0.iter_mut();
-    for (i, (load, places)) in nodes.zip(&work.gradient).enumerate() {
-        *load = work.unknowns.gradient(i, places).map(|g| -g);
-    }
-}
-
 /// Largest update of an unknown, m, its node, and whether it is a roll, which counts by the way of the wire's surface.
 fn largest_update<const D: usize, U: Unknowns<D>>(
     model: &Model,
@@ -350,184 +341,6 @@ fn take_limits(model: &mut Model, from: LimitFrom) {
     if let Some(line) = &mut model.line {
         line.state.limit_from = from;
     }
-}
-
-/// The update from gradient and Hessian, with tangents of contact that fit where it leads; whether all of them do.
-#[inline(never)]
-fn solve_linear<const D: usize, U: Unknowns<D>>(
-    model: &mut Model,
-    work: &mut Work<D, U>,
-    promise: f64,
-) -> Result<bool, usize> {
-    let nodes = work.q.len();
-    load_gradient(work);
-    for look in 0.. {
-        work.matrix.factor().map_err(|loose| loose.node)?;
-        work.update.clone_from(&work.load);
-        work.beyond.take(model.line.as_ref(), model.held);
-        work.solve_factored(0.5 * model.diameter);
-        if look == 0 {
-            work.plain.clone_from(&work.update);
-        }
-        if look == LOOKS_AHEAD {
-            return Ok(false);
-        }
-        let mut any = predict_branches(model.laws, work);
-        let Work {
-            q,
-            update,
-            load,
-            matrix,
-            force: there,
-            ..
-        } = work;
-        let move_of = |point: usize| {
-            let mut d = V3::zeros();
-            for (i, w) in ContactPoint::of_number(point).weights().iter() {
-                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * w;
-            }
-            d
-        };
-        let mut correct = |place: &NodeWeights, stiffness: &Block, gradient: &V3| {
-            place.spread_block(stiffness, matrix);
-            for (i, w) in place.iter() {
-                for a in 0..3 {
-                    load[D * i + a] -= w * gradient[a];
-                }
-            }
-        };
-        if let Some(line) = &mut model.line {
-            let farthest = farthest_move::<D>(update);
-            any |= line.predict(
-                model.elapsed,
-                (farthest, promise),
-                move_of,
-                |point, stiffness, gradient| {
-                    let place = ContactPoint::of_number(point).weights();
-                    correct(&place, stiffness, gradient);
-                },
-            );
-            let mut conditions = line.model.of_pairs(model.elapsed, line.state.limit_from);
-            conditions.prediction *= promise;
-            if let Some(pairs) = &mut line.state.self_contact {
-                there.clear();
-                for (i, p) in q.iter().enumerate() {
-                    there.push(p + V3::new(update[D * i], update[D * i + 1], update[D * i + 2]));
-                }
-                any |= pairs.predict(
-                    &mut line.scratch.pairs,
-                    &conditions,
-                    (q, model.last, there),
-                    |young, old, stiffness, gradient| {
-                        correct(young, stiffness, gradient);
-                        correct(old, stiffness, gradient);
-                    },
-                );
-            }
-        }
-        if !any {
-            break;
-        }
-        // nothing but the ends is held, but for plane statics
-        if work.matrix.ends_changed() || model.flat {
-            model.pinned(nodes, |i, a| {
-                work.matrix.pin(i, a);
-                work.load[D * i + a] = 0.0;
-            });
-            for (i, a) in work.unknowns.pinned() {
-                work.matrix.pin(i, a);
-                work.load[D * i + a] = 0.0;
-            }
-        }
-        work.solves += 1;
-    }
-    Ok(true)
-}
-
-/// Upper bound of the way of a node in an update, m.
-fn farthest_move<const D: usize>(update: &[f64]) -> f64 {
-    let square = |u: &[f64; D]| u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
-    let nodes = update.as_chunks::<D>().0;
-    let most = nodes.iter().map(square).fold(0.0, f64::max);
-    // (rounding)
-    most.sqrt() * (1.0 + 1e-9)
-}
-
-/// Looks where the update leads every joint, and corrects the tangents of those that change their branch.
-fn predict_branches<const D: usize, U: Unknowns<D>>(laws: &Laws, work: &mut Work<D, U>) -> bool {
-    let Work {
-        yield_branches,
-        update,
-        load,
-        matrix,
-        ..
-    } = work;
-    let nodes = update.len() / D;
-    let mut any = false;
-
-    let bending = yield_branches
-        .bending
-        .iter_mut()
-        .map(|yield_branch| (&laws.bend, yield_branch));
-    let twist = yield_branches
-        .twist
-        .iter_mut()
-        .map(|yield_branch| (&laws.twist, yield_branch));
-    for (law, (joint, yield_branch)) in bending.chain(twist) {
-        let j = *joint as usize;
-        // derivative of the angle by the rolls, which stand with the first nodes of their edges
-        let (by_rolls, mut rolls) = (U::by_rolls(yield_branch), [0.0; 3]);
-        let move_of = |u: &[f64]| V3::new(u[0], u[1], u[2]);
-        let mut angle = 0.0;
-        if j > 0 {
-            let u = &update[D * (j - 1)..D * (j + 1)];
-            angle += yield_branch.rows[0].dot(&(move_of(&u[D..]) - move_of(u)));
-            rolls[0] = by_rolls[0];
-            angle += rolls[0] * U::roll(update, j - 1);
-        }
-        if j + 1 < nodes {
-            let u = &update[D * j..D * (j + 2)];
-            angle += yield_branch.rows[1].dot(&(move_of(&u[D..]) - move_of(u)));
-            rolls[1] = by_rolls[1];
-            angle += rolls[1] * U::roll(update, j);
-        }
-        let Some((stiffness, moment)) = yield_branch.predict(law, angle) else {
-            continue;
-        };
-        any = true;
-        // derivative of the angle by the nodes
-        let mut rows = [V3::zeros(); 3];
-        if j > 0 {
-            rows[0] -= yield_branch.rows[0];
-            rows[1] += yield_branch.rows[0];
-        }
-        if j + 1 < nodes {
-            rows[1] -= yield_branch.rows[1];
-            rows[2] += yield_branch.rows[1];
-        }
-        let none = |a: usize| rows[a] == V3::zeros() && rolls[a] == 0.0;
-        for a in 0..3 {
-            if none(a) {
-                continue;
-            }
-            let i = j + a - 1;
-            for k in 0..3 {
-                load[D * i + k] -= moment * rows[a][k];
-            }
-            U::relieve(load, i, moment * rolls[a]);
-            for b in a..3 {
-                if none(b) {
-                    continue;
-                }
-                let mut block = Block::default();
-                add_outer(&mut block, &(rows[a] * stiffness), &rows[b]);
-                add_at(matrix, i, b - a, &block);
-                let (one, other) = ((&rows[a], rolls[a]), (&rows[b], rolls[b]));
-                U::add_stiffness(matrix, i, b - a, one, other, stiffness);
-            }
-        }
-    }
-    any
 }
 
 /// At the start tensions are expected to stay what they were at the last accepted instant.
@@ -558,39 +371,5 @@ fn expect_tension<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U>, share: 
         e.length = a.length + longer;
         e.tension = a.tension + a.stiffness * longer;
         e.energy = a.energy + longer * (a.tension + 0.5 * a.stiffness * longer);
-    }
-}
-
-/// Slope of the potential along an update, and what slip couplings have in it, J.
-#[derive(Clone, Copy, Debug)]
-struct Slope {
-    slope: f64,
-    slip: f64,
-}
-
-impl Slope {
-    fn of<const D: usize, U: Unknowns<D>>(work: &Work<D, U>) -> Self {
-        let update = work.update.as_chunks::<D>().0;
-        let along =
-            |(g, u): ([f64; D], &[f64; D])| g.iter().zip(u).map(|(g, u)| g * u).sum::<f64>();
-        Self {
-            slope: work.gradients().zip(update).map(along).sum(),
-            slip: work.beyond.slip_square::<D>(&work.update),
-        }
-    }
-
-    /// Product of the update with the Hessian from either side, J: it and the slip couplings take the update to minus the
-    /// gradient.
-    fn curvature(self) -> f64 {
-        -self.slope - self.slip
-    }
-
-    /// Rise of the potential that this share of the update may bring, J.
-    ///
-    /// Where friction limits change along with the update, the solution is no minimum of the potential that holds them. It may
-    /// rise by what gradient and Hessian promise, and as much again for what they leave out.
-    fn rise(self, share: f64) -> f64 {
-        let promised = share * self.slope + 0.5 * share * share * self.curvature();
-        (2.0 * promised).max(0.0)
     }
 }
