@@ -205,6 +205,33 @@ fn two_turns_balance_their_energy_and_stay_out_of_the_core() {
     }
 }
 
+/// Edges of 1 mm were halved down to 0.25 mm where 0.3 mm was asked for, and the step was the longest stable one of 0.3 mm: the
+/// wire broke by energy from nowhere.
+#[test]
+fn explicit_steps_go_with_the_shortest_edge_and_not_with_the_spacing() {
+    for method in ["rk4", "verlet"] {
+        let scene = fig8(&[
+            ("solver.integrator", method),
+            ("solver.spacing_near", "3e-4"),
+            ("solver.spacing_free", "1e-3"),
+            ("spindle.speed", "500"),
+            ("spindle.ramp_turns", "0.02"),
+        ]);
+        let sim = wind(&scene, 0.4);
+        let rest = &sim.system().state.rod.rest;
+        assert!(
+            rest.iter().any(|rest| *rest < 2.6e-4),
+            "no edge is that short"
+        );
+        assert!(!sim.outputs().defect_break, "{method}: {:?}", sim.energy());
+        assert!(
+            sim.energy().residual_over_dissipated.abs() < 0.01,
+            "{method}: {:?}",
+            sim.energy()
+        );
+    }
+}
+
 #[test]
 fn a_loose_tolerance_does_not_show_in_the_books_of_slow_winding() {
     let scene = fig8(&[("spindle.speed", "100"), ("solver.tolerance", "1e-5")]);

@@ -3,9 +3,22 @@
 use super::Winding;
 use super::remeshing::BENT;
 use crate::math::{Spin, spin_velocity};
+use crate::scene::Solver;
 
 /// Longest step over the one before it, rounded up: no step that lands before the next look is longer.
 const AHEAD: f64 = 2.0;
+
+/// Edges of at most so many spacings near the core are fine and are not halved.
+const FINE: f64 = 1.5;
+
+/// Shortest edge that wire has once it is refined, m: halves of edges from the free span may be shorter than the spacing near the core.
+pub(super) fn shortest_edge(solver: &Solver) -> f64 {
+    let mut half = solver.spacing_free;
+    while half > FINE * solver.spacing_near {
+        half *= 0.5;
+    }
+    half.min(solver.spacing_near)
+}
 
 impl Winding {
     /// Edges that are too long for where they came in a step of `dt`, s, or how they bend, ascending.
@@ -41,7 +54,7 @@ impl Winding {
     /// Edges ahead of settled wire, but for that at the nozzle, that are longer than fine ones and `wanted`, ascending.
     fn long_edges(&self, wanted: impl Fn(usize) -> bool) -> Vec<usize> {
         let solver = self.scene.solver;
-        if solver.spacing_free < 1.5 * solver.spacing_near {
+        if solver.spacing_free < FINE * solver.spacing_near {
             return Vec::new();
         }
         let rod = &self.sys.state.rod;
@@ -52,7 +65,7 @@ impl Winding {
             0
         };
         (first..rod.edges() - 1)
-            .filter(|&j| rod.rest[j] > 1.5 * solver.spacing_near && wanted(j))
+            .filter(|&j| rod.rest[j] > FINE * solver.spacing_near && wanted(j))
             .collect()
     }
 

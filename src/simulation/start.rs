@@ -8,6 +8,7 @@ use super::freezing::{FreezePolicy, Watch};
 use super::nozzle_place::nozzle_of;
 use super::nozzle_way::Traverse;
 use super::older_wire::OlderWire;
+use super::refining::shortest_edge;
 use super::run_state::RunState;
 use super::straight_wire::{check_way, clear_angle};
 use super::{MotionProfile, SimError, Winding};
@@ -381,7 +382,7 @@ fn stepper_for(scene: &Scene) -> Result<(Stepper, f64), SimError> {
         Integrator::Verlet => Some(ExplicitMethod::Verlet),
         Integrator::Implicit => None,
     };
-    let spacing = solver.spacing_near.min(solver.spacing_free);
+    let spacing = shortest_edge(&solver);
     let contact = scene.contact.stiffness;
     let twist = solver.twist.is_carried();
     let frequency = highest_frequency(&scene.wire, spacing, contact, twist);
