@@ -30,8 +30,9 @@ impl Merge {
 impl System {
     /// Takes inner node `i` out and joins its edges; plastic state is shared out by length.
     ///
-    /// The joined edge is as stretched as the two were on average: the chord is shorter than they
-    /// were. The difference counts as wire that went back through the nozzle.
+    /// The joined edge is as stretched as the two were on average, and one at the nozzle pulls as the edge there did: the line behind it
+    /// knows nothing of the edge before. The chord is shorter than the edges were. The difference counts as wire that went back
+    /// through the nozzle.
     pub fn merge(&mut self, i: usize) {
         let nodes = self.state.rod.nodes();
         debug_assert!(i > 0 && i + 1 < nodes, "an inner node");
@@ -61,6 +62,11 @@ impl System {
             frame: rod.frame[i - 1],
             at_nozzle,
         };
+        if at_nozzle && let Some(pull) = self.state.load.tension.last() {
+            let plastic = merge.share(rod.stretch[i - 1].strain, rod.stretch[i].strain);
+            let modulus = self.model.laws.stretch.modulus;
+            merge.joined = chord.norm() / (1.0 + plastic + pull / modulus);
+        }
         // the joined edge's middle is this far from that of its first part
         let roll = if self.model.twist.is_carried() {
             merge.share(0.0, Joint::between(&rod.frame[i - 1], &rod.frame[i]).twist)
@@ -69,5 +75,46 @@ impl System {
         };
         merge.frame = align(&rod.frame[i - 1], &chord.normalize(), roll);
         merge
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::System;
+    use crate::feed::{Feed, FeedSpec};
+    use crate::math::V3;
+    use crate::rod::{Rod, Section};
+
+    /// Wire that was pushed into the nozzle made the joined edge push, though the line was slack.
+    #[test]
+    fn a_joined_edge_at_the_nozzle_pulls_as_the_edge_there_did() {
+        let points =
+            [0.0, 1.0, 2.0, 2.4].map(|x| V3::new(1e-3 * x, 0.0, 5e-6 * (x - 2.0).max(0.0)));
+        for [before, at_nozzle] in [[-2e-6, 0.0], [3e-6, 5e-6]] {
+            let mut rod = Rod::through(&points, None);
+            rod.stretch[1].strain = 1e-3;
+            rod.rest[1] /= 1.0 + 1e-3 + before;
+            rod.rest[2] /= 1.0 + at_nozzle;
+            let mut sys = System::new(Section::table1_elastic(), rod);
+            let spec = FeedSpec {
+                mass: 0.0,
+                damping: 0.0,
+                line_stiffness: f64::INFINITY,
+                line_damping: 0.0,
+                exit_friction: 0.0,
+                exit_curvature: 0.0,
+                line_length: 0.0,
+                line_mass: 0.0,
+                pulley: None,
+            };
+            sys.set_feed(spec, Feed::at_rest(&spec, 0.0));
+            sys.refresh();
+            let pull = sys.state.load.tension[2];
+            assert!((pull / sys.model.laws.stretch.modulus - at_nozzle).abs() < 1e-12);
+            sys.merge(2);
+            sys.refresh();
+            let joined = sys.state.load.tension[1];
+            assert!((joined - pull).abs() < 1e-6, "{joined} N, {pull} N before");
+        }
     }
 }
