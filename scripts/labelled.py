@@ -159,10 +159,11 @@ def in_doubt(scenes, results):
     """What the energy balances leave unexplained and how deep contacts are, at most."""
     def most(chosen):
         found = [results[scene.name] for scene in chosen]
-        return (f"{100 * max(each.unexplained for each in found):.1g} % of what spindle and feed did unexplained, and is up to "
-                f"{max(each.deepest for each in found):.1g} diameters deep in what it touches")
+        return 100 * max(each.unexplained for each in found), max(each.deepest for each in found)
     steady = [scene for scene in scenes if all(label.kind != "runaway" for label in scene.labels)]
-    return f"Wire leaves at most {most(steady)}; with wire that runs away, {most(scenes)}"
+    (share, depth), (share_of_all, depth_of_all) = most(steady), most(scenes)
+    return (f"The energy balance leaves at most {share:.2g} % of what spindle and feed did unexplained, and wire is up to {depth:.2g} diameters "
+            f"deep in what it touches; with wire that runs away it is {share_of_all:.2g} % and {depth_of_all:.2g} diameters")
 
 
 def write_table(scenes, results, total):

@@ -245,3 +245,43 @@ fn elastic_wire_holds_its_tension_in_short_steps() {
         assert!(near, "{step}: {swing:?}");
     }
 }
+
+/// In steps of 10 ns contact was held by impulses and the step formula left momentum out, which the torque did not have: 7 % were
+/// missing in the mean, while the spindle's work was right.
+#[test]
+fn the_torque_in_steps_of_ten_nanoseconds_is_that_of_a_microsecond() {
+    let changes = [
+        ("wire.material", "copper"),
+        ("wire.diameter", "4e-4"),
+        ("core.width_x", "9e-3"),
+        ("core.height_z", "16e-3"),
+        ("core.corner_radius", "1.5e-3"),
+        ("core.length_y", "20e-3"),
+        ("nozzle.distance", "45e-3"),
+        ("tensioner.tension", "6"),
+    ];
+    let mean = |step: f64| {
+        let mut sim = Simulation::new(&fig8(&changes)).expect("starts");
+        let (end, from, rate) = (6e-4, 4e-4, 9e5);
+        let (mut sum, mut count) = (0.0, 0);
+        for k in 0..(end / step).round() as usize {
+            let inputs = Inputs {
+                spindle_speed: rate * step * k as f64,
+                ..sim.inputs()
+            };
+            let rates = Inputs {
+                spindle_speed: rate,
+                tension_setpoint: 0.0,
+                ..Inputs::HELD
+            };
+            sim.advance_ramped(inputs, rates, step).expect("goes on");
+            if sim.time() > from {
+                sum += sim.outputs().spindle_torque;
+                count += 1;
+            }
+        }
+        sum / f64::from(count)
+    };
+    let (short, long) = (mean(1e-8), mean(1e-6));
+    assert!((short / long - 1.0).abs() < 5e-3, "{short} {long}");
+}

@@ -53,6 +53,14 @@ impl Row {
         }
     }
 
+    /// The same with the place that it had got to `before`: wire that sank into a hole of the row below has not gone on there.
+    pub(crate) fn no_farther_than(self, before: Self) -> Self {
+        Self {
+            farthest: before.farthest,
+            ..self
+        }
+    }
+
     /// The row of the next station at `angle` (rad) and `y` (m): a new one once the nozzle has turned and wire has
     /// climbed or come back.
     pub(crate) fn next(self, pass: Pass, angle: f64, y: f64, climbed: bool, diameter: f64) -> Self {

@@ -76,11 +76,17 @@ impl Coil {
         let climbs_at_flange = !row.is_over_in(pass)
             && (is_certain || row.sense == pass.sense && has_no_room && !squeezed && leaves());
         let rises = squeezed && leaves();
-        let row = match climbs_at_flange {
+        let next = match climbs_at_flange {
             true => row.beside_flange(pass, angle, y),
             false => row.next(pass, angle, y, climbed, self.spec.diameter),
         };
-        (row, self.support(row.number, at), rises)
+        let support = self.support(next.number, at);
+        let sinks = next.number == row.number && support.layer < self.layer_of(row);
+        let next = match sinks {
+            true => next.no_farther_than(row),
+            false => next,
+        };
+        (next, support, rises)
     }
 
     /// Whether the turn before, of this row, has left a place beside a flange: wire that stands high there is the last turn of the row, which is

@@ -111,10 +111,11 @@ impl Winding {
     pub(super) fn pull(&self) -> Pull {
         let state = &self.sys.state;
         let feed = state.feed.unwrap_or_default();
+        let torque = state.torque_on_core + state.pressed;
         Pull {
             tension: self.wire_tension(),
-            torque: state.torque_on_core,
-            torque_total: state.torque_on_core - self.torque_of_inertia(),
+            torque,
+            torque_total: torque - self.torque_of_inertia(),
             speed: feed.rate,
             tensioner_speed: feed.paid_rate,
         }

@@ -51,6 +51,9 @@ pub struct State {
     pub(crate) turning: Option<f64>,
     /// the part of the torque that is there because forces and motion are a little out of balance, N m
     pub(crate) unbalanced: f64,
+    /// moment on the core, N m, over the last implicit step beside that of its forces: the momentum of the wire that the step formula does
+    /// not have, and impulses of touches, which hold the wire in steps too short for stiff contact to follow its load
+    pub(crate) pressed: f64,
     /// elapsed time, s
     pub time: f64,
     /// forces of the last evaluation
@@ -83,6 +86,7 @@ impl State {
             torque_on_core: 0.0,
             turning: None,
             unbalanced: 0.0,
+            pressed: 0.0,
             time: 0.0,
             load: Load::default(),
             roll,
@@ -111,6 +115,7 @@ impl State {
             torque_on_core,
             turning,
             unbalanced,
+            pressed,
             time,
             load,
             roll,
@@ -129,6 +134,7 @@ impl State {
         (self.deepest, self.depth) = (*deepest, *depth);
         self.torque_on_core = *torque_on_core;
         (self.turning, self.unbalanced) = (*turning, *unbalanced);
+        self.pressed = *pressed;
         self.time = *time;
         self.load.copy_from(load);
         self.roll.clone_from(roll);

@@ -397,3 +397,43 @@ fn wire_beyond_the_turn_beside_a_flange_lies_on_the_core() {
     let station = coil.stations().nth(360 + 200).expect("a second turn");
     assert!(station.bulge.abs() < 1e-3 * D, "{}", station.bulge);
 }
+
+/// Five turns, four in their grooves and two more, between flanges. Each turn crosses to its next place between 0.8 and 0.9 of a turn.
+/// In the first layer that leaves a hole beside the first flange, which the last but one turn of the second sinks into.
+fn sinks_beside_the_flange() -> Vec<SettledNode> {
+    let groove = libm::sqrt(1.0 - 0.4 * 0.4);
+    let wedge = groove + libm::sqrt(1.0 - 0.6 * 0.6);
+    let at = |turn: f64| match turn {
+        turn if turn < 5.0 => (turn, 0.0),
+        turn if turn < 9.0 => (8.6 - turn, groove),
+        turn if turn < 10.0 => (0.0, wedge),
+        turn => (turn - 9.0, 2.0 * groove),
+    };
+    let mut nodes = on_cylinder(10.9, 1.0, |angle| {
+        let (turn, within) = ((angle / TAU).floor(), (angle / TAU).fract());
+        let (y, height) = match within {
+            within if turn == 7.0 && (0.8..0.9).contains(&within) => (0.0, 0.0),
+            within if within < 0.8 => at(turn),
+            _ => at(turn + 1.0),
+        };
+        (D * y, D * height)
+    });
+    for node in &mut nodes {
+        let ways = [-0.5 * D, 5.5 * D].map(|face| face - node.position.y);
+        node.flange = Some(if ways[1] < -ways[0] { ways[1] } else { ways[0] });
+    }
+    nodes
+}
+
+/// The turn after wire in a hole had turned back by what the hole lies farther out. Its row was that of the layer to come, whose first
+/// turn then stood on its own row: a double turn, an overlap and a bulge.
+#[test]
+fn wire_that_comes_up_from_a_hole_has_not_turned() {
+    let mut coil = wound(spec(), &sinks_beside_the_flange());
+    coil.begin_pass(4.8 * TAU, -1.0);
+    coil.begin_pass(8.0 * TAU, 1.0);
+    let flags = coil.flags();
+    assert!(!flags.double_turn && !flags.overlap, "{:?}", coil.defects());
+    let layer = |turn: usize| coil.stations().nth(360 * turn + 180).unwrap().layer;
+    assert_eq!([7, 8, 9, 10].map(layer), [2, 2, 3, 3]);
+}

@@ -103,12 +103,15 @@ impl Implicit {
             sys.state.balance.nozzle -= force.dot(&sys.state.support[1].velocity) * h;
         }
         let carried = Carried::of(sys);
+        sys.state.pressed = 0.0;
         if let Some(now) = sys.state.turning {
             // what has turned the wire's mass is known better by its motion at both ends than by the mean of the moments there
             let given = (carried.momentum - momentum) * turned / h;
-            let over = 0.5 * (turning.unwrap_or(0.0) + now) * turned - given;
+            let mean = 0.5 * (turning.unwrap_or(0.0) + now);
+            let over = mean * turned - given;
             sys.state.balance.spindle -= over;
             sys.state.balance.numerical -= over;
+            sys.state.pressed = mean - (carried.momentum - momentum) / h;
         }
         // what Newton's law and the forces at both ends of the step do not agree on is the method's
         let mut work = 0.0;

@@ -115,6 +115,12 @@ impl Impacts {
         let rubbed = self.rubbed();
         let now = Carried::of(sys);
         let stopped = -carried.gained(sys, now) - rubbed;
+        if parts == 1 {
+            sys.state.pressed += (solved.carried.momentum - now.momentum) / step.h;
+        } else {
+            // (a blow has no moment that a step could tell)
+            sys.state.pressed = 0.0;
+        }
         let given = solved.numerical - sys.state.balance.numerical;
         let taken = apart([landed[0] + stopped, landed[1] + rubbed]);
         let [stopped, rubbed] = taken_back(sys, given, taken);
