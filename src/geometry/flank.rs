@@ -6,23 +6,49 @@ use crate::math::V3;
 /// Share of a facet's unit normal along y from which on it is a flange and no flank: steeper than 45 degrees.
 pub(crate) const FLANGE_FACE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
+/// How far beyond a face the next is looked for, as a share of the core's length: some thousand times the rounding of places.
+const HAIR: f64 = 1e-12;
+
 impl Surface {
     /// Signed distance of `p` (core frame, m) from the flank of the core, m: from the tangent plane of what lies nearest
-    /// at the same place along y.
+    /// at the same place along y. Over a flange that leans outwards it is the distance from the flank at its foot.
     ///
-    /// Wire beside a flange is as high over the core as wire far from it. Where there is only a flange at that place, as in
+    /// Wire beside a flange is as high over the core as wire far from it. Where there is only a flange, as in
     /// the edge of one, and beyond the ends of the core it is the distance to the nearest surface.
     pub fn height_over_flank(&self, p: V3) -> f64 {
-        let Some((nearest, triangle)) = self.nearest_at_level(p) else {
-            return self.nearest(p).distance;
-        };
-        let normal = self.mesh().normal(triangle);
-        if normal.y.abs() > FLANGE_FACE {
-            return self.nearest(p).distance;
+        self.over_flank(p)
+            .unwrap_or_else(|| self.nearest(p).distance)
+    }
+
+    /// The same; `None` where there is no flank.
+    fn over_flank(&self, p: V3) -> Option<f64> {
+        let mut place = p;
+        let mut inwards = 0.0;
+        loop {
+            let (nearest, triangle) = self.nearest_at_level(place)?;
+            let normal = self.mesh().normal(triangle);
+            if normal.y.abs() <= FLANGE_FACE {
+                // A conical flank leans: its distance is less than that in the plane of the section.
+                let lean = (1.0 - normal.y * normal.y).sqrt();
+                return Some(
+                    (nearest.distance_sq.sqrt() * lean).copysign(nearest.away.dot(&normal)),
+                );
+            }
+            if inwards * normal.y < 0.0 {
+                // between two flanges there is no flank
+                return None;
+            }
+            inwards = normal.y.signum();
+            place.y = self.beyond(triangle, inwards);
         }
-        // A conical flank leans: its distance is less than that in the plane of the section.
-        let lean = (1.0 - normal.y * normal.y).sqrt();
-        (nearest.distance_sq.sqrt() * lean).copysign(nearest.away.dot(&normal))
+    }
+
+    /// The place along y just beyond a triangle, m, towards +y or -y.
+    fn beyond(&self, triangle: u32, sense: f64) -> f64 {
+        let (low, high) = self.bounds();
+        let corners = self.mesh().vertices_of(triangle);
+        let farthest = corners.map(|corner| sense * corner.y);
+        sense * (farthest.into_iter().fold(f64::MIN, f64::max) + HAIR * (high.y - low.y))
     }
 }
 
@@ -97,6 +123,44 @@ mod tests {
         }
         let flange = core.nearest(V3::new(11e-3, 4.65e-3, 1e-5)).distance;
         assert!((flange - 0.35e-3).abs() < 1e-6, "the flange is nearer");
+    }
+
+    /// Wire on a flange that leans was no higher than wire on the core, and turns that it had climbed on lay beside it.
+    #[test]
+    fn wire_over_a_leaning_flange_is_as_high_over_the_core() {
+        // 8 to 9 to 11 mm: facets of 63 and 76 degrees
+        let wall = [
+            [-7.0, 0.0],
+            [-7.0, 11.0],
+            [-6.0, 11.0],
+            [-5.5, 9.0],
+            [-5.0, 8.0],
+            [5.0, 8.0],
+            [5.5, 9.0],
+            [6.0, 11.0],
+            [7.0, 11.0],
+            [7.0, 0.0],
+        ];
+        let core = revolved(&wall, 360);
+        for (y, rise) in [(5.1e-3, 0.5e-3), (-5.3e-3, 1.2e-3), (5.8e-3, 2.7e-3)] {
+            let p = V3::new(8e-3 + rise, y, 1e-5);
+            let height = core.height_over_flank(p);
+            assert!((height - rise).abs() < 2e-6, "{y} {rise}: {height}");
+        }
+        // in a notch between two steep faces there is no flank
+        let notch = [
+            [-5.0, 0.0],
+            [-5.0, 8.0],
+            [-1.0, 8.0],
+            [0.0, 5.0],
+            [1.0, 8.0],
+            [5.0, 8.0],
+            [5.0, 0.0],
+        ];
+        let core = revolved(&notch, 360);
+        let p = V3::new(7e-3, 0.2e-3, 1e-5);
+        let (height, nearest) = (core.height_over_flank(p), core.nearest(p).distance);
+        assert!((height - nearest).abs() < 1e-9, "{height} {nearest}");
     }
 
     #[test]

@@ -102,6 +102,11 @@ impl TriMesh {
         self.facets[triangle as usize].normal
     }
 
+    /// Corners of a triangle, m.
+    pub(super) fn vertices_of(&self, triangle: u32) -> [V3; 3] {
+        self.triangles[triangle as usize].map(|vertex| self.vertices[vertex as usize])
+    }
+
     /// Enclosed volume, m^3.
     pub fn volume(&self) -> f64 {
         signed_volume(&self.vertices, &self.triangles)
