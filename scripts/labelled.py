@@ -163,7 +163,7 @@ def in_doubt(scenes, results):
     steady = [scene for scene in scenes if all(label.kind != "runaway" for label in scene.labels)]
     (share, depth), (share_of_all, depth_of_all) = most(steady), most(scenes)
     return (f"The energy balance leaves at most {share:.2g} % of what spindle and feed did unexplained, and wire is up to {depth:.2g} diameters "
-            f"deep in what it touches; with wire that runs away it is {share_of_all:.2g} % and {depth_of_all:.2g} diameters")
+            f"deep in what it touches. With wire that runs away it is {share_of_all:.2g} % and {depth_of_all:.2g} diameters")
 
 
 def write_table(scenes, results, total):
