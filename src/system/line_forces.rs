@@ -124,6 +124,13 @@ impl System {
             .sum()
     }
 
+    /// Whether the spring of contact follows its load within a step of `h`, s: that is longer than wire on it takes for a radian of its swing.
+    pub(crate) fn contact_follows(&self, h: f64) -> bool {
+        let stiffness =
+            (self.model.contact.as_line()).map_or(f64::INFINITY, |line| line.law.stiffness);
+        h * h * stiffness > self.model.section.mass_per_length()
+    }
+
     /// Moment of momentum of the same nodes about the core's axis, N m s.
     pub(crate) fn momentum_about_core(&self) -> f64 {
         let rod = &self.state.rod;

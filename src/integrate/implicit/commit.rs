@@ -111,7 +111,9 @@ impl Implicit {
             let over = mean * turned - given;
             sys.state.balance.spindle -= over;
             sys.state.balance.numerical -= over;
-            sys.state.pressed = mean - (carried.momentum - momentum) / h;
+            if !sys.contact_follows(h) {
+                sys.state.pressed = mean - (carried.momentum - momentum) / h;
+            }
         }
         // what Newton's law and the forces at both ends of the step do not agree on is the method's
         let mut work = 0.0;

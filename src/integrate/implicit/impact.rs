@@ -115,11 +115,11 @@ impl Impacts {
         let rubbed = self.rubbed();
         let now = Carried::of(sys);
         let stopped = -carried.gained(sys, now) - rubbed;
-        if parts == 1 {
-            sys.state.pressed += (solved.carried.momentum - now.momentum) / step.h;
-        } else {
+        if parts > 1 {
             // (a blow has no moment that a step could tell)
             sys.state.pressed = 0.0;
+        } else if !sys.contact_follows(step.h) {
+            sys.state.pressed += (solved.carried.momentum - now.momentum) / step.h;
         }
         let given = solved.numerical - sys.state.balance.numerical;
         let taken = apart([landed[0] + stopped, landed[1] + rubbed]);
