@@ -73,6 +73,20 @@ pub struct Span {
 }
 
 impl FeedSpec {
+    /// The set force acts at the nozzle: no mass, no line, no friction.
+    #[cfg(any(test, feature = "lab"))]
+    pub const DIRECT: Self = Self {
+        mass: 0.0,
+        damping: 0.0,
+        line_stiffness: f64::INFINITY,
+        line_damping: 0.0,
+        exit_friction: 0.0,
+        exit_curvature: 0.0,
+        line_length: 0.0,
+        line_mass: 0.0,
+        pulley: None,
+    };
+
     /// The part of the line that has this share of its length.
     pub fn span(&self, share: f64) -> Span {
         Span {

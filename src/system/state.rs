@@ -51,8 +51,8 @@ pub struct State {
     pub(crate) turning: Option<f64>,
     /// the part of the torque that is there because forces and motion are a little out of balance, N m
     pub(crate) unbalanced: f64,
-    /// moment on the core, N m, over the last implicit step beside that of its forces, where it was too short for stiff contact to follow its
-    /// load: impulses of touches, which hold the wire there, and the momentum of the wire that the step formula does not have
+    /// moment on the core beside that of its forces over the last implicit step, N m; 0 unless that was too short for stiff contact to
+    /// follow its load. There impulses of touches hold the wire, and the step formula leaves momentum out.
     pub(crate) pressed: f64,
     /// elapsed time, s
     pub time: f64,

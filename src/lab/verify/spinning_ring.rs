@@ -240,17 +240,7 @@ impl<'a> Wound<'a> {
                 diameter: section.diameter,
             });
         }
-        let spec = FeedSpec {
-            mass: 0.0,
-            damping: 0.0,
-            line_stiffness: f64::INFINITY,
-            line_damping: 0.0,
-            exit_friction: 0.0,
-            exit_curvature: 0.0,
-            line_length: 0.0,
-            line_mass: 0.0,
-            pulley: None,
-        };
+        let spec = FeedSpec::DIRECT;
         sys.set_feed(spec, Feed::at_rest(&spec, pull));
         sys.state.set_tension = pull;
         let breath = breath(section, radius);

@@ -96,17 +96,7 @@ mod tests {
             rod.rest[1] /= 1.0 + 1e-3 + before;
             rod.rest[2] /= 1.0 + at_nozzle;
             let mut sys = System::new(Section::table1_elastic(), rod);
-            let spec = FeedSpec {
-                mass: 0.0,
-                damping: 0.0,
-                line_stiffness: f64::INFINITY,
-                line_damping: 0.0,
-                exit_friction: 0.0,
-                exit_curvature: 0.0,
-                line_length: 0.0,
-                line_mass: 0.0,
-                pulley: None,
-            };
+            let spec = FeedSpec::DIRECT;
             sys.set_feed(spec, Feed::at_rest(&spec, 0.0));
             sys.refresh();
             let pull = sys.state.load.tension[2];
