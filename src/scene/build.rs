@@ -5,7 +5,7 @@ use super::error::Warning;
 use super::extent::{Extent, between_turns};
 use super::features::Decisions;
 use super::impossible::si;
-use super::material::section;
+use super::material::{Wire, section};
 use super::problems::Problems;
 use super::spacing::{coarsest_on, halved, spacing_for};
 use super::{
@@ -61,12 +61,24 @@ impl SceneSettings {
     fn build_in_range(&self, follows: NozzleFollows) -> Result<(Scene, Vec<Warning>), SceneError> {
         let mut problems = Problems::default();
         let wire = problems.note(section(self));
+        let core = self.core(&mut problems);
+        let core = problems.note(core);
+        let placed = core.as_ref().and_then(|(_, extent)| self.placed(extent));
+        let settings = placed.as_ref().unwrap_or(self);
+        settings.build_on(core, wire, (problems, follows))
+    }
+
+    /// The scene with this core and wire, where there are any.
+    fn build_on(
+        &self,
+        core: Option<(Core, Extent)>,
+        wire: Option<Wire>,
+        (mut problems, follows): (Problems, NozzleFollows),
+    ) -> Result<(Scene, Vec<Warning>), SceneError> {
         let (laws, resistivity) = wire
             .as_ref()
             .map_or((None, 0.0), |wire| (wire.laws, wire.resistivity));
         let wire = wire.map(|wire| wire.section);
-        let core = self.core(&mut problems);
-        let core = problems.note(core);
         self.check_counts(&mut problems);
         let mut way = Problems::default();
         let law = core.as_ref().and_then(|(_, extent)| {

@@ -15,6 +15,7 @@ mod error;
 mod extent;
 mod features;
 mod file;
+mod first_turn;
 mod follow_on;
 mod impossible;
 mod key;

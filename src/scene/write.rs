@@ -17,9 +17,12 @@ impl SceneSettings {
         there.to_toml()
     }
 
-    /// The text of a scene file that loads to the same settings; every leaf, SI keys only. Files are named as they are.
+    /// The text of a scene file that loads to the same settings; SI keys only, and every leaf but those that follow from others.
+    /// Files are named as they are.
     pub fn to_toml(&self) -> String {
-        let leaves = table().iter().filter(|v| v.name != "scene.file");
+        let leaves = table()
+            .iter()
+            .filter(|v| v.name != "scene.file" && !self.follows_from_layers(v.name));
         // Top-level keys must precede the first section.
         let (top, sections): (Vec<&Variable>, Vec<&Variable>) =
             leaves.partition(|v| !v.name.contains('.'));

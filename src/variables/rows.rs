@@ -372,7 +372,7 @@ table! {
     fixed(1115, "core.window_taper", core.window_taper, "rad", "deg", -1.4, 1.4, 0.1, "angle of the limit line to the axis: it is window_height high at y = 0 and rises towards +y");
 
     fixed(1200, "nozzle.distance", nozzle.distance, "m", "mm", 1e-3, 10.0, 0.1, "nozzle exit from the core axis, on +x");
-    fixed(1201, "nozzle.y_start", nozzle.y_start, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis at the start");
+    fixed(1201, "nozzle.y_start", nozzle.y_start, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis at the start; not set, with layers planned between flanges: where the first turn lies beside its flange");
     fixed(1202, "nozzle.exit_friction", nozzle.exit_friction, "1", "", 0.0, 2.0, 0.1, "friction at the exit, share of tension per rad of deflection");
     switch(1203, "nozzle.position_at_start", nozzle.position_at_start, "what a place of the nozzle means that comes without its rate; false: where the nozzle is at the end of the step; true: where it is at the start, from where it goes on as between the last two places");
     fixed(1204, "nozzle.outer_diameter", nozzle.outer_diameter, "m", "mm", 0.0, 1.0, 1e-3, "outer diameter of the nozzle's body, a round rod from the exit outwards along +x; 0: the nozzle is a point");
@@ -393,7 +393,7 @@ table! {
     fixed(1309, "tensioner.pulley_friction", tensioner.pulley_friction, "N", "", 0.0, 1e4, 1.0, "guide pulley: friction of its bearing, as a force on the wire");
     fixed(1310, "tensioner.pulley_place", tensioner.pulley_place, "1", "", 0.01, 0.99, 1.0, "guide pulley: share of the line between nozzle and pulley");
 
-    fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face");
+    fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face; not set, with layers planned between flanges: nozzle.y_start");
 
     native(1500, "spindle.speed", spindle.speed, "rad/s", "rpm", 0.1, 2000.0, 100.0, "final speed of the native programme");
     native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "revolutions over which the speed rises, at constant acceleration");

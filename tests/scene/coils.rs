@@ -444,7 +444,7 @@ fn keys_at_their_default_are_not_told() {
 #[test]
 fn a_way_past_a_flange_is_told_in_round_numbers() {
     let text = "[core]\nshape = 'cylinder'\n[core.flange]\ninner_distance_mm = 4.3\n[wire]\ndiameter_mm = 0.5\n\
-                [traverse]\nmode = 'orthocyclic'\n[winding]\nturns_per_layer = 8\nlayers = 3\n";
+                [nozzle]\ny_start = 0\n[traverse]\nmode = 'orthocyclic'\n[winding]\nturns_per_layer = 8\nlayers = 3\n";
     let said = refused(text);
     assert_says(&said, &["nozzle.y_start", "goes from 0 to 0.0038 m"]);
 }

@@ -98,7 +98,7 @@ fn a_pitch_of_0_leaves_one_start_and_its_refusal_says_why() {
         )
     };
     assert_says(
-        &refused(&text("")),
+        &refused(&text("[nozzle]\ny_start = 0\n")),
         &[
             "nozzle.y_start = 0 m",
             "allowed: -0.0019 m, since winding.pitch = 0 spreads the turns over the whole window; \
@@ -106,7 +106,7 @@ fn a_pitch_of_0_leaves_one_start_and_its_refusal_says_why() {
         ],
     );
     assert_says(
-        &refused(&text("pitch_mm = 0.5\n")),
+        &refused(&text("pitch_mm = 0.5\n[nozzle]\ny_start = 0\n")),
         &["allowed: -0.0019 to -0.00185 m"],
     );
     let place = "pitch_mm = 0.5\n[nozzle]\ny_start_mm = -1.87\n[start]\nclamp_y_mm = -1.87\n";
