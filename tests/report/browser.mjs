@@ -1,6 +1,6 @@
 // Opens the report of a run in headless Chromium and tries what a reader does.
 //
-//     node browser.mjs --modules DIR --page FILE [--shots DIR] [--frames] [--runs N]
+//     node browser.mjs --modules DIR --page FILE [--shots DIR] [--frames] [--layers "2, 3"] [--runs N]
 //     node browser.mjs --modules DIR --page FILE --changed       the same page with other numbers in it
 //     node browser.mjs --modules DIR --page FILE --pair alike    two runs of one wire side by side; unlike: of two wires
 //     node browser.mjs --modules DIR --page FILE --no-webgl      a browser without graphics
@@ -15,7 +15,7 @@ import { parseArgs } from "node:util";
 const { values: given } = parseArgs({
   options: {
     modules: { type: "string" }, page: { type: "string" }, shots: { type: "string" }, chromium: { type: "string" },
-    frames: { type: "boolean" }, changed: { type: "boolean" }, pair: { type: "string" }, "no-webgl": { type: "boolean" }, runs: { type: "string", default: "1" },
+    frames: { type: "boolean" }, layers: { type: "string" }, changed: { type: "boolean" }, pair: { type: "string" }, "no-webgl": { type: "boolean" }, runs: { type: "string", default: "1" },
   },
 });
 const { chromium } = createRequire(join(resolve(given.modules), "x.js"))("playwright-core");
@@ -296,6 +296,8 @@ async function look(scheme) {
   check(`${scheme}: no section or curve is blank`, (await compare(page, cut, cut)).colours > 3);
   const curves = await page.locator(".chart canvas").count();
   check(`${scheme}: curves are drawn, or missed`, curves >= 2 || (await page.getByText("history.csv is missing").count()) > 0, `${curves}`);
+  const begun = await page.getByText(/the nozzle begins layer/).allInnerTexts();
+  check(`${scheme}: layers are marked where there are some`, begun.length === (given.layers ? 1 : 0) && begun.every((told) => told.includes(`begins layer ${given.layers}.`)), begun.join(" | "));
   check(`${scheme}: the console is quiet`, complaints.length === 0, complaints.join(" | "));
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   check(`${scheme}: nothing sticks out sideways`, wide <= 0, `${wide} px`);

@@ -36,12 +36,15 @@ fi
     --frames 6 --quiet --out "$out/gap"
 "$command" run fig8 --set spindle.speed=100 --set spindle.turns=1.6 --quiet --out "$out/aligned"
 "$command" run fig8 --set wire.material=copper --set wire.diameter_mm=0.5 --set spindle.speed=100 --set spindle.turns=1.6 --quiet --out "$out/thin"
+"$command" run tooth --set winding.layers=2 --set winding.turns_per_layer=6 --set core.flange.inner_distance_mm=5.3 --set core.flange.height_mm=2 \
+    --set nozzle.y_start_mm=-2.25 --set start.clamp_y_mm=-2.25 --quiet --out "$out/layers"
 "$command" report "$out/gap" "$out/aligned"
 "$command" report "$out/gap" "$out/thin" --out "$out/unlike.html"
 look --page "$out/gap/report.html" --frames ${shots:+--shots "$shots/gap"}
 look --page "$out/gap/report.html" --changed ${shots:+--shots "$shots/changed"}
 look --page "$out/gap/report.html" --no-webgl ${shots:+--shots "$shots/no-webgl"}
 look --page "$out/aligned/report.html" ${shots:+--shots "$shots/aligned"}
+look --page "$out/layers/report.html" --layers 2 ${shots:+--shots "$shots/layers"}
 look --page "$out/gap/compare.html" --runs 2 ${shots:+--shots "$shots/compare"}
 look --page "$out/gap/compare.html" --pair alike ${shots:+--shots "$shots/pair"}
 look --page "$out/unlike.html" --pair unlike ${shots:+--shots "$shots/pair"}

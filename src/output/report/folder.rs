@@ -284,7 +284,7 @@ fn table<const N: usize>(
     Ok(Some(columns))
 }
 
-/// Curves over time, thinned in pieces: mean, least and largest tension, and the torque that is largest either way.
+/// Curves over time, thinned in pieces: mean, least and largest tension, the torque that is largest either way, and the layer.
 fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
     let names = [
         "time",
@@ -294,6 +294,7 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
         "wire_tension_min",
         "wire_tension_max",
         "spindle_torque",
+        "layer",
     ];
     let Some(mut columns) = table(path, names)? else {
         return Ok(None);
@@ -322,6 +323,7 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
         ("tension_min", thin(4, least)),
         ("tension_max", thin(5, most)),
         ("torque", thin(6, farthest)),
+        ("layer", thin(7, most)),
     ])))
 }
 
@@ -350,8 +352,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let curves = |start: f64| {
             let path = folder.path().join("history.csv");
-            let head = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque";
-            let row = |t: f64| format!("{},{t},1,15,14,16,0.1\n", start + t);
+            let head = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque,layer";
+            let row = |t: f64| format!("{},{t},1,15,14,16,0.1,1\n", start + t);
             std::fs::write(&path, format!("{head}\n{}{}", row(0.0), row(0.5))).unwrap();
             serde_json::to_string(&history(&path).unwrap()).unwrap()
         };
@@ -363,7 +365,7 @@ mod tests {
     fn a_table_whose_last_line_is_torn_is_not_whole() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
-        let text = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque\n0,0,1,15,14,16,0.125\n";
+        let text = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque,layer\n0,0,1,15,14,16,0.125,12\n";
         for (end, whole) in [(0, true), (1, false), (3, false)] {
             std::fs::write(&path, &text[..text.len() - end]).unwrap();
             assert_eq!(history(&path).is_ok(), whole, "{end} bytes less");

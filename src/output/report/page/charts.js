@@ -20,7 +20,10 @@ function charts(run) {
   const happened = [...HAPPENS].filter((kind) => marks.some(([, marked]) => marked === kind));
   const lying = marks.some(([, kind]) => !HAPPENS.has(kind)) ? "defects, where they lie on the wire" : null;
   const words = [lying, happened.length ? `${happened.join(", ")}, at the instant of it` : null].filter(Boolean);
-  const note = words.length ? `Dashed: ${words.join("; ")}.` : null;
+  const layers = begun(history.layer, x);
+  const numbers = layers.map(([, number]) => number).join(", ");
+  const begin = layers.length ? `Thin lines: the nozzle begins layer ${numbers}.` : null;
+  const note = [words.length ? `Dashed: ${words.join("; ")}.` : null, begin].filter(Boolean).join(" ") || null;
   const torque = plain(history.torque, 1e3);
   // Runs of one wire side by side are compared by eye, which takes one scale.
   const over = (scale, ...names) => {
@@ -41,13 +44,25 @@ function charts(run) {
       { label: "mean", values: plain(history.tension), width: 1.4 },
       { label: "least", values: plain(history.tension_min), band: true },
       { label: "largest", values: plain(history.tension_max), band: true },
-    ], marks, go, told(note, alone), over(1, "tension", "tension_min", "tension_max")),
-    chart("Torque of the wire on the core", axis, x, "mN.m", [{ label: "torque", values: torque, width: 1.4 }], marks, go,
+    ], [marks, layers], go, told(note, alone), over(1, "tension", "tension_min", "tension_max")),
+    chart("Torque of the wire on the core", axis, x, "mN.m", [{ label: "torque", values: torque, width: 1.4 }], [marks, layers], go,
       told("Negative where the wire resists the spindle.", alone), over(1e3, "torque")),
   ];
 }
 
-function chart(title, axis, x, unit, curves, marks, go, note, range) {
+/** Where each layer but the first begins, with its number. */
+function begun(layer, x) {
+  const found = [];
+  let highest = layer[0];
+  layer.forEach((number, k) => {
+    if (number <= highest) return;
+    highest = number;
+    found.push([x[k], number]);
+  });
+  return found;
+}
+
+function chart(title, axis, x, unit, curves, [marks, layers], go, note, range) {
   const box = el("div", { class: "plot" });
   const section = el("section", { class: "card chart" }, el("div", { class: "bar" }, el("h2", {}, title)), box,
     note ? el("p", { class: "note" }, note) : null);
@@ -68,7 +83,7 @@ function chart(title, axis, x, unit, curves, marks, go, note, range) {
     scales: { x: { time: false }, ...(range ? { y: { range } } : {}) },
     series: [{ label: axis, value: (u, value) => (value == null ? "–" : value.toFixed(3)) }, ...series],
     bands: curves.length === 3 ? [{ series: [3, 2], fill: () => css("--band") }] : [],
-    hooks: { draw: [(u) => drawMarks(u, marks)] },
+    hooks: { draw: [(u) => drawLayers(u, layers), (u) => drawMarks(u, marks)] },
   };
   later(() => {
     options.width = box.clientWidth || options.width;
@@ -81,6 +96,27 @@ function chart(title, axis, x, unit, curves, marks, go, note, range) {
     onTheme(() => plot.redraw());
   });
   return section;
+}
+
+function drawLayers(u, layers) {
+  const pen = u.ctx;
+  const { left, top, width, height } = u.bbox;
+  pen.save();
+  pen.lineWidth = devicePixelRatio;
+  pen.font = `${11 * devicePixelRatio}px system-ui`;
+  pen.textAlign = "left";
+  pen.textBaseline = "top";
+  pen.strokeStyle = pen.fillStyle = css("--soft");
+  for (const [at, number] of layers) {
+    const x = u.valToPos(at, "x", true);
+    if (x < left || x > left + width) continue;
+    pen.beginPath();
+    pen.moveTo(x, top);
+    pen.lineTo(x, top + height);
+    pen.stroke();
+    pen.fillText(`layer ${number}`, x + 4 * devicePixelRatio, top);
+  }
+  pen.restore();
 }
 
 function drawMarks(u, marks) {
