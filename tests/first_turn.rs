@@ -91,6 +91,26 @@ fn a_place_that_is_given_holds() {
     );
 }
 
+/// A table says where the nozzle begins. Wire clamped in the middle crossed the place of half the turns on its way there.
+#[test]
+fn a_table_begins_where_the_wire_is_clamped() {
+    let folder = tempfile::tempdir().expect("a folder");
+    std::fs::write(
+        folder.path().join("way.csv"),
+        "turns,y_mm\n0,-2.65\n7,2.25\n",
+    )
+    .expect("written");
+    let text = format!("{FLANGES}[traverse]\nmode = 'table'\nfile = 'way.csv'\n");
+    let mut settings =
+        SceneSettings::from_toml_str(&text, "own.toml", folder.path()).expect("read");
+    let clamp = |settings: &SceneSettings| 1e3 * settings.build().expect("a coil").start.clamp_y;
+    assert!((clamp(&settings) + 2.65).abs() < 1e-9);
+    settings
+        .set_text("start.clamp_y_mm", "-1")
+        .expect("a setting");
+    assert!((clamp(&settings) + 1.0).abs() < 1e-9);
+}
+
 /// What a run leaves as its scene winds the same coil again.
 #[test]
 fn a_scene_without_places_is_written_without_them() {

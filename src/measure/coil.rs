@@ -420,7 +420,7 @@ impl Coil {
             plumb: Plumb::at(position, segment.way(), segment.rise(), self.spec.direction),
         };
         let (row, support, rises) = self.row_and_support(pass, &at);
-        let bulge = height - support.level;
+        let (bulge, stands_off) = (height - support.held, height - support.level);
         // A drawn loop lies close on wire that itself stands off the core as it would alone.
         let at_rest = |profile: &Profile| match support.is_wire {
             true => 0.0,
@@ -439,7 +439,7 @@ impl Coil {
         // The nozzle turns here or the flange is near, and the wire leaves its row.
         let lifts = (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
             && self.may_climb(layer, angle)
-            && bulge > self.spec.limits.overlap_height * self.spec.diameter;
+            && stands_off > self.spec.limits.overlap_height * self.spec.diameter;
         let steps_up = lifts || self.passes.ends_within(angle, STEP_UP);
         let mut station = Station {
             angle,
@@ -464,7 +464,7 @@ impl Coil {
             out_of_groove: support.stands_on_wire && self.has_grooves_below(number) && !crosses,
             measured: self.is_free_of_clamp(angle) && !steps_up,
         };
-        station.overlap_depth = self.overlap_depth(&station);
+        station.overlap_depth = self.overlap_depth(&station, stands_off);
         let support = match lifts {
             true => support.without_own_row(),
             false => support,

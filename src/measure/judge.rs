@@ -69,14 +69,13 @@ impl Coil {
     }
 
     /// Diameter minus axial distance where the wire overlaps its neighbour, else 0, m; a diameter where it has changed
-    /// places with it.
-    pub(crate) fn overlap_depth(&self, station: &Station) -> f64 {
+    /// places with it. The wire stands off by so much, m, from what it was laid over.
+    pub(crate) fn overlap_depth(&self, station: &Station, stands_off: f64) -> f64 {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let Some(Neighbour { axial, .. }) = station.neighbour else {
             return 0.0;
         };
-        let stands_on =
-            axial < limits.overlap_axial * d && station.bulge > limits.overlap_height * d;
+        let stands_on = axial < limits.overlap_axial * d && stands_off > limits.overlap_height * d;
         if stands_on || axial < 0.0 {
             (d - axial).min(d)
         } else {

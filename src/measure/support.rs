@@ -42,6 +42,8 @@ pub(crate) struct Support {
     pub(crate) row: Option<u32>,
     /// rise over wire of its own row that it has climbed on, m
     pub(crate) own_row: Option<f64>,
+    /// the same as `level` where wire of its own row and a flange hold it between them as well, m
+    pub(crate) held: f64,
     /// the same as `level` where wire of its own row carries it too, from below or wedged beside a flange, m
     pub(crate) highest: f64,
 }
@@ -136,7 +138,7 @@ impl Coil {
             let farthest = y + way - (0.5 * d).copysign(way);
             let room = (farthest - lower.y) * way.signum() / d;
             let between = (y - lower.y) * way > 0.0;
-            let holds = between && height > lower.height && (BELOW..1.0).contains(&room);
+            let holds = between && height > lower.height && (CLIMBED..1.0).contains(&room);
             holds.then(|| lower.height + d * (1.0 - room * room).sqrt())
         };
         let mut support = Support {
@@ -146,6 +148,7 @@ impl Coil {
             layer: 1,
             row: None,
             own_row: None,
+            held: 0.0,
             highest: 0.0,
         };
         // layers of the highest wire of its own row below it, towards -y and +y
@@ -181,23 +184,22 @@ impl Coil {
                     let side = &mut groove[usize::from(lower.y > y)];
                     *side = station.layer.max(*side);
                 }
+                let on = (aside <= BELOW).then(|| lower.height + d * (1.0 - aside * aside).sqrt());
+                let carried = on.filter(|_| carries);
                 // what a flange and another wire hold between them cannot drop, whichever row that is of
-                let (level, carries) = match aside <= BELOW {
-                    true => (
-                        Some(lower.height + d * (1.0 - aside * aside).sqrt()),
-                        carries,
-                    ),
-                    false => (wedged(&lower), true),
-                };
-                let Some(level) = level else {
-                    continue;
-                };
-                if rise > 0.0 {
+                let held = carried.or_else(|| wedged(&lower));
+                if let Some(level) = on.or(held)
+                    && rise > 0.0
+                {
                     support.highest = support.highest.max(level);
                     // what leans on wire lies in the layer of that wire at least
                     support.layer = support.layer.max(station.layer);
                 }
-                if carries && level > support.level {
+                support.held = support.held.max(held.unwrap_or(0.0));
+                // what stands on its own row has left its place, also where a flange holds it there
+                if let Some(level) = carried.or(held.filter(|_| on.is_none()))
+                    && level > support.level
+                {
                     support.level = level;
                     support.is_wire = true;
                     support.stands_on_wire = aside < ON_WIRE;

@@ -120,6 +120,11 @@ impl SceneSettings {
         matches!(self.traverse.mode.as_str(), "orthocyclic" | "helical")
     }
 
+    /// Whether the nozzle's way is a table.
+    pub(super) fn winds_table(&self) -> bool {
+        self.traverse.mode == "table"
+    }
+
     /// The counts of turns and layers that are no whole numbers, where layers are planned.
     fn part_counts(&self) -> Vec<&'static str> {
         let w = &self.winding;
@@ -213,7 +218,7 @@ impl SceneSettings {
         let w = &self.winding;
         let distance = |[low, high]: [f64; 2]| high - low;
         // A table says itself where the nozzle goes; the plan then only says where wire is meant to climb.
-        let by_table = self.traverse.mode == "table" && self.core.flange.inner_distance == 0.0;
+        let by_table = self.winds_table() && self.core.flange.inner_distance == 0.0;
         let (width, widest) = match extent.window.filter(|_| !by_table) {
             Some(room) => (Some(distance(room.faces)), Some(distance(room.widest))),
             None => (None, None),
@@ -498,7 +503,7 @@ impl SceneSettings {
         let places = [ends[0] + (start - least), ends[1] - (largest - start)].map(si);
         let spread = |pitch: f64| self.winding.pitch == 0.0 && pitch > d * (1.0 + ROUNDING);
         let allowed = match room >= 0.0 {
-            _ if self.traverse.mode == "table" => {
+            _ if self.winds_table() => {
                 format!("positions from {} to {} m", si(ends[0]), si(ends[1]))
             }
             // a layer that fills the window leaves one place
@@ -523,7 +528,7 @@ impl SceneSettings {
     }
 
     /// The law in the file of a table.
-    fn law_of_table(&self, problems: &mut Problems) -> Option<NozzleLaw> {
+    pub(super) fn law_of_table(&self, problems: &mut Problems) -> Option<NozzleLaw> {
         let form = Form {
             key: "traverse.file",
             file: &self.traverse.file,

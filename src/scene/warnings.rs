@@ -22,7 +22,7 @@ const PER_TURN: &str = "traverse.per_turn";
 impl SceneSettings {
     /// Whether it is known between which turns wire climbs to the next layer.
     pub(super) fn plans_layers(&self) -> bool {
-        self.winds_layers() || self.traverse.mode == "table" && self.winding.turns_per_layer > 0.0
+        self.winds_layers() || self.winds_table() && self.winding.turns_per_layer > 0.0
     }
 
     /// A nozzle so far past a flange that wire from the last place beside it lies against the rim, and the key that sends it there.
@@ -161,7 +161,7 @@ impl SceneSettings {
             let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
             warn(PER_TURN, message);
         }
-        let table = self.traverse.mode == "table";
+        let table = self.winds_table();
         if self.winds_layers() || table {
             let layers = match self.plans_layers() {
                 true => self.winding.layers,

@@ -22,7 +22,7 @@ impl SceneSettings {
     pub fn to_toml(&self) -> String {
         let leaves = table()
             .iter()
-            .filter(|v| v.name != "scene.file" && !self.follows_from_layers(v.name));
+            .filter(|v| v.name != "scene.file" && !self.follows_from_way(v.name));
         // Top-level keys must precede the first section.
         let (top, sections): (Vec<&Variable>, Vec<&Variable>) =
             leaves.partition(|v| !v.name.contains('.'));

@@ -393,7 +393,7 @@ table! {
     fixed(1309, "tensioner.pulley_friction", tensioner.pulley_friction, "N", "", 0.0, 1e4, 1.0, "guide pulley: friction of its bearing, as a force on the wire");
     fixed(1310, "tensioner.pulley_place", tensioner.pulley_place, "1", "", 0.01, 0.99, 1.0, "guide pulley: share of the line between nozzle and pulley");
 
-    fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face; not set, with layers planned between flanges: nozzle.y_start");
+    fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face; not set, with layers planned or a table: where the nozzle begins");
 
     native(1500, "spindle.speed", spindle.speed, "rad/s", "rpm", 0.1, 2000.0, 100.0, "final speed of the native programme");
     native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "revolutions over which the speed rises, at constant acceleration");

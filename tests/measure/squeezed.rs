@@ -178,6 +178,23 @@ fn a_last_turn_of_the_last_layer_that_rides_up_is_an_overlap() {
     assert!(told.contains(&(DefectKind::Overlap, 5)), "{told:?}");
 }
 
+/// It rode up, which is an overlap, and was told to bulge too where it touched flange and turn before all the while.
+#[test]
+fn a_last_turn_that_rides_up_between_turn_and_flange_does_not_bulge() {
+    for lean in [0.1, 0.2, 0.3, 0.4] {
+        let spec = CoilSpec {
+            full: Some(TURNS * TAU),
+            ..spec()
+        };
+        let coil = squeezed_in(spec, lean, [0.3, 0.5], TURNS - 0.05);
+        // (beyond the steps to and from its leaning place)
+        let leans = |s: &&coilwind::measure::Station| (4.32 * TAU..4.48 * TAU).contains(&s.angle);
+        let bulge = |s: &coilwind::measure::Station| s.bulge.abs();
+        let worst = coil.stations().filter(leans).map(bulge).fold(0.0, f64::max);
+        assert!(worst < 1e-3 * D, "{lean}: {worst}");
+    }
+}
+
 /// It lay on nothing, and so in the first layer, which then was as high as the second.
 #[test]
 fn wire_that_leans_on_a_turn_lies_in_its_layer() {
