@@ -15,7 +15,7 @@ const SAME: f64 = 0.05;
 /// box of that section (a tooth that tapers by 0.15).
 const STEP: f64 = 0.5;
 
-/// Most intervals between levels. A fillet is so steep that it would ask for more.
+/// Most intervals between levels.
 const MOST: usize = 16;
 
 /// Sections that are looked at for how the core changes.
@@ -52,23 +52,46 @@ fn levels(surface: &Surface, diameter: f64) -> Option<Vec<f64>> {
         .map(|k| Some(reaches(&surface.mesh().section(place(k, LOOKS))?)))
         .collect();
     let looks = looks?;
-    let (same, step) = (SAME * diameter, STEP * diameter);
+    let same = SAME * diameter;
     let changes = looks.iter().any(|look| differs(look, &looks[0], same));
     let has_grooves = (0..STATIONS_PER_TURN)
         .any(|station| turning_points(looks.iter().map(|look| look[station]), same) > TURNS);
     if !changes || has_grooves {
         return None;
     }
-    let mut count = 2;
-    while count < MOST {
-        let apart = LOOKS / count;
-        let mut pairs = looks.iter().zip(looks.iter().skip(apart)).step_by(apart);
-        if !pairs.any(|(a, b)| differs(a, b, step)) {
+    let chosen = chosen(&looks, (high - low) / LOOKS as f64, STEP * diameter)?;
+    Some(chosen.into_iter().map(|k| place(k, LOOKS)).collect())
+}
+
+/// Which of these looks, so far apart along y, are levels: neighbouring ones differ by less than `step`, m, where that takes no more than
+/// [`MOST`] intervals.
+///
+/// No wire rests on a flank that rises by more than 45 degrees, such as that of a shoe. No level lies on one, or right beside it.
+fn chosen(looks: &[Vec<f64>], apart: f64, step: f64) -> Option<Vec<usize>> {
+    let rises = |k: usize| differs(&looks[k], &looks[k + 1], apart);
+    let last = looks.len() - 1;
+    let on_flank = |k: usize| k > 0 && rises(k - 1) || k < last && rises(k);
+    let open: Vec<usize> = (0..=last).filter(|&k| !on_flank(k)).collect();
+    let mut levels = vec![*open.first()?, *open.last()?];
+    levels.dedup();
+    while levels.len() <= MOST {
+        let splits = levels.windows(2).filter_map(|pair| {
+            let within = open.iter().filter(|&&k| pair[0] < k && k < pair[1]);
+            let from_end = |&k: &usize| farthest(&looks[k], &looks[pair[0]]);
+            let apart = within
+                .clone()
+                .chain([&pair[1]])
+                .map(from_end)
+                .fold(0.0, f64::max);
+            let middle = |&&k: &&usize| (2 * k).abs_diff(pair[0] + pair[1]);
+            Some((apart, *within.min_by_key(middle)?)).filter(|_| apart > step)
+        });
+        let Some((_, split)) = splits.max_by(|a, b| a.0.total_cmp(&b.0)) else {
             break;
-        }
-        count *= 2;
+        };
+        levels.insert(levels.partition_point(|&k| k < split), split);
     }
-    Some((0..=count).map(|k| place(k, count)).collect())
+    Some(levels)
 }
 
 /// Where along y the middle of the wire may lie on a core, m: between its flanges, or its ends.
@@ -87,7 +110,13 @@ fn reaches(section: &Hull) -> Vec<f64> {
 }
 
 fn differs(a: &[f64], b: &[f64], by: f64) -> bool {
-    a.iter().zip(b).any(|(a, b)| (a - b).abs() > by)
+    farthest(a, b) > by
+}
+
+/// The largest difference of two sections in one direction, m.
+fn farthest(a: &[f64], b: &[f64]) -> f64 {
+    let apart = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+    apart.fold(0.0, f64::max)
 }
 
 /// How often values change from rising to falling and back, ups and downs of less than `least` left out.
@@ -210,6 +239,27 @@ mod tests {
         assert_eq!(count(&barrel), Some(5));
         let grooves = |y: f64| 0.1e-3 * libm::cos(y / 0.8e-3);
         assert_eq!(count(&grooves), None, "grooves");
+    }
+
+    /// Levels on the flank of a shoe gave heights of four diameters, and wire beside the shoe was judged by them.
+    #[test]
+    fn a_shoe_does_not_change_how_high_wire_stands_beside_it() {
+        let shoe = |y: f64| 3e-3 * ((y - 6.4e-3) / 0.6e-3).clamp(0.0, 1.0);
+        let (scene, surface) = on_a_mesh(shoe, 0.0);
+        let profile = quasi_static::profile(&scene, &surface, TENSION).expect("at rest");
+        let [exact, on_shoe] = [0.0, 3e-3].map(|wider| {
+            let scene = on_a_box(wider);
+            let surface = Arc::new(core_surface(&scene.core).expect("a core"));
+            quasi_static::profile(&scene, &surface, TENSION).expect("at rest")
+        });
+        let same = SAME * scene.wire.diameter;
+        for k in 0..STATIONS_PER_TURN {
+            let angle = k as f64 * STATION_STEP;
+            let apart = (profile.at(angle, 6.0e-3) - exact.at(angle, 0.0)).abs();
+            assert!(apart < same, "station {k}: {apart} m");
+        }
+        let most = exact.highest().max(on_shoe.highest()) + same;
+        assert!(profile.highest() < most, "{} m", profile.highest());
     }
 
     /// Wire on it is a whole turn, which has no mirror planes.
