@@ -23,6 +23,9 @@ const ROUND: u32 = 8;
 /// What facets and chords may add to how much nearer such a face is, as a share.
 const SAME_FACE: f64 = 0.05;
 
+/// Part of a normal along y below which a face is taken to be radial, as a rim that is rounded by an STL file's numbers.
+const RADIAL: f64 = 1e-3;
+
 /// Chords to a right angle of the way round a corner.
 const CHORDS: usize = 8;
 
@@ -80,16 +83,9 @@ impl TriMesh {
 
     fn room_round(&self, y: f64, least: f64) -> Option<Room> {
         let section = self.section(y)?;
-        let sides = [self.flange_faces(y, -1.0), self.flange_faces(y, 1.0)];
-        let met = |out: f64| -> Option<[Vec<Option<f64>>; 2]> {
-            let ring = evenly(&section.outline(out, CHORDS));
-            let [down, up] = sides.each_ref().map(|faces| -> Option<Vec<_>> {
-                let far: Vec<_> = ring.iter().map(|&p| first(faces, p)).collect();
-                let open = far.iter().filter(|far| far.is_none()).count();
-                (open as f64 <= OPEN * ring.len() as f64).then_some(far)
-            });
-            Some([down?, up?])
-        };
+        let faces_from = |steepness| [-1.0, 1.0].map(|side| self.faces_back(y, side, steepness));
+        let flange_faces = faces_from(FLANGE_FACE);
+        let met = |out| met_by(&flange_faces, &evenly(&section.outline(out, CHORDS)));
         let flanges = met(least)?;
         // a round wire of that diameter on the core meets a slanted face at the side, and one in a fillet under its middle
         let (mut reach, radius) = (flanges.clone(), 0.5 * least);
@@ -113,10 +109,12 @@ impl TriMesh {
             }
         }
         let [down, up] = reach.map(|reach| ends(reach.into_iter().flatten().collect(), least));
+        // the rim of a flange may be rounded, and is not steep up to its top
+        let all_faces = faces_from(RADIAL);
         let (mut height, mut too_high) = (least, self.radius_about_y());
         for _ in 0..HALVINGS {
             let middle = 0.5 * (height + too_high);
-            match met(middle) {
+            match met_by(&all_faces, &evenly(&section.outline(middle, CHORDS))) {
                 Some(_) => height = middle,
                 None => too_high = middle,
             }
@@ -136,7 +134,7 @@ impl TriMesh {
     pub(crate) fn in_the_way(&self, y: f64, least: f64) -> Option<[Vec<f64>; 2]> {
         let ring = evenly(&self.section(y)?.outline(0.5 * least, CHORDS));
         Some([-1.0, 1.0].map(|side| {
-            let faces = self.flange_faces(y, side);
+            let faces = self.faces_back(y, side, FLANGE_FACE);
             let far = ring.iter().map(|&place| first(&faces, place));
             far.map(|far| y + side * far.unwrap_or(f64::INFINITY))
                 .collect()
@@ -148,9 +146,9 @@ impl TriMesh {
         far.fold(0.0, f64::max)
     }
 
-    /// The steep faces that look back to `y` from one side of it.
-    fn flange_faces(&self, y: f64, side: f64) -> Vec<Face> {
-        let steep = (0..self.len() as u32).filter(|&t| side * self.normal(t).y < -FLANGE_FACE);
+    /// The faces that look back to `y` from one side of it, with a normal that has more than this part along y.
+    fn faces_back(&self, y: f64, side: f64, steepness: f64) -> Vec<Face> {
+        let steep = (0..self.len() as u32).filter(|&t| side * self.normal(t).y < -steepness);
         let corners = |t: u32| self.triangles[t as usize].map(|v| self.vertices[v as usize]);
         let face = |t: u32| Face {
             corners: corners(t).map(|p| [p.x, p.z]),
@@ -194,6 +192,16 @@ fn ends(mut far: Vec<f64>, least: f64) -> [f64; 2] {
     let before = (1..=few).rev().find(stands_apart).unwrap_or(0);
     let counted = &far[before.min(far.len())..];
     [counted.first(), counted.last()].map(|end| end.copied().unwrap_or_default())
+}
+
+/// How far away the faces on either side are, along y from each place of a ring, m; none where one side is open at too many of them.
+fn met_by(sides: &[Vec<Face>; 2], ring: &[[f64; 2]]) -> Option<[Vec<Option<f64>>; 2]> {
+    let [down, up] = sides.each_ref().map(|faces| -> Option<Vec<_>> {
+        let far: Vec<_> = ring.iter().map(|&p| first(faces, p)).collect();
+        let open = far.iter().filter(|far| far.is_none()).count();
+        (open as f64 <= OPEN * ring.len() as f64).then_some(far)
+    });
+    Some([down?, up?])
 }
 
 /// How far along y the first of these faces is at a place, m.
@@ -306,6 +314,32 @@ mod tests {
                 }
                 assert!((room.height - 4e-3).abs() < 0.02e-3, "{room:?}");
             }
+        }
+    }
+
+    /// The rim counted up to where it is less steep than 45 degrees: flanges of 3.5 mm with a radius of 1 mm were 3.2 mm high.
+    #[test]
+    fn flanges_with_rounded_rims_are_as_high_as_their_rims() {
+        for rim in [0.05e-3, 0.5e-3, 1.0e-3] {
+            let flange = |side: f64| {
+                let round = (0..=24).map(move |k| {
+                    let (sin, cos) =
+                        libm::sincos(std::f64::consts::FRAC_PI_2 * f64::from(k) / 24.0);
+                    [
+                        side * (3e-3 + rim * (1.0 - cos)),
+                        11.5e-3 - rim * (1.0 - sin),
+                    ]
+                });
+                round.collect::<Vec<_>>()
+            };
+            let mut profile = vec![[-6e-3, 11.5e-3]];
+            profile.extend(flange(-1.0).into_iter().rev());
+            profile.extend([[-3e-3, 8e-3], [3e-3, 8e-3]]);
+            profile.extend(flange(1.0));
+            profile.push([6e-3, 11.5e-3]);
+            let room = revolved(&profile, 180).room(0.0, 0.7e-3).expect("flanges");
+            assert!((room.height - 3.5e-3).abs() < 0.01e-3, "{rim}: {room:?}");
+            assert!(near(room.faces, [-3e-3, 3e-3]), "{rim}: {room:?}");
         }
     }
 
