@@ -102,7 +102,7 @@ pub struct Coil {
     /// latest station by polar station and `floor(y / d)`
     pub(super) buckets: Buckets,
     pub(super) passes: Passes,
-    /// steps to a next row that began before they were certain, along the wire
+    /// steps to a next row that began before they were certain, and those that were none, along the wire
     pub(super) onsets: Vec<Onset>,
 }
 
@@ -298,7 +298,7 @@ impl Coil {
         });
         while self.records.len() as f64 * STATION_STEP <= angle + HAIR {
             self.add_station();
-            if self.date_step_back() {
+            if self.date_step_back() || self.take_step_back() {
                 return;
             }
         }
@@ -437,7 +437,8 @@ impl Coil {
         let neighbour = neighbour.filter(|_| !after_double());
         let crosses = self.is_in_crossover(last_crossing) && !self.is_hole(neighbour);
         // The nozzle turns here or the flange is near, and the wire leaves its row.
-        let lifts = (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
+        let lifts = !self.is_pressed_up_next()
+            && (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
             && self.may_climb(layer, angle)
             && stands_off > self.spec.limits.overlap_height * self.spec.diameter;
         let steps_up = lifts || self.passes.ends_within(angle, STEP_UP);

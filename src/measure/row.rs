@@ -22,6 +22,18 @@ pub(crate) struct Row {
     farthest: f64,
     /// where the pass began in which wire climbed beside a flange, rad: the row is that of the pass to come
     ahead_of: Option<f64>,
+    /// the row that wire left where it climbed beside a flange
+    left: Option<Left>,
+}
+
+/// A row that wire has left, and may come down to again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Left {
+    number: u32,
+    from: f64,
+    farthest: f64,
+    /// that of its wire
+    layer: u32,
 }
 
 impl Row {
@@ -33,6 +45,7 @@ impl Row {
             sense: pass.sense,
             farthest: y,
             ahead_of: None,
+            left: None,
         }
     }
 
@@ -41,16 +54,36 @@ impl Row {
         self.sense != pass.sense && self.ahead_of != Some(pass.from)
     }
 
-    /// The row after this one, which begins at `angle` (rad) and `y` (m) because wire has climbed beside a flange: the
+    /// The row after this one, which begins at `angle` (rad) and `y` (m) because wire has climbed from its `layer` beside a flange: the
     /// nozzle still goes the way of `pass`.
-    pub(crate) fn beside_flange(self, pass: Pass, angle: f64, y: f64) -> Self {
+    pub(crate) fn beside_flange(self, pass: Pass, (angle, y): (f64, f64), layer: u32) -> Self {
         Self {
             number: self.number + 1,
             from: angle,
             sense: -self.sense,
             farthest: y,
             ahead_of: Some(pass.from),
+            left: Some(Left {
+                number: self.number,
+                from: self.from,
+                farthest: self.farthest,
+                layer,
+            }),
         }
+    }
+
+    /// The row that wire left beside a flange, with its layer, while the nozzle still goes the way of it.
+    pub(crate) fn left_in(self, pass: Pass) -> Option<(Self, u32)> {
+        let left = self.left.filter(|_| self.ahead_of == Some(pass.from))?;
+        let row = Self {
+            number: left.number,
+            from: left.from,
+            sense: -self.sense,
+            farthest: left.farthest,
+            ahead_of: None,
+            left: None,
+        };
+        Some((row, left.layer))
     }
 
     /// The same with the place that it had got to `before`: wire that sank into a hole of the row below has not gone on there.
@@ -72,6 +105,7 @@ impl Row {
                 sense: pass.sense,
                 farthest: y,
                 ahead_of: None,
+                left: None,
             };
         }
         let farthest = if (y - self.farthest) * self.sense > 0.0 {

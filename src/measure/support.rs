@@ -64,6 +64,7 @@ impl Coil {
         let RowPlace { angle, y, .. } = *at;
         let last = self.records.last();
         let row = last.map_or_else(|| Row::first(pass, y), |last| last.row);
+        let row = self.come_down(row, pass, at).unwrap_or(row);
         // Once the nozzle has turned, wire of the row itself may be what the next one lies on.
         let least = row.number + u32::from(row.is_over_in(pass));
         let has_no_room = at.has_no_room_in(row, self.spec.diameter);
@@ -76,10 +77,16 @@ impl Coil {
                     && (self.support(least, at).layer > last.map_or(1, |last| last.station.layer)
                         || self.climbs_by_plan(row, at)));
         let climbs_at_flange = !row.is_over_in(pass)
-            && (is_certain || row.sense == pass.sense && has_no_room && !squeezed && leaves());
+            && !self.is_pressed_up_next()
+            && (is_certain
+                || row.sense == pass.sense
+                    && has_no_room
+                    && !squeezed
+                    && leaves()
+                    && self.stands_on_own(row, at));
         let rises = squeezed && leaves();
         let next = match climbs_at_flange {
-            true => row.beside_flange(pass, angle, y),
+            true => row.beside_flange(pass, (angle, y), self.layer_of(row)),
             false => row.next(pass, angle, y, climbed, self.spec.diameter),
         };
         let support = self.support(next.number, at);
@@ -89,6 +96,23 @@ impl Coil {
             false => next,
         };
         (next, support, rises)
+    }
+
+    /// The row that wire goes on in if it had climbed beside a flange before the nozzle turned, and has come down to its layer again: it
+    /// was pressed up there, and its row has a place left.
+    fn come_down(&self, row: Row, pass: Pass, at: &RowPlace) -> Option<Row> {
+        let (left, layer) = row.left_in(pass)?;
+        if self.is_slow_climb(self.records.len()) {
+            return None;
+        }
+        let (above, of_left) = (self.support(row.number, at), self.support(left.number, at));
+        let off = at.height - of_left.held;
+        let is_down = above.layer <= layer
+            && of_left
+                .own_row
+                .is_none_or(|rise| rise < NEXT_LAYER * self.spec.diameter)
+            && off < self.spec.limits.overlap_height * self.spec.diameter;
+        is_down.then_some(left)
     }
 
     /// Whether the turn before, of this row, has left a place beside a flange: wire that stands high there is the last turn of the row, which is
@@ -102,11 +126,15 @@ impl Coil {
             .is_some_and(|gap| gap >= PLACE * self.spec.diameter)
     }
 
+    /// Whether wire stands on its own row. Wire may also lie as high in its place beside a flange, over the climbs of the rows below.
+    fn stands_on_own(&self, row: Row, at: &RowPlace) -> bool {
+        let on = self.support(row.number, at).own_row;
+        on.is_some_and(|rise| rise >= NEXT_LAYER * self.spec.diameter)
+    }
+
     /// Whether wire climbs on its own row where a layer is a turn long by plan: there each turn lies on the one before.
     fn climbs_by_plan(&self, row: Row, at: &RowPlace) -> bool {
-        let on = || self.support(row.number, at).own_row;
-        self.has_planned_passes()
-            && on().is_some_and(|rise| rise >= NEXT_LAYER * self.spec.diameter)
+        self.has_planned_passes() && self.stands_on_own(row, at)
     }
 
     /// Layer that wire of this row, the row of the last station, leaves where it climbs: that of the station, or of the turn
@@ -139,7 +167,7 @@ impl Coil {
             let room = (farthest - lower.y) * way.signum() / d;
             let between = (y - lower.y) * way > 0.0;
             let holds = between && height > lower.height && (CLIMBED..1.0).contains(&room);
-            holds.then(|| lower.height + d * (1.0 - room * room).sqrt())
+            holds.then(|| (lower.height + d * (1.0 - room * room).sqrt(), room))
         };
         let mut support = Support {
             level: 0.0,
@@ -166,9 +194,12 @@ impl Coil {
                 let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
                 let climbing = of.number > 1 && station.angle < of.from + STEP_UP;
                 let carries = earlier || (one_turn_back && climbing);
+                let wedge = wedged(&lower);
+                // pressed up between a flange and the turn before, it is in its place there as long as that is a place
+                let in_place = wedge.is_some_and(|(_, room)| room >= PLACE);
                 // what crosses the slow climb of its own row lies in that row's layer
                 let over = station.layer + u32::from(!one_turn_back || !self.is_slow_climb(index));
-                if !earlier && aside <= BELOW && rise > 0.0 {
+                if !earlier && aside <= BELOW && rise > 0.0 && !in_place {
                     // what it stands higher than it lies on that turn is a bulge
                     let rise = rise.min(d * (1.0 - aside * aside).sqrt());
                     support.own_row = Some(match support.own_row {
@@ -187,7 +218,7 @@ impl Coil {
                 let on = (aside <= BELOW).then(|| lower.height + d * (1.0 - aside * aside).sqrt());
                 let carried = on.filter(|_| carries);
                 // what a flange and another wire hold between them cannot drop, whichever row that is of
-                let held = carried.or_else(|| wedged(&lower));
+                let held = carried.or(wedge.map(|(level, _)| level));
                 if let Some(level) = on.or(held)
                     && rise > 0.0
                 {
@@ -197,7 +228,7 @@ impl Coil {
                 }
                 support.held = support.held.max(held.unwrap_or(0.0));
                 // what stands on its own row has left its place, also where a flange holds it there
-                if let Some(level) = carried.or(held.filter(|_| on.is_none()))
+                if let Some(level) = carried.or(held.filter(|_| in_place))
                     && level > support.level
                 {
                     support.level = level;
