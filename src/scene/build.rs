@@ -108,9 +108,13 @@ impl SceneSettings {
         if let Some(wire) = &wire {
             self.check_nozzle_body(wire, integrator, &mut problems);
         }
-        let speed_law = law
-            .as_ref()
-            .and_then(|law| self.speed_law(law, &mut problems));
+        let speed_law = match &law {
+            Some(law) => self.speed_law(law, &mut problems),
+            None => {
+                self.check_tables(&mut problems);
+                None
+            }
+        };
         let laws_of_motion = law.zip(speed_law);
         let Some(((mut wire, (core, extent)), (nozzle_law, speed_law))) =
             wire.zip(core).zip(laws_of_motion)

@@ -48,6 +48,16 @@ impl SceneSettings {
         Some(SpeedLaw::through(&points))
     }
 
+    /// What is wrong with the tables of a scene whose nozzle has no law.
+    pub(super) fn check_tables(&self, problems: &mut Problems) {
+        if self.winds_table() {
+            self.law_of_table(problems);
+        }
+        if !self.spindle.file.is_empty() {
+            self.speed_table(0.0, problems);
+        }
+    }
+
     /// The speed that a table allows, for so many turns where it is repeated.
     fn speed_table(&self, turns: f64, problems: &mut Problems) -> Option<Points> {
         let s = &self.spindle;

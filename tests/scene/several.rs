@@ -37,6 +37,33 @@ fn all_that_is_wrong_is_told_at_once() {
     );
 }
 
+/// Mistakes in the table of speeds were told only once everything else was right, those of the nozzle's only once the core was.
+#[test]
+fn tables_are_read_whatever_else_is_wrong() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = |name: &str, text: &str| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        path.display().to_string()
+    };
+    let speeds = file("speeds.csv", "turns,share\n0,1\n2,3\n1,0.5\n");
+    let way = file("way.csv", "turns,y_mm\n0,0\n3,x\n");
+    let tables =
+        format!("[spindle]\nfile = '{speeds}'\n[traverse]\nmode = 'table'\nfile = '{way}'\n");
+    for (more, key) in [
+        ("", "traverse.file"),
+        (
+            "[core.flange]\ninner_distance_mm = 0.3\n",
+            "core.flange.inner_distance",
+        ),
+        ("[core]\nshape = 'mesh'\nfile = 'none.stl'\n", "core.file"),
+    ] {
+        let said = refused(&format!("{tables}{more}"));
+        assert_says(&said, &[key, "\"x\" is no number", "spindle.file"]);
+        assert!(said.matches("spindle.file").count() >= 2, "{said}");
+    }
+}
+
 #[test]
 fn what_is_told_together_is_what_is_told_alone() {
     let one = refused("[friction]\nstatic = 0.1\nkinetic = 0.3");
