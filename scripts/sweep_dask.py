@@ -481,7 +481,7 @@ def wind_fresh(args, fmu, tasks, ledger, progress):
             # A full disk may have room again for what came meanwhile; if not, the table of before stays.
             with contextlib.suppress(Stuck):
                 ledger.write()
-            kept = f"{len(ledger.rows)} runs are kept; go on with: {same_command()}"
+            kept = f"{ledger.kept} runs are kept; go on with: {same_command()}"
             if isinstance(stop, KeyboardInterrupt):
                 raise Interrupted(f"interrupted; {kept}") from None
             raise type(stop)(f"{stop}; {kept}") from None

@@ -25,6 +25,7 @@ class Ledger:
         self.folder, self.plan, self.header, self.force = folder, plan, header, force
         self.runs = {tuple(map(str, key)): run for run, key in enumerate(keys)}
         self.rows, self.times, self.written, self.lock = {}, {}, 0.0, None
+        self.kept = 0  # rows on disk
         folders.refuse_occupied(folder, force, "another sweep")
         if force:
             return
@@ -60,6 +61,7 @@ class Ledger:
             # Chance killed its workers; the numbers of a sweep do not depend on chance.
             if not row[reason].startswith("its worker died"):
                 self.rows[run] = row
+        self.kept = len(self.rows)
         if (self.folder / TIMES).is_file():
             for run, *cells in whole_rows(self.folder / TIMES, len(TIMED))[1:]:
                 self.times[int(run)] = cells
@@ -102,7 +104,7 @@ class Ledger:
         times = [[run, *self.times.get(run, ["", "", ""])] for run in sorted(self.rows)]
         self.table(TIMES, [TIMED, *times])
         self.table(ROWS, [self.header, *(self.rows[run] for run in sorted(self.rows))])
-        self.written = time.monotonic()
+        self.written, self.kept = time.monotonic(), len(self.rows)
 
     def table(self, name, rows):
         def write(path):

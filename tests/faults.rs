@@ -232,6 +232,13 @@ fn a_limit_on_the_size_of_files_is_named() {
             report.arg("report").arg(&out);
             let report = report.output().unwrap();
             assert!(report.status.success(), "{limit}: {}", said(&report));
+            let again = format!(
+                "ulimit -f 8; {} report {}",
+                env!("CARGO_BIN_EXE_coilwind"),
+                out.display()
+            );
+            let full = Command::new("bash").args(["-c", &again]).output().unwrap();
+            assert_eq!(full.status.code(), Some(3), "{limit}: {}", said(&full));
         }
     }
     assert!(most > 5, "{most} rows");

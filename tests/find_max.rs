@@ -55,6 +55,8 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
     assert_eq!((every.len(), looked.len()), (16, 8));
     let answer = answer(&some);
     assert_eq!(answer["outcome"], "found");
+    let assumes = answer["assumes"].as_str().unwrap();
+    assert!(assumes.contains("free below"), "{assumes}");
     assert_eq!(
         (answer["value"].as_f64(), answer["unit"].as_str()),
         (Some(free), Some("N"))

@@ -315,6 +315,20 @@ fn a_folder_without_a_whole_run_says_what_to_do() {
     std::fs::remove_file(&checkpoint).unwrap();
     refused(&mut report(), "scene.toml --out");
     refused(&mut resume(&out), "checkpoint.bin is missing; begin again");
+    // A run that had stopped before its first checkpoint was told to have ended.
+    for (status, told) in [
+        (
+            "interrupted",
+            "checkpoint.bin is missing; begin again with: ",
+        ),
+        ("failed", "checkpoint.bin is missing; begin again with: "),
+        ("done", "the run has ended"),
+    ] {
+        let summary = format!("{{\"status\": \"{status}\"}}\n");
+        std::fs::write(out.join("summary.json"), summary).unwrap();
+        refused(&mut resume(&out), told);
+    }
+    std::fs::remove_file(out.join("summary.json")).unwrap();
     let mut bent = whole.clone();
     bent[whole.len() / 2] ^= 1;
     for bytes in [&whole[..whole.len() / 2], &whole[..5], &bent] {

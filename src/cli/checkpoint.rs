@@ -95,6 +95,15 @@ impl Plan {
     }
 }
 
+/// Whether the run of a folder went on to its end, as its summary says. One that is not whole counts as an end: nothing else is known.
+fn has_ended(directory: &Path) -> bool {
+    let Ok(text) = fs::read_to_string(directory.join("summary.json")) else {
+        return false;
+    };
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    !matches!(summary["status"].as_str(), Some("failed" | "interrupted"))
+}
+
 fn checksum(path: &Path) -> Result<u32, Failure> {
     let bytes = fs::read(path).map_err(|error| Failure::Signals {
         file: path.display().to_string(),
@@ -123,7 +132,7 @@ impl Checkpoint {
         };
         let bytes = fs::read(&path).map_err(|_| {
             let has = |name: &str| directory.join(name).exists();
-            resume(match (has("summary.json"), has("scene.toml")) {
+            resume(match (has_ended(directory), has("scene.toml")) {
                 (true, _) => "the run has ended; wind it again with --force, or look at it with coilwind report".to_owned(),
                 _ if has("1/summary.json") => "the ensemble has ended; wind it again with --force, or look at a member with coilwind report".to_owned(),
                 (_, true) => format!("{FILE} is missing; {}", begin_again(directory)),

@@ -1,7 +1,7 @@
 //! How a command fails, and the exit code that says so.
 
 use super::shell::{begin_again, resume_command};
-use coilwind::output::OutputError;
+use coilwind::output::{OutputError, ReportError};
 use coilwind::scene::SceneError;
 use coilwind::simulation::SimError;
 use std::io::ErrorKind;
@@ -68,7 +68,7 @@ pub(super) enum Failure {
     },
     /// No report can be made.
     #[error(transparent)]
-    Report(#[from] coilwind::output::ReportError),
+    Report(#[from] ReportError),
     /// The solver gave up on the way.
     #[error("the solver gave up {reason}; what was computed so far is in {directory}")]
     Solver {
@@ -208,11 +208,15 @@ impl Failure {
 
     /// A write that failed for want of room, on the disk or under a limit.
     pub(super) fn is_without_room(&self) -> bool {
-        let kind = match self {
-            Self::Write { source, .. } | Self::Output(OutputError::Io { source, .. }) => {
+        let output = match self {
+            Self::Output(output) | Self::Report(ReportError::Output(output)) => Some(output),
+            _ => None,
+        };
+        let kind = match (self, output) {
+            (Self::Write { source, .. }, _) | (_, Some(OutputError::Io { source, .. })) => {
                 source.kind()
             }
-            Self::Output(OutputError::Json { source, .. }) => {
+            (_, Some(OutputError::Json { source, .. })) => {
                 source.io_error_kind().unwrap_or(ErrorKind::Other)
             }
             _ => return false,
@@ -229,6 +233,7 @@ impl Failure {
     /// 1 defect or wrong number, 2 bad input, 3 solver or a full disk on the way, or a run in doubt, 4 no answer, 130 interrupted (128 + SIGINT, as shells have it).
     fn code(&self) -> u8 {
         match self {
+            Self::Report(_) if self.is_without_room() => 3,
             Self::Defect { .. } | Self::Verify | Self::Invariant { .. } => 1,
             Self::Scene(_)
             | Self::Start { .. }

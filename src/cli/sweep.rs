@@ -5,7 +5,7 @@ use super::folder;
 use super::runs_bar::runs_bar;
 use super::scene::SceneArgs;
 use super::shell::quoted;
-use super::sweep_answer::{Answer, Seen};
+use super::sweep_answer::{Answer, ON_TRUST, Seen};
 use super::sweep_files as files;
 use super::sweep_find_max::Look;
 use super::sweep_grid::Grid;
@@ -134,7 +134,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         );
     }
     let found = match &answer {
-        Ok(Some(words)) => format!("{words}\n{ON_TRUST}"),
+        Ok(Some(words)) => format!("{words}\n{ON_TRUST}\n"),
         _ => String::new(),
     };
     let map = match mapped {
@@ -190,9 +190,6 @@ fn refuse_set_and_swept(set: &[(String, String)], ranges: &[Range]) -> Result<()
     }
     Ok(())
 }
-
-/// What `--find-max` does not know.
-const ON_TRUST: &str = "values that were not wound are taken to be free below and not above; a sweep without --find-max shows whether they are\n";
 
 /// A sweep that is going on.
 struct Work {

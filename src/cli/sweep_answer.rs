@@ -8,6 +8,9 @@ use coilwind::output::write_summary;
 use serde::Serialize;
 use std::path::Path;
 
+/// What `--find-max` does not know.
+pub(super) const ON_TRUST: &str = "values that were not wound are taken to be free below and not above; a sweep without --find-max shows whether they are";
+
 /// What the search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -51,6 +54,8 @@ pub(super) struct Answer {
     value: Option<f64>,
     /// the answer in words, or why there is none and what to do
     words: String,
+    /// what an answer takes on trust
+    assumes: Option<&'static str>,
     /// the lowest and the highest value that could be chosen
     bracket: [f64; 2],
     /// how many there are, evenly from end to end
@@ -115,6 +120,7 @@ impl Answer {
             variable: name.clone(),
             unit: range.unit(),
             value: free.filter(|_| outcome == Outcome::Found),
+            assumes: (outcome == Outcome::Found).then_some(ON_TRUST),
             outcome,
             words,
             bracket: [range.from, range.to],
