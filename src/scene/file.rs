@@ -91,9 +91,16 @@ impl SceneSettings {
             file: file_name.into(),
             line: offset.map(|o| 1 + text.bytes().take(o).filter(|&b| b == b'\n').count()),
         };
-        let table = DeTable::parse(text).map_err(|error| SceneError::Syntax {
-            origin: at(error.span().map(|s| s.start)),
-            message: error.message().into(),
+        let table = DeTable::parse(text).map_err(|error| {
+            let start = error.span().map(|span| span.start);
+            let hint = match start.is_some_and(|start| is_decimal_comma(text, start)) {
+                true => "; write a point for a decimal comma",
+                false => "",
+            };
+            SceneError::Syntax {
+                origin: at(start),
+                message: format!("{}{hint}", error.message()).into(),
+            }
         })?;
 
         let mut settings = Self {
@@ -150,6 +157,14 @@ impl SceneSettings {
         }
         Ok((settings, found))
     }
+}
+
+/// Whether a text has a comma between two digits at this place or right before it.
+fn is_decimal_comma(text: &str, start: usize) -> bool {
+    let bytes = text.as_bytes();
+    let digit = |at: usize| bytes.get(at).is_some_and(u8::is_ascii_digit);
+    let comma = |at: usize| bytes.get(at) == Some(&b',') && digit(at + 1);
+    (start.saturating_sub(1)..=start).any(|at| at > 0 && comma(at) && digit(at - 1))
 }
 
 /// A path that means the same from any folder. Results and saved states are read elsewhere.

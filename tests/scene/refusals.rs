@@ -182,6 +182,14 @@ fn wrong_units_types_and_repeats_are_refused() {
             &["\"steel\"", "copper, table1, custom"],
         ),
         ("[wire]\ndiameter = ", &["test.toml:2", "not valid TOML"]),
+        (
+            "[wire]\ndiameter_mm = 0,7\n",
+            &[
+                "test.toml:2",
+                "not valid TOML",
+                "write a point for a decimal comma",
+            ],
+        ),
         ("wire = 3", &["test.toml:1", "wire"]),
     ] {
         assert_says(&unread(text), parts);
