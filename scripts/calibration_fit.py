@@ -26,6 +26,9 @@ NEAR = 0.99
 ZERO = ZERO_REACH / np.log(REACH)
 # The zeros of an angle that are looked at: each whole degree within reach.
 ANGLES = np.radians(np.arange(-14.0, 15.0))
+# Parameters of which a scene takes the first only where it is at least the second, and what rounding may take from their room.
+ORDERED = [("friction.static", "friction.kinetic")]
+ROUNDING = 1e-9
 # Of 1: above it, two parameters cannot be told apart.
 CORRELATED = 0.95
 # Of the sum of squares: less than this is no gain over the start.
@@ -43,12 +46,12 @@ class Fit:
     def __init__(self, model, starts, threads):
         self.model, self.starts = model, np.array(starts)
         self.pool = ThreadPoolExecutor(threads)
-        self.seen = {}
+        self.seen, self.limits = {}, limits_of(model, starts)
         self.size = len(starts) + len(model.zeros)
 
     def computed(self, points):
         """Curves at several points at once."""
-        keys = [tuple(point) for point in points]
+        keys = [tuple(self.inside(point)) for point in points]
         fresh = [key for key in dict.fromkeys(keys) if key not in self.seen]
         # Kept as they come, so that a fit that is stopped has them.
         for key in self.pool.map(self.look, fresh):
@@ -59,9 +62,17 @@ class Fit:
         self.seen[key] = self.model.wind(self.values(key), self.zeros(key))
         return key
 
+    def inside(self, point):
+        """The nearest point that a scene takes: a search and its differences step over the line where they do not know of it."""
+        point = np.array(point)
+        for slope, room in self.limits:
+            over = slope @ point[: slope.size] - room
+            point[: slope.size] -= max(over, 0.0) * slope / (slope @ slope)
+        return point
+
     def values(self, point):
         """The parameters at a point."""
-        return self.starts * np.exp(point[: self.starts.size])
+        return self.starts * np.exp(self.inside(point)[: self.starts.size])
 
     def zeros(self, point):
         """The zeros of angles (rad) at a point."""
@@ -85,10 +96,12 @@ class Fit:
         return self.weighed(self.computed([point])[0])
 
     def jacobian(self, point):
-        steps = DIFFERENCE * np.eye(len(point))
-        points = [point + sign * step for step in steps for sign in (1, -1)]
-        found = [self.weighed(computed) for computed in self.computed(points)]
-        return np.column_stack([(found[2 * k] - found[2 * k + 1]) / (2 * DIFFERENCE) for k in range(len(point))])
+        middle = self.inside(point)
+        steps = DIFFERENCE * np.eye(len(middle))
+        points = [self.inside(middle + sign * step) for step in steps for sign in (1, -1)]
+        found = [self.weighed(computed) - self.residuals(middle) for computed in self.computed(points)]
+        # Central differences, except where a step ends at a limit of the scene.
+        return np.linalg.lstsq(np.array(points) - middle, np.array(found), rcond=None)[0].T
 
     def surface(self, centre, axes):
         """The response surface round a point, along axes that are shortened where the range or the scene ends."""
@@ -97,7 +110,8 @@ class Fit:
             axes = axes * np.minimum(1.0, np.min(room[:, None] / np.abs(axes), axis=0))
         for attempt in range(HALVINGS + 1):
             try:
-                return surfaces.surface(lambda points: [self.weighed(computed, np.nan) for computed in self.computed(points)], centre, axes)
+                inside = self.inside if self.limits else None
+                return surfaces.surface(lambda points: [self.weighed(computed, np.nan) for computed in self.computed(points)], centre, axes, inside)
             except Mistake:
                 if self.model.stopped or attempt == HALVINGS:
                     raise
@@ -107,9 +121,11 @@ class Fit:
         from scipy import optimize
 
         reach = np.log(REACH)
-        return optimize.least_squares(
+        found = optimize.least_squares(
             self.residuals, point, self.jacobian, bounds=(-reach, reach), xtol=2e-3, ftol=1e-5, gtol=1e-10, max_nfev=25
         )
+        found.x = self.inside(found.x)
+        return found
 
     def find(self):
         """A solution. Where zeros of angles are looked for, the best of those that a look at all of them leads to."""
@@ -130,7 +146,7 @@ class Fit:
             return point
         steps = DIFFERENCE * np.eye(self.starts.size)
         logs = point[: self.starts.size]
-        values = [self.starts * np.exp(logs + by) for by in (0.0 * logs, *(sign * step for step in steps for sign in (1, -1)))]
+        values = [self.values(logs + by) for by in (0.0 * logs, *(sign * step for step in steps for sign in (1, -1)))]
         turned = list(self.pool.map(lambda one: self.model.turned(one, ANGLES), values))
         left = np.zeros((len(self.model.zeros), ANGLES.size))
         for k, source in enumerate(self.model.zeros):
@@ -157,6 +173,26 @@ class Fit:
                 break
             found = self.solve(points[best])
         return found
+
+
+def limits_of(model, starts):
+    """What a scene asks of its parameters, as slope and room: the slope times the logarithms has to stay below the room."""
+    limits = []
+    for high, low in ORDERED:
+        if high not in model.names and low not in model.names:
+            continue
+        of = dict(zip(model.names, starts))
+        above, below = (of[name] if name in of else model.value(name) for name in (high, low))
+        if above < below:
+            fitted = high if high in of else low
+            raise Mistake(
+                f"{high} starts from {above:g}, below {low}, which is {below:g}: no scene takes that; "
+                f"start {'above' if fitted == high else 'below'} the other with --fit {fitted}=VALUE"
+            )
+        if below > 0.0:
+            slope = np.array([(name == low) - (name == high) for name in model.names], float)
+            limits.append((slope, np.log(above / below) - ROUNDING))
+    return limits
 
 
 @dataclass
@@ -232,7 +268,7 @@ def smooth(fit, found):
         move, before = surface.axes @ place, deviation
         freedom = np.count_nonzero(residual) - centre.size
         deviation, correlation = surfaces.spread(jacobian, residual, sizes_of(fit), freedom)
-        centre = np.clip(centre + move, -np.log(REACH), np.log(REACH))
+        centre = fit.inside(np.clip(centre + move, -np.log(REACH), np.log(REACH)))
         end = Solution(centre, np.zeros(centre.size, int), found.success)
         if ends_of(centre, end):
             # The surface falls on to the end of the range: there is no way left for the next one.

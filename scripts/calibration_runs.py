@@ -56,6 +56,16 @@ class Model:
         """The scene with its settings, as a run leaves it."""
         return tomllib.loads((self.run([]) / "scene.toml").read_text(encoding="utf-8"))
 
+    def value(self, name):
+        """What a parameter is in the scene, with its settings."""
+        # A setting is taken as it is: the scene may not take it without what is fitted.
+        if text := next((text for text in self.sets if text.partition("=")[0].strip() == name), None):
+            return float(text.partition("=")[2])
+        found = self.settings()
+        for key in name.split("."):
+            found = found.get(key, {}) if isinstance(found, dict) else {}
+        return float(self.table[name]["start"] if found == {} else found)
+
     def keys_of(self, name):
         """The names under which --set takes this parameter, in whatever unit."""
         return {name, *(f"{name}_{unit}" for unit in self.table[name]["keySuffixes"])}

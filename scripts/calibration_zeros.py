@@ -45,7 +45,7 @@ class Look:
     def __init__(self, fit, logs, zeros):
         self.fit, self.logs = fit, logs
         steps = [sign * step for step in DIFFERENCE * np.eye(logs.size) for sign in (1, -1)]
-        values = [fit.starts * np.exp(logs + step) for step in (0.0 * logs, *steps)]
+        values = [fit.values(logs + step) for step in (0.0 * logs, *steps)]
         self.runs = list(fit.pool.map(lambda one: fit.model.turned(one, zeros), values))
 
     def rest(self, source, place):

@@ -43,12 +43,19 @@ class Surface:
         return optimize.least_squares(self.residual, np.zeros(self.axes.shape[1]), self.jacobian, bounds=(-1.0, 1.0)).x
 
 
-def surface(residuals, centre, axes):
-    """The surface round a point. `residuals` gives those of many points, not a number where nothing is compared."""
+def surface(residuals, centre, axes, inside=None):
+    """The surface round a point. `residuals` gives those of many points, not a number where nothing is compared.
+
+    `inside` moves a point to where the scene takes it, if there are places where it does not.
+    """
     shares = [share for share in np.linspace(-1.0, 1.0, RUNS) if share]
     count = axes.shape[1]
     places = np.array([np.zeros(count), *(share * one for one in np.eye(count) for share in shares)])
-    found = np.array(residuals([centre + axes @ place for place in places]))
+    points = [centre + axes @ place for place in places]
+    if inside is not None:
+        points = [inside(point) for point in points]
+        places = (np.array(points) - centre) @ np.linalg.inv(axes).T
+    found = np.array(residuals(points))
     # What is not compared everywhere would make a step.
     found[:, ~np.isfinite(found).all(axis=0)] = 0.0
     terms = np.column_stack([np.ones(len(places)), places, places**2])
