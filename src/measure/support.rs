@@ -195,8 +195,10 @@ impl Coil {
                 let climbing = of.number > 1 && station.angle < of.from + STEP_UP;
                 let carries = earlier || (one_turn_back && climbing);
                 let wedge = wedged(&lower);
-                // pressed up between a flange and the turn before, it is in its place there as long as that is a place
-                let in_place = wedge.is_some_and(|(_, room)| room >= PLACE);
+                // pressed up between a flange and the turn before, it is in its place there as long as that is a place and it lies in it
+                let off = self.spec.limits.overlap_height * d;
+                let in_place =
+                    wedge.is_some_and(|(level, room)| room >= PLACE && height - level < off);
                 // what crosses the slow climb of its own row lies in that row's layer
                 let over = station.layer + u32::from(!one_turn_back || !self.is_slow_climb(index));
                 if !earlier && aside <= BELOW && rise > 0.0 && !in_place {
@@ -228,7 +230,7 @@ impl Coil {
                 }
                 support.held = support.held.max(held.unwrap_or(0.0));
                 // what stands on its own row has left its place, also where a flange holds it there
-                if let Some(level) = carried.or(held.filter(|_| in_place))
+                if let Some(level) = carried.or(held.filter(|_| in_place || on.is_none()))
                     && level > support.level
                 {
                     support.level = level;

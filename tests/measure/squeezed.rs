@@ -266,3 +266,21 @@ fn wire_that_leans_on_a_turn_lies_in_its_layer() {
         "{contour:?}"
     );
 }
+
+/// Wire that stood on the first but one turn, beside no flange, was in a place between that turn and the flange where the first turn
+/// lies. Half of a double turn was none.
+#[test]
+fn wire_high_over_a_place_beside_the_flange_is_not_in_it() {
+    // two turns in a window of many, and a third back over the first but one
+    let places = [(0.0, 0.0), (0.98, 0.0), (0.9, 1.0)];
+    let mut nodes = on_cylinder(2.95, 1.0, |angle| {
+        let (y, height) = places[(angle / TAU) as usize];
+        (D * y, D * height)
+    });
+    for node in &mut nodes {
+        let way = -0.5 * D - node.position.y;
+        node.flange = (way > -2.0 * D).then_some(way);
+    }
+    let coil = wound(spec(), &nodes);
+    assert!(coil.flags().double_turn, "{:?}", coil.defects());
+}
