@@ -162,23 +162,28 @@ def searched(args, fit):
 def tell(args, model, starts, answer, rests, beyond):
     """Prints the outcome, then writes it: a full disk takes nothing from who reads along. The exit code."""
     names, curves = model.names, model.curves
-    best, width = intervals(starts, answer, args.confidence)
-    zeros, wide = (np.degrees(one) for one in zero_intervals(starts, answer, args.confidence))
+    best, below, above = intervals(starts, answer, args.confidence)
+    zeros, zero_below, zero_above = (np.degrees(one) for one in zero_intervals(starts, answer, args.confidence))
     angles = [f"zero of {source}" for source in model.zeros]
     with np.errstate(over="ignore"):
-        low, high = best * np.exp(-width), best * np.exp(width)
+        low, high = best * np.exp(-below), best * np.exp(above)
+    zero_low, zero_high = zeros - zero_below, zeros + zero_above
     ends = ends_of([*names, *angles], answer.found)
     reach = np.degrees(ZERO_REACH)
     # Beyond the end of the range there may be a better zero than one whose interval goes there.
-    reaching = {name: "lower" if value < 0.0 else "upper" for name, value, by in zip(angles, zeros, wide) if name not in ends and by < reach and abs(value) + by > NEAR * reach}
+    wide = np.maximum([*below / np.log(REACH), *zero_below / reach], [*above / np.log(REACH), *zero_above / reach])
+    reaching = {
+        name: "lower" if value < 0.0 else "upper"
+        for name, value, a, b, share in zip(angles, zeros, zero_low, zero_high, wide[len(names) :]) if name not in ends and share < 1.0 and max(-a, b) > NEAR * reach
+    }
     ends = reaching | ends
-    open_ = [name for name, by in zip([*names, *angles], [*width / np.log(REACH), *wide / reach]) if not by < 1.0 and name not in ends]
+    open_ = [name for name, share in zip([*names, *angles], wide) if not share < 1.0 and name not in ends]
     doubtful = any(rest.doubtful for rest in rests) or bool(beyond)
     nothing, told_of = explains_nothing(answer, curves), [*warnings_of([*names, *angles], answer), *(text for rest in rests for text in rest.warnings()), *(one.warning() for one in beyond)]
 
     print(f"{'parameter':32} {'start':>11} {'fitted':>11}   {100 * args.confidence:g} % interval")
     rows = [(name, f"{start:.5g}", f"{value:.5g}", f"{a:.5g} to {b:.5g}") for name, start, value, a, b in zip(names, starts, best, low, high)]
-    rows += [(name, "0 deg", f"{value:.3g} deg", f"{value - by:.3g} to {value + by:.3g} deg") for name, value, by in zip(angles, zeros, wide)]
+    rows += [(name, "0 deg", f"{value:.3g} deg", f"{a:.3g} to {b:.3g} deg") for name, value, a, b in zip(angles, zeros, zero_low, zero_high)]
     for name, start, value, between in rows:
         interval = f"at the {ends[name]} end of its range" if name in ends else "not determined" if name in open_ else f"{between}{', doubtful' if doubtful else ''}"
         print(f"{name:32} {start:>11} {value:>11}   {interval}")
@@ -200,8 +205,8 @@ def tell(args, model, starts, answer, rests, beyond):
         which = ", ".join(open_)
         other = "measure something that depends on it, leave it out, or give another start with --fit NAME=START"
         reasons.append(f"what was measured does not determine {which}; {other}")
-    if nothing and not reasons:
-        reasons.append(f"{nothing}; mend the scene with --set, or give other starts with --fit NAME=START")
+    if nothing:
+        reasons.insert(0, nothing if reasons else f"{nothing}; mend the scene with --set, or give other starts with --fit NAME=START")
     if reasons:
         print(f"calibrate.py: no fit: {'; '.join(reasons)}", file=sys.stderr)
     else:
@@ -218,10 +223,10 @@ def tell(args, model, starts, answer, rests, beyond):
     elsewhere = {one.source: float(np.degrees(one.zero)) for one in beyond}
     of_angles = {
         str(source): {
-            "value_deg": float(value), "low_deg": finite(value - by), "high_deg": finite(value + by), "at_end": ends.get(name),
+            "value_deg": float(value), "low_deg": finite(a), "high_deg": finite(b), "at_end": ends.get(name),
             "determined": name not in open_ and not nothing, "beyond_deg": elsewhere.get(source),
         }
-        for source, name, value, by in zip(model.zeros, angles, zeros, wide)
+        for source, name, value, a, b in zip(model.zeros, angles, zeros, zero_low, zero_high)
     }
     result = {
         "fitted": not reasons, "stopped": False, "doubtful": doubtful, "confidence": args.confidence, "warnings": told_of, "parameters": parameters, "angle_zeros": of_angles,

@@ -7,6 +7,7 @@ import numpy as np
 
 import response_surface as surfaces
 from calibration_curves import LEAST, ZERO_REACH, check_levels, rms, too_few
+from calibration_dips import deepest
 from calibration_noise import autocorrelation
 from calibration_rest import AUTOCORRELATED
 from failure import Mistake
@@ -26,6 +27,12 @@ NEAR = 0.99
 ZERO = ZERO_REACH / np.log(REACH)
 # The zeros of an angle that are looked at: each whole degree within reach.
 ANGLES = np.radians(np.arange(-14.0, 15.0))
+# By how many variances of a residual the runs at the minimum of a response surface may be worse than at another place: they scatter by a few.
+WORSE = 10.0
+# By how many of them a run is worse at the end of an interval of 95 %.
+AS_GOOD = 4.0
+# How far beyond an end of an interval it is looked first, and by how much farther next, as factors. Ends found so are that much too near at most.
+BEYOND, FARTHER = 1.5, 1.5
 # Parameters of which a scene takes the first only where it is at least the second, and what rounding may take from their room.
 ORDERED = [("friction.static", "friction.kinetic")]
 ROUNDING = 1e-9
@@ -92,6 +99,24 @@ class Fit:
         pieces = [np.nan_to_num((values - curve.values) / curve.sigma, nan=missing) for curve, values in zip(self.model.curves, computed)]
         return np.concatenate(pieces)
 
+    def clipped(self, point):
+        """The nearest point within the range of the parameters."""
+        return np.clip(point, -np.log(REACH), np.log(REACH))
+
+    def costs(self, points):
+        """Half the sums of squares at several points at once; infinite where a scene refuses it."""
+
+        def cost(point):
+            try:
+                self.look(tuple(self.inside(point)))
+            except Mistake:
+                if self.model.stopped:
+                    raise
+                return np.inf
+            return 0.5 * np.sum(self.residuals(point) ** 2)
+
+        return list(self.pool.map(cost, points))
+
     def residuals(self, point):
         return self.weighed(self.computed([point])[0])
 
@@ -126,6 +151,10 @@ class Fit:
         )
         found.x = self.inside(found.x)
         return found
+
+    def is_within(self, found):
+        """Whether a solution lies within the range of the parameters, and not at an end of it."""
+        return not ends_of(found.x, found)
 
     def find(self):
         """A solution. Where zeros of angles are looked for, the best of those that a look at all of them leads to."""
@@ -166,7 +195,7 @@ class Fit:
         for _ in range(ROUNDS):
             _, axes = np.linalg.eigh(found.jac.T @ found.jac)
             points = [found.x + reach * sign * axis for axis in axes.T for reach in LOOKS for sign in (1, -1)]
-            points = [np.clip(point, -np.log(REACH), np.log(REACH)) for point in points]
+            points = [self.clipped(point) for point in points]
             costs = [0.5 * np.sum(self.weighed(computed) ** 2) for computed in self.computed(points)]
             best = int(np.argmin(costs))
             if costs[best] > (1.0 - 1e-3) * found.cost:
@@ -219,6 +248,8 @@ class Answer:
     gain: float = 1.0
     # what a parameter changes of the weighed residuals, a column each
     slopes: np.ndarray | None = None
+    # how far intervals go at least, below and above the solution
+    least: np.ndarray | float = 0.0
 
 
 def calibrate(fit):
@@ -229,14 +260,14 @@ def calibrate(fit):
         raise too_few(points, parameters)
     for curve in model.curves:
         curve.sigma = np.std(curve.values) or 1.0
-    found = fit.find()
+    found = deepest(fit, fit.find())
     if len(model.curves) > 1:
         # Each curve counts by its own noise, which is known once it has been fitted.
         for curve, values in zip(model.curves, fit.computed([found.x])[0]):
             curve.sigma = max(rms(values - curve.values), 1e-9 * curve.sigma)
         found = fit.settle(fit.solve(found.x))
     # At an end of the range there is no minimum to look at.
-    answer = at_point(fit, found) if ends_of(found.x, found) else smooth(fit, found)
+    answer = smooth(fit, found) if fit.is_within(found) else at_point(fit, found)
     answer.gain = np.sum(fit.weighed(start) ** 2) / answer.square if answer.square > 0.0 else np.inf
     return answer
 
@@ -268,7 +299,8 @@ def smooth(fit, found):
         move, before = surface.axes @ place, deviation
         freedom = np.count_nonzero(residual) - centre.size
         deviation, correlation = surfaces.spread(jacobian, residual, sizes_of(fit), freedom)
-        centre = fit.inside(np.clip(centre + move, -np.log(REACH), np.log(REACH)))
+        deviation = np.hypot(deviation, surface.shaken(jacobian))
+        centre = fit.inside(fit.clipped(centre + move))
         end = Solution(centre, np.zeros(centre.size, int), found.success)
         if ends_of(centre, end):
             # The surface falls on to the end of the range: there is no way left for the next one.
@@ -276,26 +308,57 @@ def smooth(fit, found):
         with np.errstate(invalid="ignore", divide="ignore"):
             if np.all(np.abs(move) < surfaces.CLOSE * deviation) and np.all(np.abs(np.log(deviation / before)) < surfaces.CLOSE):
                 break
-    solution = Solution(centre, np.zeros(centre.size, int), found.success)
-    return Answer(solution, deviation, correlation, freedom, fit.computed([centre])[0], np.sum(residual**2), slopes=jacobian)
+    lowest = np.sum(fit.residuals(found.x) ** 2)
+    if np.sum(fit.residuals(centre) ** 2) > lowest * (1.0 + WORSE / freedom):
+        # Where curves jump, the surface bridges the jump, and its minimum lies beside that of the runs. Intervals reach from one to the other.
+        other, centre = centre, fit.inside(found.x)
+        deviation = np.hypot(deviation, 0.5 * (other - centre))
+    solution, square = Solution(centre, np.zeros(centre.size, int), found.success), np.sum(residual**2)
+    least = as_good(fit, centre, deviation, correlation, square / freedom)
+    return Answer(solution, deviation, correlation, freedom, fit.computed([centre])[0], square, slopes=jacobian, least=least)
+
+
+def as_good(fit, centre, deviation, correlation, square):
+    """How far below and above runs lie that are as good as those at the end of an interval, for this variance of a residual.
+
+    On a parabola none of them lies beyond the interval. Where a curve follows a parameter in steps, or one way only, some do. They
+    are looked for beyond both ends, farther and farther, while the other parameters follow as the correlations tell. Where those at an
+    end of the range are as good, there is no end on that side.
+    """
+    ends, enough = np.zeros((2, fit.size)), np.sum(fit.residuals(centre) ** 2) + AS_GOOD * square
+    for k in np.flatnonzero(np.isfinite(deviation)):
+        along = np.where(np.isfinite(deviation), correlation[:, k] * deviation / deviation[k], 0.0)
+        for place, side in enumerate((-1.0, 1.0)):
+            by = BEYOND * np.sqrt(AS_GOOD) * deviation[k]
+            while 2.0 * fit.costs([point := fit.clipped(centre + side * by * along)])[0] < enough:
+                if side * point[k] >= np.log(REACH):
+                    ends[place, k] = np.inf
+                    break
+                by *= FARTHER
+    good = np.array([point for point, computed in fit.seen.items() if np.sum(fit.weighed(computed) ** 2) < enough])
+    return np.maximum(ends, [np.max(centre - good, axis=0), np.max(good - centre, axis=0)])
 
 
 def intervals(starts, answer, confidence):
-    """Values of the parameters, and by which share of them the ends of their intervals lie off, as a logarithm."""
+    """Values of the parameters, and by which share of them the lower and the upper ends of their intervals lie off, as logarithms."""
     count = len(starts)
-    return np.array(starts) * np.exp(answer.found.x[:count]), wide(answer, confidence)[:count]
+    below, above = wide(answer, confidence)
+    return np.array(starts) * np.exp(answer.found.x[:count]), below[:count], above[:count]
 
 
 def zero_intervals(starts, answer, confidence):
-    """Zeros of angles, and how far the ends of their intervals lie off, in rad."""
+    """Zeros of angles, and how far the lower and the upper ends of their intervals lie off, in rad."""
     count = len(starts)
-    return ZERO * answer.found.x[count:], ZERO * wide(answer, confidence)[count:]
+    below, above = wide(answer, confidence)
+    return ZERO * answer.found.x[count:], ZERO * below[count:], ZERO * above[count:]
 
 
 def wide(answer, confidence):
+    """How far intervals go below and above the solution, in the logarithms."""
     from scipy import stats
 
-    return stats.t.ppf(0.5 + 0.5 * confidence, answer.freedom) * answer.deviation
+    both = stats.t.ppf(0.5 + 0.5 * confidence, answer.freedom) * answer.deviation
+    return np.maximum(np.array([both, both]), answer.least)
 
 
 def ends_of(names, found):

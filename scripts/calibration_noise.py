@@ -31,6 +31,13 @@ def autocorrelation(residual, distance=1):
     return float(np.sum(residual[distance:] * residual[:-distance]) / power) if power > 0.0 else 0.0
 
 
+def from_row_to_row(residual):
+    """Standard deviation of the noise as second differences of rows tell it: without what changes slowly, and by the median without steps."""
+    fresh = np.diff(residual[np.isfinite(residual)], 2)
+    # The median of normal noise is 0.6745 of its standard deviation, and the squares of the weights 1, -2, 1 add to 6.
+    return float(np.median(np.abs(fresh)) / 0.6745 / np.sqrt(6.0)) if fresh.size else 0.0
+
+
 def chance(residual):
     """How likely noise correlates along a curve as much as this, by the test of Ljung and Box (Biometrika 65, 1978) on its fresh part."""
     from scipy import stats

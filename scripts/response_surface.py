@@ -29,12 +29,18 @@ class Surface:
     middle: np.ndarray
     slopes: np.ndarray
     bends: np.ndarray
+    # a row a run: what the surface leaves of it, as large as a run scatters
+    scatter: np.ndarray
 
     def residual(self, place):
         return self.middle + self.slopes @ place + self.bends @ place**2
 
     def jacobian(self, place):
         return self.slopes + 2.0 * self.bends * place
+
+    def shaken(self, jacobian):
+        """Standard deviations that the scatter of runs alone would give the parameters."""
+        return np.sqrt(np.mean((self.scatter @ np.linalg.pinv(jacobian).T) ** 2, axis=0))
 
     def lowest(self):
         """The place of the least sum of squares within the surface."""
@@ -59,8 +65,10 @@ def surface(residuals, centre, axes, inside=None):
     # What is not compared everywhere would make a step.
     found[:, ~np.isfinite(found).all(axis=0)] = 0.0
     terms = np.column_stack([np.ones(len(places)), places, places**2])
-    middle, *rest = np.linalg.lstsq(terms, found, rcond=None)[0]
-    return Surface(axes, middle, np.array(rest[:count]).T, np.array(rest[count:]).T)
+    fitted = np.linalg.lstsq(terms, found, rcond=None)[0]
+    scatter = (found - terms @ fitted) * np.sqrt(len(places) / (len(places) - len(fitted)))
+    middle, *rest = fitted
+    return Surface(axes, middle, np.array(rest[:count]).T, np.array(rest[count:]).T, scatter)
 
 
 def valley(jacobian, square):

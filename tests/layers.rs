@@ -5,7 +5,7 @@ mod bobbin;
 
 use bobbin::{DIAMETER, STRAIGHT, TURNS, small_bobbin};
 use coilwind::measure::{Defect, DefectKind, STATIONS_PER_TURN, Verdict};
-use coilwind::settings::SceneSettings;
+use coilwind::settings::{NozzleFollows, SceneSettings};
 use coilwind::signals::{EventKind, Inputs};
 use coilwind::simulation::Simulation;
 use std::f64::consts::{PI, TAU};
@@ -13,7 +13,8 @@ use std::path::Path;
 
 fn started(text: &str) -> Simulation {
     let settings = SceneSettings::from_toml_str(text, "bobbin.toml", Path::new("")).expect("reads");
-    Simulation::new(&settings.build().expect("a scene")).expect("starts")
+    let (scene, _) = settings.build_for(NozzleFollows::Input).expect("a scene");
+    Simulation::new(&scene).expect("starts")
 }
 
 fn wound(sim: &mut Simulation, turns: f64) {

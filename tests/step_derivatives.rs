@@ -206,3 +206,39 @@ fn brake_and_damper_have_derivatives() {
     // (where wire lands, the last digit of a pull is enough for another slope)
     assert!(checked > 8 && 5 * met >= 4 * checked, "{met} of {checked}");
 }
+
+/// A difference of the tension that is larger than its swing within a step swaps the ends of the step: its slopes had shares of both.
+#[test]
+fn an_extreme_at_an_end_of_a_step_follows_the_tension_there() {
+    let mut sim =
+        Simulation::new(&SceneSettings::load("bobbin").unwrap().build().unwrap()).unwrap();
+    let mut inputs = sim.inputs();
+    let (mut at_end, mut at_begin) = (0, 0);
+    for k in 0..600 {
+        inputs.spindle_speed = (0.1 * f64::from(k)).min(40.0);
+        let begin = sim.outputs().wire_tension;
+        if k > 450 && k % 10 == 0 {
+            let by_tension = along(2, 1.0);
+            let derivative = sim
+                .step_derivative(inputs, Inputs::HELD, 1e-4, by_tension)
+                .unwrap();
+            let mut step = sim.clone();
+            step.advance(inputs, 1e-4).unwrap();
+            let (o, slopes) = (step.outputs(), derivative.slopes);
+            for (extreme, slope) in [
+                (o.wire_tension_min, slopes.wire_tension_min),
+                (o.wire_tension_max, slopes.wire_tension_max),
+            ] {
+                if extreme == o.wire_tension {
+                    assert_eq!(slope, slopes.wire_tension, "at {k}");
+                    at_end += 1;
+                } else if extreme == begin {
+                    assert_eq!(slope, 0.0, "at {k}");
+                    at_begin += 1;
+                }
+            }
+        }
+        sim.advance(inputs, 1e-4).unwrap();
+    }
+    assert!(at_end > 5 && at_begin > 5, "{at_end} {at_begin}");
+}

@@ -298,7 +298,10 @@ fn the_default_experiment_winds() {
     let time = f64::from(steps / 2) * 1e-3;
     instance.do_step(time, 1e-3).expect("a step");
     assert!(real(&mut instance, "spindle_speed") > 99.0);
+    instance.begin_call();
     set(&mut instance, "spindle_speed", 50.0);
+    let told = |m: &Message| m.text.contains("demonstration ends");
+    assert!(instance.end_call().iter().any(told));
     let (nozzle, angle) = (
         real(&mut instance, "nozzle_position"),
         real(&mut instance, "spindle_angle"),
@@ -328,11 +331,7 @@ fn inputs_beyond_their_range_are_held() {
     assert!(instance.has_warned());
     let messages = instance.end_call();
     assert_eq!(warnings(&messages).len(), 2, "{messages:?}");
-    assert!(
-        messages[0]
-            .text
-            .contains("tension_setpoint = -1 is held at 0")
-    );
+    assert!(warnings(&messages)[0].contains("tension_setpoint = -1 is held at 0"));
     assert_eq!(instance.get::<f64>(&names).expect("inputs"), [0.0, 2000.0]);
     instance.begin_call();
     instance.set(&names, [15.0, 0.0]).expect("allowed");

@@ -186,9 +186,9 @@ impl Parameters {
                 "the experiment's tolerance {} makes {SOLVER_TOLERANCE} {} m{}; without it there were {} m, which {} stands for; \
                  set {SOLVER_TOLERANCE} to overrule the experiment",
                 Value::Real(tolerance),
-                Value::Real(is),
+                Value::Real(six_digits(is)),
                 if least { ", the least that it may be" } else { "" },
-                Value::Real(scene),
+                Value::Real(six_digits(scene)),
                 Value::Real(DEFAULT_TOLERANCE),
             )
         })
@@ -441,4 +441,9 @@ fn unit_of(variable: &Variable) -> String {
         "" | "1" => String::new(),
         unit => format!(" {unit}"),
     }
+}
+
+/// A number as it is told, without the last digits that a product leaves.
+fn six_digits(x: f64) -> f64 {
+    format!("{x:.5e}").parse().unwrap_or(x)
 }

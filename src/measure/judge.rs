@@ -96,7 +96,11 @@ impl Coil {
         for kind in DefectKind::MEASURED {
             let (value, limit, least) = self.criterion(kind, &record);
             let k = kind as usize;
-            record.runs[k] = runs_before[k].next(value, limit);
+            // beside the clamp nothing is judged, and a run goes on behind it
+            record.runs[k] = match value {
+                None if !self.is_free_of_clamp(record.station.angle) => runs_before[k],
+                _ => runs_before[k].next(value, limit),
+            };
             if record.runs[k].counts(least) && !runs_before[k].counts(least) {
                 record.raised[k] += 1;
                 record.last_defect = Some(self.records.len());

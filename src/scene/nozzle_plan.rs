@@ -189,7 +189,11 @@ impl SceneSettings {
                     0.0 => TURNS,
                     turns => turns,
                 };
-                return Some(NozzleLaw::even(self.nozzle.y_start + t.lead, travel, turns));
+                let law = NozzleLaw::even(self.nozzle.y_start + t.lead, travel, turns);
+                if extent.window.is_some() {
+                    self.check_way(law.range(), None, extent, of_way);
+                }
+                return Some(law);
             }
         };
         // The places of all turns, also those that a nozzle ahead of them leaves out.
@@ -474,14 +478,21 @@ impl SceneSettings {
         extent: &Extent,
         problems: &mut Problems,
     ) {
-        let lead = pitch.map_or(self.traverse.lead.abs(), |_| 0.0);
+        let t = &self.traverse;
+        let lead = pitch.map_or(t.lead.abs(), |_| 0.0);
         let d = self.wire.outer_diameter();
         let (low, high) = match extent.window {
             Some(room) => (room.widest[0], room.widest[1]),
             None => (extent.y_min, extent.y_max),
         };
         let rounding = ROUNDING * (high - low);
-        let ends = [low + 0.5 * d - lead, high - 0.5 * d + lead];
+        let mut ends = [low + 0.5 * d - lead, high - 0.5 * d + lead];
+        let by_angle = t.mode == "by-angle";
+        if by_angle {
+            // a way that goes on evenly ends a turn behind the place of its last one
+            let behind = t.per_turn * self.spindle.speed.signum();
+            ends[usize::from(behind > 0.0)] += behind;
+        }
         // (where the wire has no place at all, that has been told)
         let within = least >= ends[0] - rounding && largest <= ends[1] + rounding;
         if within || ends[1] < ends[0] - rounding {
@@ -517,11 +528,21 @@ impl SceneSettings {
                 None => format!("{} m", places[0]),
             },
             true => format!("{} to {} m", places[0], places[1]),
+            false if by_angle => {
+                let way = high - low - d + 2.0 * lead;
+                let turns = (largest - least) / t.per_turn.abs();
+                format!(
+                    "at most {} m for {} turns, or fewer turns",
+                    si(way / (turns - 1.0)),
+                    si(turns)
+                )
+            }
             false => format!("a way of {} m at most", si(ends[1] - ends[0])),
         };
-        let key = match (self.traverse.mode.as_str(), room >= 0.0) {
+        let key = match (t.mode.as_str(), room >= 0.0) {
             ("table", _) => "traverse.file",
             (_, true) => "nozzle.y_start",
+            (_, false) if by_angle => "traverse.per_turn",
             (_, false) => "winding.turns_per_layer",
         };
         problems.add(self.impossible(key, reason, allowed));

@@ -173,7 +173,7 @@ impl Winding {
             size: 0.0,
             turn: fault.turn,
             angle: fault.angle_deg.to_radians(),
-            time: fault.until_s.unwrap_or(fault.time_s),
+            time: fault.time_s,
         });
         match (self.coil.last_defect(), fault) {
             (Some(laid), Some(fault)) if laid.time > fault.time => Some(laid),

@@ -58,13 +58,36 @@ impl Derivative {
             change,
         }
     }
+
+    /// The same for a step in which the tension goes from `begin`, N, to that of `step`: an extreme at one end of the step follows the
+    /// tension there. Changes that a difference is taken over may be larger than the swing of the tension within a step, and
+    /// swap its ends.
+    fn with_extremes_of(mut self, step: &Outputs, begin: f64) -> Self {
+        let end = step.wire_tension;
+        if begin != end {
+            for slopes in [&mut self.slopes, &mut self.least, &mut self.most] {
+                let at_end = slopes.wire_tension;
+                for (extreme, slope) in [
+                    (step.wire_tension_min, &mut slopes.wire_tension_min),
+                    (step.wire_tension_max, &mut slopes.wire_tension_max),
+                ] {
+                    if extreme == end {
+                        *slope = at_end;
+                    } else if extreme == begin {
+                        *slope = 0.0;
+                    }
+                }
+            }
+        }
+        self
+    }
 }
 
 impl Simulation {
     /// Derivatives of the outputs at the end of a communication step of `dt`, s, that begins here with `inputs` and
     /// their `rates` per s, when the inputs change in the direction `along` for all of the step.
     ///
-    /// The run stays as it is. It costs six such steps.
+    /// The run stays as it is. It costs seven such steps.
     ///
     /// # Errors
     ///
@@ -81,6 +104,7 @@ impl Simulation {
             run.advance_ramped(inputs.after(&along, by), rates, dt)?;
             Ok(Outcome::of(&run))
         };
+        let begin = self.outputs().wire_tension;
         let reach = reach(self, &inputs, &along, dt);
         let mut slopes = Vec::with_capacity(SIZES.len());
         let mut refused = None;
@@ -92,7 +116,13 @@ impl Simulation {
         }
         match refused {
             Some(error) if slopes.is_empty() => Err(error),
-            _ => Ok(Derivative::of(&slopes, reach)),
+            _ => {
+                let derivative = Derivative::of(&slopes, reach);
+                Ok(match outcome(0.0) {
+                    Ok(step) => derivative.with_extremes_of(&step.outputs, begin),
+                    Err(_) => derivative,
+                })
+            }
         }
     }
 

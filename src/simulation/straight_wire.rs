@@ -181,14 +181,14 @@ fn remedy(scene: &Scene, (clamp, nozzle): (f64, f64), passes: impl Fn(f64) -> bo
 #[cfg(test)]
 mod tests {
     use super::super::Simulation;
-    use crate::settings::SceneSettings;
+    use crate::settings::{NozzleFollows, SceneSettings};
     use std::path::Path;
 
     /// What is told of the start of a scene, or why it has none.
     fn start_of(text: &str) -> Result<Vec<String>, String> {
         let settings =
             SceneSettings::from_toml_str(text, "scene.toml", Path::new("")).expect("reads");
-        let scene = settings.build().expect("a scene");
+        let (scene, _) = settings.build_for(NozzleFollows::Input).expect("a scene");
         let mut started = Simulation::new(&scene).map_err(|error| error.to_string())?;
         let events = started.drain_events().into_iter();
         Ok(events.map(|event| event.text).collect())

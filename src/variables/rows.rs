@@ -298,7 +298,7 @@ table! {
     count(Output, 130, defect_count_gap, "gaps of the settled wire");
     count(Output, 131, defect_count_overlap, "overlaps of the settled wire");
     count(Output, 132, defect_count_break, "breaks so far");
-    count(Output, 133, defect_count_slack, "how often the wire went slack so far");
+    count(Output, 133, defect_count_slack, "how often the wire went slack so far; slack within a quarter of a turn of the last is the same");
     count(Output, 134, defect_kind, "kind of the last defect, as in defect_code; 0: none so far");
     output(135, defect_time, "s", "", -1e9, 1e9, 1.0, "time since the start of the run at which the wire of the last defect came to rest; for slack, break, collision and runaway when it happened. It is found later, when the wire beside it is at rest too");
     output(136, defect_size, "m", "mm", -10.0, 10.0, 1e-4, "size of the last defect where it was found; 0 for what befalls the wire (slack, break, collision, runaway) and for a turn that is loose by its tension alone");

@@ -412,6 +412,13 @@ fn every_turn_of_wire_that_is_drawn_out_is_overstretched() {
     assert_eq!(verdicts(&stretched), [Verdict::Overstretch; 4]);
 }
 
+/// The stretch beside the clamp, where nothing is judged, cut it in two.
+#[test]
+fn wire_that_is_drawn_out_from_its_clamp_on_is_one_defect() {
+    let stretched = altered(|_| true, |node| node.plastic_strain = 0.3);
+    only(DefectKind::Overstretch, &stretched);
+}
+
 #[test]
 fn every_turn_that_lies_without_tension_is_loose() {
     let slack = altered(|turn| turn > 2.0, |node| node.tension = 0.3 * PULL);

@@ -434,3 +434,35 @@ fn scenes_that_are_not_there() {
         .to_string();
     assert_says(&message, &["cannot be read"]);
 }
+
+/// A nozzle that travels evenly went 4.7 mm past a flange, and `check` called that valid with a warning.
+#[test]
+fn an_even_way_past_a_flange_is_refused() {
+    let built = |y_start_mm: f64, per_turn_mm: f64| {
+        let text = format!(
+            "[core]\nshape = 'cylinder'\nradius_mm = 8\n[core.flange]\ninner_distance_mm = 7.385\nheight_mm = 4\n[nozzle]\n\
+             distance_mm = 20\ny_start_mm = {y_start_mm}\n[traverse]\nper_turn_mm = {per_turn_mm}\n[spindle]\nturns = 10\n"
+        );
+        parse(&text).unwrap().build()
+    };
+    let said = |y_start_mm, per_turn_mm| built(y_start_mm, per_turn_mm).unwrap_err().to_string();
+    let too_far = said(0.0, 0.8);
+    for part in [
+        "traverse.per_turn",
+        "past a flange",
+        "at most 0.000742778 m for 10 turns",
+    ] {
+        assert!(too_far.contains(part), "{too_far}");
+    }
+    let elsewhere = said(0.0, 0.7);
+    for part in [
+        "nozzle.y_start",
+        "past a flange",
+        "-0.0033425 to -0.0029575 m",
+    ] {
+        assert!(elsewhere.contains(part), "{elsewhere}");
+    }
+    // the last of its turns ends beside the flange, and the nozzle a turn behind it
+    assert!(built(-3.3425, 0.74).is_ok() && built(-3.0, 0.7).is_ok());
+    assert!(built(3.3425, -0.74).is_ok() && built(3.0, -0.75).is_err());
+}

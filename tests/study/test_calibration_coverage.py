@@ -47,8 +47,8 @@ def inside(parts, scatter, correlation, way):
             noise[k] = correlation * noise[k - 1] + math.sqrt(1.0 - correlation**2) * noise[k]
         curve.values = model.wind([TRUTH])[0] + noise
         fit = parts.fit.Fit(model, [0.2], 1)
-        (value,), (width,) = parts.fit.intervals([0.2], way(fit), CONFIDENCE)
-        count += abs(math.log(value / TRUTH)) <= width
+        (value,), (below,), (above,) = parts.fit.intervals([0.2], way(fit), CONFIDENCE)
+        count += -above <= math.log(value / TRUTH) <= below
     return count
 
 
@@ -79,3 +79,18 @@ def test_differences_of_runs_that_scatter_make_intervals_too_narrow(parts):
 
 def test_noise_that_correlates_along_the_curve_makes_intervals_wider(parts):
     assert inside(parts, 0.0, 0.6, parts.fit.calibrate) >= least()
+
+
+def test_an_interval_has_no_end_where_the_curve_follows_one_way_only(parts):
+    """The interval of a flow stress went 6 % up, while every higher one left as little."""
+    curve = parts.curves.Curve("machine", "tension_N", "tension", 1.0, 2.0 * np.pi * TURNS, np.zeros(POINTS))
+
+    class Saturates(Ringing):
+        def wind(self, values, zeros=()):
+            return [15.0 + 40.0 * TURNS * np.minimum(0.0, float(values[0]) - TRUTH) ** 3]
+
+    model = Saturates(curve, 0.0)
+    curve.values = model.wind([TRUTH])[0] + np.random.default_rng(5).normal(0.0, NOISE, POINTS)
+    answer = parts.fit.calibrate(parts.fit.Fit(model, [0.2], 1))
+    (value,), (below,), (above,) = parts.fit.intervals([0.2], answer, CONFIDENCE)
+    assert np.isinf(above) and below < 1.5, (value, below, above)

@@ -65,3 +65,21 @@ def test_a_search_does_not_step_to_a_kinetic_friction_above_the_static_one(calib
 def test_a_start_with_static_friction_below_kinetic_says_where_to_start(calibrate, tmp_path):
     code, said = calibrate("--set", "friction.kinetic=0.3", "--fit", "friction.static=0.2", "--out", tmp_path)
     assert code == 2 and "start above the other with --fit friction.static=VALUE" in said and len(said.splitlines()) == 1, said
+
+
+@pytest.mark.parametrize("start", [(0.5, 0.12), (0.23, 0.17), (0.6, 0.25), (0.3, 0.3)])
+def test_a_search_from_afar_does_not_end_in_a_wrong_pair(calibrate, tmp_path, start):
+    """It ended at 0.515 and 0.180, with residuals three times the noise, and was told to wind with."""
+    fits = [word for name, value in zip(TRUTH, start) for word in ("--fit", f"{name}={value}")]
+    code, said = calibrate(*fits, "--fail-on-doubt", "--out", tmp_path)
+    found = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))["parameters"]
+    assert code == 0, said
+    assert all(found[name]["low"] < value < found[name]["high"] for name, value in TRUTH.items()), said
+
+
+def test_a_curve_of_steps_does_not_give_a_narrow_interval(calibrate, tmp_path):
+    """The truth lay 18 half intervals off, without a word."""
+    code, said = calibrate("--set", "friction.static=0.35", "--fit", "friction.kinetic", "--out", tmp_path)
+    found = json.loads((tmp_path / "calibration.json").read_text(encoding="utf-8"))["parameters"]["friction.kinetic"]
+    assert code == 0 and found["low"] < TRUTH["friction.kinetic"] < found["high"], said
+    assert found["high"] / found["low"] < 1.25, said

@@ -35,11 +35,26 @@ impl Instance {
             && self.parameters.explicit().all(|(r, x)| starts_so(r, x));
         if self.demonstrates {
             let text = "inputs and parameters are as in modelDescription.xml, so the FMU demonstrates: spindle and nozzle \
-                        follow a programme of its own; set spindle_speed or nozzle_position to drive them";
+                        follow a programme of its own until any input is set";
             self.messages.push(Message {
                 status: Status::Ok,
                 category: Category::Events,
                 text: text.to_owned(),
+            });
+        }
+    }
+}
+
+impl Instance {
+    /// Leaves spindle and nozzle to the master from now on.
+    pub(super) fn end_demonstration(&mut self) {
+        if std::mem::take(&mut self.demonstrates) {
+            self.messages.push(Message {
+                status: Status::Ok,
+                category: Category::Events,
+                text: "an input is set, so the demonstration ends: the spindle keeps its speed and the nozzle its place until spindle_speed and \
+                       nozzle_position are set"
+                    .to_owned(),
             });
         }
     }

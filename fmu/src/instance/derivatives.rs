@@ -47,7 +47,9 @@ impl Instance {
                 return Err(Error::DerivativeNotFinite { name, value });
             }
         }
-        self.demonstrates &= references.is_empty();
+        if !references.is_empty() {
+            self.end_demonstration();
+        }
         for (reference, value) in references.iter().zip(values) {
             match self
                 .run

@@ -150,7 +150,9 @@ impl Instance {
     }
 
     fn set_inputs(&mut self, changes: &[Change]) {
-        self.demonstrates &= changes.is_empty();
+        if !changes.is_empty() {
+            self.end_demonstration();
+        }
         for (variable, value) in changes {
             let Value::Real(value) = value else { continue };
             match self

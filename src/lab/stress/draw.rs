@@ -4,6 +4,7 @@
 //! between core and nozzle), in the logarithm where they span decades. What the scene's own rules
 //! refuse is drawn again.
 
+use super::case::built;
 use super::case_random::CaseRandom;
 use super::coils;
 use super::parts::{FINEST, TURNS, contact, freeze, spacing};
@@ -26,8 +27,8 @@ pub fn case(seed: u64, number: u64) -> Result<Case, String> {
         };
         let valid = match &mesh {
             // the file of a mesh is not there yet; a box of its size stands in for it
-            Some(mesh) => mesh.stand_in(&settings).build(),
-            None => settings.build(),
+            Some(mesh) => built(&mesh.stand_in(&settings)),
+            None => built(&settings),
         };
         match valid {
             Ok(scene) => {

@@ -1,5 +1,6 @@
 //! Whether a case ends the same way at half the tolerance and half the spacing.
 
+use super::case::built;
 use super::invariants::judge;
 use super::{Case, Outcome, Verdict};
 
@@ -19,13 +20,13 @@ pub struct Refined {
 
 /// Runs `case` finer and compares with what came of it as it was drawn. Its mesh, if it has one, is on disk.
 pub fn refine(case: &Case, drawn: &Verdict) -> Result<Refined, String> {
-    let scene = case.settings.build().map_err(|e| e.to_string())?;
+    let scene = built(&case.settings).map_err(|e| e.to_string())?;
     let mut finer = case.clone();
     let solver = &mut finer.settings.solver;
     solver.tolerance = scene.solver.tolerance / FINER;
     solver.spacing_near = scene.solver.spacing_near / FINER;
     solver.spacing_free = scene.solver.spacing_free / FINER;
-    finer.settings.build().map_err(|e| e.to_string())?;
+    built(&finer.settings).map_err(|e| e.to_string())?;
     let verdict = judge(&finer);
     Ok(Refined {
         same_outcome: same_way(&drawn.outcome, &verdict.outcome),

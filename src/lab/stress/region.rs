@@ -1,5 +1,6 @@
 //! Which part of the parameter space a case lies in, and what came of the cases of each.
 
+use super::case::built;
 use super::{Case, Mesh, Outcome, Verdict, Worst};
 use crate::scene::Scene;
 use std::fmt::Write;
@@ -226,8 +227,8 @@ impl Totals {
         self.worst.add(case, verdict);
         // (the file of a mesh is gone once its case is done)
         let built = match &case.mesh {
-            Some(mesh) => mesh.stand_in(&case.settings).build(),
-            None => case.settings.build(),
+            Some(mesh) => built(&mesh.stand_in(&case.settings)),
+            None => built(&case.settings),
         };
         let Ok(scene) = built else {
             return;

@@ -1,5 +1,6 @@
 //! Makes a case that fails as small and as plain as it gets while it fails in the same way.
 
+use super::case::built;
 use super::invariants::judge;
 use super::{Case, Outcome, Verdict};
 use crate::settings::SceneSettings;
@@ -48,7 +49,7 @@ impl Best {
     fn attempt(&mut self, change: impl Fn(&mut Case)) {
         let mut case = self.case.clone();
         change(&mut case);
-        if case == self.case || self.runs == RUNS || case.settings.build().is_err() {
+        if case == self.case || self.runs == RUNS || built(&case.settings).is_err() {
             return;
         }
         self.runs += 1;

@@ -15,7 +15,8 @@ pub use mesh::Mesh;
 pub use outcome::{Invariant, Outcome, Verdict};
 pub use prism::Prism;
 
-use crate::settings::SceneSettings;
+use crate::scene::{Scene, SceneError};
+use crate::settings::{NozzleFollows, SceneSettings};
 use crate::signals::Inputs;
 
 /// What the input signals do.
@@ -86,4 +87,13 @@ pub struct Case {
     pub step: f64,
     /// held over step k (the nozzle arrives at its end); the last one only ends the run
     pub inputs: Vec<Inputs>,
+}
+
+/// The scene of these settings. Where no law leads the nozzle, it follows the inputs of the case.
+pub fn built(settings: &SceneSettings) -> Result<Scene, SceneError> {
+    let follows = match settings.traverse.mode.as_str() {
+        "by-angle" => NozzleFollows::Input,
+        _ => NozzleFollows::Law,
+    };
+    settings.build_for(follows).map(|(scene, _)| scene)
 }

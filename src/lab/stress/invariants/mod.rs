@@ -15,6 +15,7 @@ mod watch;
 mod wire_in_wire;
 mod work;
 
+use super::case::built;
 use super::{Case, Invariant, Measures, Outcome, Verdict};
 use crate::signals::{Event, EventKind};
 use crate::simulation::{SimError, Simulation};
@@ -38,9 +39,7 @@ pub fn judge(case: &Case) -> Verdict {
 }
 
 fn wind(case: &Case, measures: &mut Measures) -> Outcome {
-    let started = case
-        .settings
-        .build()
+    let started = built(&case.settings)
         .map_err(|e| SimError::setup(e.to_string()))
         .and_then(|scene| Simulation::starting_with(&scene, case.inputs[0]));
     let mut sim = match started {
