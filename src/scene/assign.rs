@@ -2,6 +2,7 @@
 
 use super::allowed::{allowed_for, unit_meant};
 use super::error::Warning;
+use super::follow_on::refuses;
 use super::key::{Key, resolve};
 use super::problems::Problems;
 use super::{Scene, SceneError};
@@ -43,7 +44,11 @@ impl SceneSettings {
         let mut problems = Problems::default();
         let (mut settings, mut found) = Self::load_with(name_or_path)?;
         for (name, text) in set {
-            found.extend(settings.set_text(name, text).err());
+            match settings.set_text(name, text) {
+                // it takes the place of what the scene has
+                Ok(()) => found.retain(|error| !refuses(error, name)),
+                Err(error) => found.push(error),
+            }
         }
         let built = settings.build_without(&found, follows(&settings));
         found.into_iter().for_each(|error| problems.add(error));

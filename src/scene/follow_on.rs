@@ -20,6 +20,17 @@ fn refused(error: &SceneError) -> Option<&'static Variable> {
     Some(resolve(key, "", &Origin::Set).ok()?.variable)
 }
 
+/// Whether an error refuses the value of the leaf that this key names, in whatever unit.
+pub(super) fn refuses(error: &SceneError, name: &str) -> bool {
+    let of_value = matches!(
+        error,
+        SceneError::WrongType { .. } | SceneError::OutOfRange { .. }
+    );
+    let leaf = resolve(name, "", &Origin::Set).ok();
+    let leaf = leaf.map(|key| key.variable.name);
+    of_value && refused(error).map(|variable| variable.name) == leaf
+}
+
 /// The key that an error is about.
 fn key_of(error: &SceneError) -> Option<&str> {
     match error {

@@ -37,6 +37,35 @@ fn all_that_is_wrong_is_told_at_once() {
     );
 }
 
+/// A speed out of range in a file was told although `--set` gave another one.
+#[test]
+fn a_value_set_by_name_takes_the_place_of_a_wrong_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("slow.toml");
+    std::fs::write(&scene, "[spindle]\nspeed = 0.001\nramp_turns = 'x'\n").unwrap();
+    let built = |set: &[(&str, &str)]| {
+        let set: Vec<_> = set
+            .iter()
+            .map(|(k, v)| (k.to_string(), v.to_string()))
+            .collect();
+        SceneSettings::load_and_build(scene.to_str().unwrap(), &set, |_| NozzleFollows::Law)
+            .map(|(settings, ..)| settings.spindle.speed)
+            .map_err(|error| error.to_string())
+    };
+    let both = [("spindle.speed_rpm", "600"), ("spindle.ramp_turns", "0.5")];
+    assert!((built(&both).unwrap() - 62.8).abs() < 0.1);
+    let one = built(&both[..1]).unwrap_err();
+    assert!(
+        one.contains("slow.toml:3") && !one.contains("slow.toml:2"),
+        "{one}"
+    );
+    let wrong_too = built(&[("spindle.speed", "1e9"), both[1]]).unwrap_err();
+    assert!(
+        wrong_too.contains("slow.toml:2") && wrong_too.contains("1e9"),
+        "{wrong_too}"
+    );
+}
+
 /// Mistakes in the table of speeds were told only once everything else was right, those of the nozzle's only once the core was.
 #[test]
 fn tables_are_read_whatever_else_is_wrong() {
