@@ -1,5 +1,6 @@
 //! What happens within a communication step is seen at its end, and what does not move stays.
 
+use coilwind::measure::STATION_STEP;
 use coilwind::settings::SceneSettings;
 use coilwind::signals::{EventKind, Outputs};
 use coilwind::simulation::Simulation;
@@ -49,6 +50,27 @@ fn slack_that_passes_within_a_step_is_seen() {
         "{o:?}"
     );
     assert_eq!((o.defect_count, o.defect_kind), (1, 16));
+}
+
+/// A last turn that snapped into its groove took the tension away for 6 to 30 us, and condemned coils of which all turns lay in their places.
+#[test]
+fn slack_in_which_no_wire_is_laid_is_none() {
+    let mut sim = wound(100.0, 0.7e-3, 30);
+    let mut inputs = sim.inputs();
+    for (back, told) in [(0.8 * STATION_STEP, false), (5.0 * STATION_STEP, true)] {
+        // the core gives wire back, and draws it in again
+        inputs.spindle_speed = -600.0;
+        sim.advance(inputs, back / 600.0).unwrap();
+        inputs.spindle_speed = 100.0;
+        let mut least = sim.outputs().wire_tension_min;
+        for _ in 0..50 {
+            sim.advance(inputs, 1e-4).unwrap();
+            least = sim.outputs().wire_tension_min.min(least);
+        }
+        let o = sim.outputs();
+        assert_eq!((least, o.defect_count_slack), (0.0, i32::from(told)));
+        assert!(!o.defect_slack && o.wire_tension > 1.0);
+    }
 }
 
 /// A core that turns away and comes back to where the wire was slack has slack of another time there: it was counted once for all.

@@ -1,8 +1,11 @@
 //! Faults of the wire itself: slack and break, kept as defects with their place, and the verdict on the run.
 
 use super::Winding;
+use crate::feed::FeedSpec;
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
-use crate::measure::{Defect, DefectKind, DefectPlace, OnTurn, TurnMeasures, Verdict};
+use crate::measure::{
+    Defect, DefectKind, DefectPlace, OnTurn, STATION_STEP, TurnMeasures, Verdict,
+};
 use crate::signals::EventKind;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -21,14 +24,19 @@ impl Winding {
         let t = self.wire_tension();
         self.run.outputs.meet_tension(t);
         self.run.outputs.meet_depth(self.sys.state.depth);
-        let slack = t < self.slack_tension();
-        if slack {
-            self.note_slack();
+        let now = (self.sys.state.spindle.angle, self.sys.state.time);
+        self.run.slack_since = match t < self.slack_tension() {
+            true => self.run.slack_since.or(Some(now)),
+            false => None,
+        };
+        let slack = self.run.slack_since.filter(|since| self.lasts(*since));
+        if let Some((_, since)) = slack {
+            self.note_slack(since);
         } else if self.run.slack_at.is_some_and(|at| !self.is_same_slack(at)) {
             // the core may come back to where it was
             self.run.slack_at = None;
         }
-        self.run.was_slack = slack;
+        self.run.was_slack = slack.is_some();
         self.watch_yardstick();
     }
 
@@ -38,12 +46,23 @@ impl Winding {
         weight * 0.5 * self.scene.nozzle.distance
     }
 
+    /// Whether wire is slack that has lost its tension at this angle of the core, rad, and time, s: until a station of it is laid, or
+    /// for as long as the tensioner on its line takes to follow, a radian of its swing. A turn that snaps into its groove takes the tension away for some microseconds, and
+    /// no wire is laid in them.
+    fn lasts(&self, (core, since): (f64, f64)) -> bool {
+        let radian = |feed: FeedSpec| (feed.mass / feed.line_stiffness).sqrt();
+        let state = &self.sys.state;
+        (state.spindle.angle - core).abs() >= STATION_STEP
+            || state.time - since >= self.sys.model.feed.map_or(0.0, radian)
+    }
+
     /// Whether wire that is slack now is so still where it was slack with the core at this angle, rad.
     fn is_same_slack(&self, core: f64) -> bool {
         (self.sys.state.spindle.angle - core).abs() < SAME_SLACK
     }
 
-    fn note_slack(&mut self) {
+    /// Keeps slack that began at the time `since`, s.
+    fn note_slack(&mut self, since: f64) {
         let (core, now) = (self.sys.state.spindle.angle, self.sys.state.time);
         let last = self.run.slack_at.replace(core);
         let slack = |fault: &&mut Defect| fault.kind == DefectKind::Slack;
@@ -54,6 +73,9 @@ impl Winding {
             return;
         }
         self.note_fault(DefectKind::Slack, self.lift_off());
+        if let Some(fault) = self.run.faults.last_mut() {
+            fault.time_s = since;
+        }
         self.report(
             EventKind::Slack,
             format!(

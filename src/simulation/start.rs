@@ -318,6 +318,7 @@ impl Winding {
             told_tighter: false,
             told_over: false,
             was_slack: false,
+            slack_since: None,
             faults: Vec::new(),
             told_turns: 0,
             told_defects: Vec::new(),

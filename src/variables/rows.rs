@@ -271,7 +271,7 @@ table! {
     flag(104, defect_gap, "neighbouring turns lie apart by more than allowed");
     flag(105, defect_overlap, "a turn has climbed on its neighbour or changed places with it");
     flag(106, defect_break, "the wire has parted: tension above its strength, or a kink");
-    flag(107, defect_slack, "tension below the weight of half the free span");
+    flag(107, defect_slack, "tension below the weight of half the free span, for a degree of the core or for as long as the tensioner takes to follow");
     count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16, double turn 32, skipped groove 64, early layer jump 128, late layer jump 256, loose turn 512, overstretch 1024, collision 2048, runaway 4096");
     count(Output, 109, defect_count, "defects of coil and wire, of every kind");
     output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect, where it was found");
