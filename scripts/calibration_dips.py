@@ -9,6 +9,7 @@ import numpy as np
 from calibration_curves import rms
 from calibration_noise import LEVEL, autocorrelation, chance, from_row_to_row
 from calibration_rest import AUTOCORRELATED
+from failure import Mistake
 
 # Half the first box, in the logarithms of the parameters: a factor of 3. Rounds, places of a round for each parameter, and how many of
 # the best places a search begins at.
@@ -43,7 +44,18 @@ def deepest(fit, found):
         best = min(costs, key=costs.get)
         if costs[best] < lowest:
             centre, lowest = np.array(best), costs[best]
-    ends = [fit.solve(np.array(place)) for place in sorted(costs, key=costs.get)[:FOLLOWED]]
+    places = [np.array(place) for place in sorted(costs, key=costs.get)[:FOLLOWED] if np.isfinite(costs[place])]
     # A dip at an end of the range would be no fit.
-    end = min(filter(fit.is_within, ends), key=lambda one: one.cost, default=found)
+    ends = [end for place in places if (end := followed(fit, place)) and fit.is_within(end)]
+    end = min(ends, key=lambda one: one.cost, default=found)
     return fit.settle(end) if end.cost < (1.0 - LOWER) * found.cost else found
+
+
+def followed(fit, place):
+    """The solution that a search from a place ends in; `None` where it comes to values that the scene refuses."""
+    try:
+        return fit.solve(place)
+    except Mistake:
+        if fit.model.stopped:
+            raise
+        return None
