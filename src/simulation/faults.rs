@@ -46,9 +46,10 @@ impl Winding {
         weight * 0.5 * self.scene.nozzle.distance
     }
 
-    /// Whether wire is slack that has lost its tension at this angle of the core, rad, and time, s: until a station of it is laid, or
-    /// for as long as the tensioner on its line takes to follow, a radian of its swing. A turn that snaps into its groove takes the tension away for some microseconds, and
-    /// no wire is laid in them.
+    /// Whether wire that lost its tension at this angle of the core, rad, and time, s, is slack by now.
+    ///
+    /// It is once a station of it is laid so, or once the tensioner on its line could have followed: after a radian of its swing. A turn
+    /// that snaps into its groove takes the tension away for some microseconds, and no wire is laid in them.
     fn lasts(&self, (core, since): (f64, f64)) -> bool {
         let radian = |feed: FeedSpec| (feed.mass / feed.line_stiffness).sqrt();
         let state = &self.sys.state;
