@@ -344,7 +344,7 @@ fn level_walk(
 fn box_distance_sq(bounds: &Box3, p: V3) -> f64 {
     let (low, high) = (bounds.min.coords, bounds.max.coords);
     let outside = (low - p).sup(&(p - high)).sup(&V3::zeros());
-    let scale = low.abs().sup(&high.abs()).max();
-    let understated = (outside.norm() - 1e-14 * scale).max(0.0);
-    understated * understated * (1.0 - SLACK)
+    let rounding = 1e-14 * low.abs().sup(&high.abs()).max();
+    // (n - e)^2 is at least n^2 (1 - s) - e^2 / s
+    outside.norm_squared() * (1.0 - 2.0 * SLACK) - rounding * rounding / SLACK
 }

@@ -21,6 +21,7 @@ mod stl_text;
 mod bodies;
 mod bvh;
 mod crossing;
+mod distance_grid;
 mod elements;
 mod error;
 mod feature;

@@ -2,12 +2,14 @@
 
 use super::bodies;
 use super::bvh::Bvh;
+use super::distance_grid::DistanceGrid;
 use super::feature::Nearest;
 use super::level::LevelNearest;
 use super::mesh::TriMesh;
 use super::touch::Touch;
 use super::wall::WallFoot;
 use crate::math::V3;
+use std::sync::OnceLock;
 
 /// Feet nearer to each other than this share of the radius that is searched are one, such as those on two triangles at one vertex.
 const SAME_FOOT: f64 = 1e-9;
@@ -17,6 +19,8 @@ const SAME_FOOT: f64 = 1e-9;
 pub struct Surface {
     mesh: TriMesh,
     bvh: Bvh,
+    /// made when something is first asked of the surface
+    grid: OnceLock<DistanceGrid>,
     bounds: (V3, V3),
     radius_max: f64,
 }
@@ -40,6 +44,7 @@ impl Surface {
         Self {
             mesh,
             bvh,
+            grid: OnceLock::new(),
             bounds,
             radius_max,
         }
@@ -53,6 +58,12 @@ impl Surface {
     /// Its search tree.
     pub(super) fn tree(&self) -> &Bvh {
         &self.bvh
+    }
+
+    /// Bounds of its distance.
+    pub(super) fn grid(&self) -> &DistanceGrid {
+        self.grid
+            .get_or_init(|| DistanceGrid::new(&self.mesh, &self.bvh, self.bounds))
     }
 
     /// Lowest and highest corner of the bounding box, m.
@@ -82,26 +93,37 @@ impl Surface {
 
     /// Signed distance, closest point and normal of a point `p`, core frame, m.
     pub fn nearest(&self, p: V3) -> Nearest {
-        self.bvh.nearest(&self.mesh, p)
+        self.nearest_from(p, u32::MAX).0
     }
 
-    /// A lower bound of the signed distance of `p` (core frame, m), m: that of the bounding box. Negative inside the box.
+    /// A lower bound of the signed distance of `p` (core frame, m), m: that of the bounding box outside it, that of a grid inside.
     pub(crate) fn lower_bound(&self, p: V3) -> f64 {
         let (low, high) = self.bounds;
-        box_distance((low - p).sup(&(p - high)))
+        let of_box = box_distance((low - p).sup(&(p - high)));
+        match of_box > 0.0 {
+            true => of_box,
+            false => self.grid().bounds(p).least,
+        }
     }
 
     /// Whether the signed distance of `p` (core frame, m) is below `reach`, m.
     pub(crate) fn is_within(&self, p: V3, reach: f64) -> bool {
-        let bound = self.lower_bound(p);
+        if self.lower_bound(p) >= reach {
+            return false;
+        }
         // any triangle will do; deep inside, where none is near, the sign decides
-        bound < reach
-            && (self.bvh.reaches(&self.mesh, p, reach)
-                || bound < 0.0 && self.nearest(p).distance < reach)
+        self.grid().bounds(p).most < reach
+            || self.bvh.reaches(&self.mesh, p, reach)
+            || self.nearest(p).distance < reach
     }
 
-    /// [`Self::nearest`] and its triangle, looked for from a triangle that may be it.
+    /// [`Self::nearest`] and its triangle, looked for from a triangle that may be it, or from that of the grid where there is none of
+    /// that number.
     pub(crate) fn nearest_from(&self, p: V3, guess: u32) -> (Nearest, u32) {
+        let guess = match (guess as usize) < self.mesh.len() {
+            true => guess,
+            false => self.grid().bounds(p).triangle,
+        };
         self.bvh.nearest_from(&self.mesh, p, guess)
     }
 

@@ -86,7 +86,9 @@ impl Coil {
     /// The record of a station, with the runs and sums carried on from the one before.
     pub(crate) fn judge(&self, mut record: Record) -> Record {
         let mut runs_before = [Run::default(); MEASURED];
+        let mut goes_on = false;
         if let Some(last) = self.records.last() {
+            goes_on = !record.station.measured && last.row.number == record.row.number;
             runs_before = last.runs;
             record.raised = last.raised;
             record.last_defect = last.last_defect;
@@ -96,9 +98,10 @@ impl Coil {
         for kind in DefectKind::MEASURED {
             let (value, limit, least) = self.criterion(kind, &record);
             let k = kind as usize;
-            // beside the clamp nothing is judged, and a run goes on behind it
+            // beside the clamp, or where wire may climb, nothing is judged; a run goes on behind that, in the same row
+            let goes_on = goes_on || !self.is_free_of_clamp(record.station.angle);
             record.runs[k] = match value {
-                None if !self.is_free_of_clamp(record.station.angle) => runs_before[k],
+                None if goes_on => runs_before[k],
                 _ => runs_before[k].next(value, limit),
             };
             if record.runs[k].counts(least) && !runs_before[k].counts(least) {

@@ -2,8 +2,8 @@
 
 use crate::coils::{D, limits, on_cylinder, spec, wound};
 use coilwind::measure::{
-    BulgeLimit, CoilSpec, DefectFlags, DefectLimits, Profile, STATION_STEP, STATIONS_PER_TURN,
-    Verdict,
+    BulgeLimit, CoilSpec, DefectFlags, DefectKind, DefectLimits, Profile, STATION_STEP,
+    STATIONS_PER_TURN, Verdict,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -177,6 +177,20 @@ fn a_second_layer_after_the_traverse_turned_back_is_no_defect() {
     assert!(station.bulge.abs() < 1e-9, "lies on the wires below");
     let last = coil.stations().nth(4 * STATIONS_PER_TURN + 100).unwrap();
     assert!((last.neighbour.unwrap().axial - D).abs() < 1e-6 * D);
+}
+
+/// Where the nozzle turns, nothing is judged for a quarter of a turn: that cut a gap of one row in two.
+#[test]
+fn a_gap_that_goes_on_where_the_nozzle_turns_is_one() {
+    let aside = |turn: f64| if turn > 3.3 { 0.5 * D } else { 0.0 };
+    let beside = |angle: f64| (D * angle / TAU + aside(angle / TAU), 0.0);
+    let mut coil = wound(spec(), &on_cylinder(4.28, 1.0, beside));
+    coil.begin_pass(4.1 * TAU, -1.0);
+    let defects = coil.defects();
+    assert!(
+        matches!(&defects[..], [gap] if gap.kind == DefectKind::Gap),
+        "{defects:?}"
+    );
 }
 
 #[test]
