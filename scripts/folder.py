@@ -89,7 +89,8 @@ def remove_empty(folder):
 
 def write_whole(path, write):
     """Has `write` write a file beside `path`, which takes its name at the end: a reader never finds half of it."""
-    partial = path.with_name(f"{path.name}.partial")
+    # (by the ending, encoders tell what to write)
+    partial = path.with_name(f"{path.stem}.partial{path.suffix}")
     try:
         write(partial)
         os.replace(partial, path)

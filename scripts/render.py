@@ -18,8 +18,11 @@ import warnings
 from pathlib import Path
 from xml.etree import ElementTree
 
+import imageio
+import imageio_ffmpeg
 import numpy as np
 import pyvista as pv
+from PIL import Image
 from vtkmodules.vtkCommonCore import vtkLogger
 
 import folder as folders
@@ -143,8 +146,13 @@ def picture(args):
     plotter = coil.stage()
     plotter.add_mesh(coil.tube(coil.end), reset_camera=False, **coil.look)
     output = args.output or args.run / "render.png"
-    plotter.screenshot(output)
+    folders.write_whole(output, lambda path: shot(plotter).save(path, "PNG"))
     return output
+
+
+def shot(plotter):
+    """The picture that is on the stage."""
+    return Image.fromarray(plotter.screenshot(return_img=True))
 
 
 def film(args):
@@ -156,28 +164,45 @@ def film(args):
     for file in files:
         check(args.run, *file)
     plotter = coil.stage()
-    if args.film.suffix == ".mp4":
-        plotter.open_movie(args.film, framerate=args.rate, quality=7)
-    else:
-        plotter.open_gif(args.film, fps=args.rate, loop=0)
     progress = Progress("frames", len(frames))
-    for (time, _), file in zip(frames, files):
-        try:
+
+    def pictures():
+        for (time, _), file in zip(frames, files):
             wire = read(args.run, *file)
-        except Mistake:
-            progress.end()
-            plotter.close()
-            args.film.unlink(missing_ok=True)
-            raise
-        if wire.n_points < 2:
-            continue
-        plotter.add_mesh(coil.tube(wire), name="wire", reset_camera=False, **coil.look)
-        plotter.add_text(f"{1e3 * time:.1f} ms", name="time", font_size=12, color="black", position="upper_left")
-        plotter.write_frame()
-        progress.step()
-    progress.end()
-    plotter.close()
+            if wire.n_points < 2:
+                continue
+            plotter.add_mesh(coil.tube(wire), name="wire", reset_camera=False, **coil.look)
+            plotter.add_text(f"{1e3 * time:.1f} ms", name="time", font_size=12, color="black", position="upper_left")
+            yield shot(plotter)
+            progress.step()
+
+    write = write_mp4 if args.film.suffix == ".mp4" else write_gif
+    try:
+        folders.write_whole(args.film, lambda path: write(path, pictures(), args.rate))
+    finally:
+        progress.end()
     return args.film
+
+
+def write_gif(path, pictures, rate):
+    first, *others = pictures
+    first.save(path, "GIF", save_all=True, append_images=others, duration=1000 / rate, loop=0)
+
+
+def write_mp4(path, pictures, rate):
+    count = 0
+    # Blocks of other sizes than 2 would change that of the film.
+    with imageio.get_writer(path, "FFMPEG", fps=rate, quality=7, macro_block_size=2) as film:
+        for picture in pictures:
+            film.append_data(np.asarray(picture))
+            count += 1
+    # The encoder does not say what it could not write.
+    try:
+        written, _ = imageio_ffmpeg.count_frames_and_secs(path)
+    except RuntimeError:
+        written = 0
+    if written != count:
+        raise OSError(f"{written} of {count} frames can be read again; the disk may be full")
 
 
 def frames_of(run):

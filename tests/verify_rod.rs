@@ -271,6 +271,16 @@ fn sharp_bends_of_thick_fine_and_hard_wire_are_as_exact_as_those_of_the_packed_o
     assert_eq!(right, Ok(true), "{table}");
 }
 
+/// Rounding of the places of a stiff wire moves its tension by more than a share of so small a load: it never came to rest.
+#[test]
+fn a_long_wire_under_a_small_torque_comes_to_rest() {
+    let args = VerifyOptions {
+        files: vec!["tests/reference/once_wrong/torsion_long.json".into()],
+        ..VerifyOptions::default()
+    };
+    assert_eq!(run(&args, |_| ()), Ok(true));
+}
+
 /// Each jump of the direction at the edge set off a swing, which steps of small tolerances follow, and the wire yielded in it.
 #[test]
 fn the_bend_at_an_edge_does_not_hang_on_the_tolerance() {

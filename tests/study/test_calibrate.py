@@ -176,7 +176,7 @@ def test_results_are_not_overwritten_without_a_word(calibrate, short, tmp_path):
 
 
 def test_a_full_disk_is_told_in_a_line(calibrate, short, tmp_path):
-    (tmp_path / "residuals.csv.partial").symlink_to("/dev/full")
+    (tmp_path / "residuals.partial.csv").symlink_to("/dev/full")
     code, said = calibrate(short, *SHORT, "--fit", "tensioner.mass=1.5e-3", "--out", tmp_path)
     assert code == 3 and said.endswith(f"calibrate.py: cannot write {tmp_path}/residuals.csv: No space left on device\n"), said
     assert "wind with" in said and "Traceback" not in said

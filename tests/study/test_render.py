@@ -1,6 +1,7 @@
 """scripts/render.py draws the wire that a run has, and frames are read by VTK's own reader."""
 
 import os
+import shlex
 import shutil
 import subprocess
 from pathlib import Path
@@ -104,6 +105,24 @@ def test_a_film_has_the_frames(run, script, tmp_path):
     code, said = script("scripts/render.py", run, "--film", film, "--size", "160x120", python=RENDER)
     assert code == 0, said
     assert render_python(f"import imageio; print(len(imageio.mimread(r'{film}')))") == "3\n"
+
+
+def test_a_film_has_the_size_that_is_asked_for(run, script, tmp_path):
+    film = tmp_path / "x.mp4"
+    code, said = script("scripts/render.py", run, "--film", film, "--size", "162x122", python=RENDER)
+    assert code == 0 and "WARNING" not in said, said
+    assert render_python(f"import imageio; f = imageio.get_reader(r'{film}'); print(f.get_meta_data()['size'], f.count_frames())") == "(162, 122) 3\n"
+
+
+@pytest.mark.parametrize("output", [["-o", "x.png"], ["--film", "x.gif"], ["--film", "x.mp4"]])
+def test_a_full_disk_leaves_no_half_of_a_picture_or_film(output, run, root, tmp_path):
+    kept = tmp_path / output[1]
+    kept.write_bytes(b"before")
+    line = shlex.join([str(RENDER), "scripts/render.py", str(run), output[0], str(kept), "--size", "640x480"])
+    done = subprocess.run(["bash", "-c", f"ulimit -f 8; {line}"], cwd=root, capture_output=True, text=True)
+    assert done.returncode == 3, done
+    assert f"cannot write {kept}: " in done.stderr and "Traceback" not in done.stderr, done.stderr
+    assert kept.read_bytes() == b"before" and os.listdir(tmp_path) == [output[1]]
 
 
 @pytest.mark.parametrize(

@@ -35,13 +35,18 @@ const RESTS: f64 = 0.02;
 const IMBALANCE: f64 = 1e-4;
 /// The same over `EI / L^2`, which counts where nothing loads the wire any more.
 const IMBALANCE_FREE: f64 = 1e-6;
+/// Roundings of a place that a tension may be off by: those of the two ends of an edge, for the edges on both sides of a node.
+const ROUNDINGS: f64 = 4.0;
 
-/// Whether the forces on every node balance.
+/// Whether the forces on every node balance, as far as rounding of their places lets them.
 fn balanced(sys: &System) -> Result<bool, VerifyError> {
     let (worst, load) = out_of_balance(sys)?;
-    let length: f64 = sys.state.rod.rest.iter().sum();
-    let free = IMBALANCE_FREE * sys.model.section.ei / (length * length);
-    Ok(worst <= (IMBALANCE * load).max(free))
+    let (rest, section) = (&sys.state.rod.rest, &sys.model.section);
+    let length: f64 = rest.iter().sum();
+    let shortest = rest.iter().copied().fold(f64::INFINITY, f64::min);
+    let free = IMBALANCE_FREE * section.ei / (length * length);
+    let rounding = ROUNDINGS * f64::EPSILON * section.ea * length / shortest;
+    Ok(worst <= (IMBALANCE * load).max(free).max(rounding))
 }
 
 /// The wind's own steps on their way to rest.
