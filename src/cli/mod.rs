@@ -14,6 +14,7 @@ mod lock;
 mod members;
 mod motion;
 mod progress;
+mod read_files;
 mod report;
 mod run;
 mod runs_bar;

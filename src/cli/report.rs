@@ -47,7 +47,7 @@ pub(super) fn report(args: &ReportArgs) -> Result<(), Failure> {
             );
         }
         if !missing.is_empty() && directory.join(SCENE).exists() {
-            eprintln!("for a whole page, {}", begin_again(directory));
+            eprintln!("for a whole page, {}", what_ends_it(directory));
         }
     }
     print(&format!("report: {}\n", page.display()))
@@ -68,14 +68,21 @@ fn refuse_unfinished(directory: &Path) -> Result<(), Failure> {
     if has("summary.json") || !has(SCENE) {
         return Ok(());
     }
-    let next = match has(checkpoint::FILE) {
-        true => format!("go on with: {}", resume_command(&place)),
-        false => begin_again(directory),
-    };
     Err(Failure::Resume {
         directory: place.to_string(),
-        reason: format!("the run was stopped before it wrote its results; {next}"),
+        reason: format!(
+            "the run was stopped before it wrote its results; {}",
+            what_ends_it(directory)
+        ),
     })
+}
+
+/// What brings the run in a folder to its end: one that can go on does not begin again.
+fn what_ends_it(directory: &Path) -> String {
+    match directory.join(checkpoint::FILE).exists() {
+        true => format!("go on with: {}", resume_command(directory.display())),
+        false => begin_again(directory),
+    }
 }
 
 /// What a folder without a run holds, if that has pages.

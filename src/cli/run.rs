@@ -6,6 +6,7 @@ use super::failure::Failure;
 use super::folder;
 use super::frames::Frames;
 use super::progress::Progress;
+use super::read_files;
 use super::shell::{begin_again, note, resume_command};
 use super::terminal::{print, stop_flag};
 use clap::Args;
@@ -339,7 +340,8 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
     folder::prepare(&directory, args.force)?;
     let history = History::create(&directory.join("history.csv"))?;
-    folder::begin(&directory, &settings, &note(&args.wound_with()))?;
+    let read = read_files::note(&settings, args.inputs.as_deref());
+    folder::begin(&directory, &settings, &(note(&args.wound_with()) + &read))?;
     Ok(Start {
         frames: Frames::new(&directory, args.frames, drive.end())?,
         directory,

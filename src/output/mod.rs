@@ -18,7 +18,7 @@ mod whole;
 
 pub use history::{History, Mark};
 pub use picture::{Colouring, CoreMesh, Picture, render, render_png};
-pub use report::{ReportError, WOUND_WITH, missing_files, write_report};
+pub use report::{READ, ReportError, WOUND_WITH, missing_files, write_report};
 pub use results::{Ending, RESULTS, Snapshot, write_results};
 pub use summary::write_summary;
 pub use tables::{write_defects, write_stations, write_turns};

@@ -192,6 +192,12 @@ pub fn write_results(
         real_time_factor,
         summary,
     };
+    let summary = write_summary(&directory.join("summary.json"), &report);
+    let stations = write_stations(
+        &directory.join("stations.csv"),
+        simulation.coil().stations(),
+    );
+    // (last, since nothing takes as much memory)
     let geometry = snapshot.map_or(Ok(()), |snapshot| {
         let core = snapshot.mesh();
         let surface = write_core_vtp(&directory.join("core.vtp"), core.vertices, core.triangles);
@@ -199,16 +205,7 @@ pub fn write_results(
             .write(&directory.join("coil"), simulation)
             .and(surface)
     });
-    [
-        turns,
-        defects,
-        write_summary(&directory.join("summary.json"), &report),
-        write_stations(
-            &directory.join("stations.csv"),
-            simulation.coil().stations(),
-        ),
-        geometry,
-    ]
-    .into_iter()
-    .collect()
+    [turns, defects, summary, stations, geometry]
+        .into_iter()
+        .collect()
 }

@@ -1,6 +1,6 @@
 //! What differs between the scenes and the options of two runs, in the words of the variable table.
 
-use super::options::{CoilOption, OF_COIL, Options};
+use super::options::{CoilOption, OF_COIL, Options, checksum};
 use crate::settings::SceneSettings;
 use crate::variables::{Access, Value, Variable, table, units};
 use serde::Serialize;
@@ -21,30 +21,40 @@ pub(super) struct Difference {
 /// What a key has in place of a value where nothing reads it.
 const NO_EFFECT: &str = "no effect";
 
+/// What follows the name of the second run's file where the first run's has the same name.
+const OTHER_CONTENT: &str = " (with other content)";
+
 /// Options and parameters that differ between the runs in two folders, in the order of the table; `None` where a scene is missing or
 /// cannot be read. What a run writes, and where to, is no difference of coils. Nor is a key that neither of them reads.
 pub(super) fn differences(one: &Path, other: &Path) -> Option<Vec<Difference>> {
     let scenes = [scene(one)?, scene(other)?];
     let idle = scenes.each_ref().map(SceneSettings::idle_keys);
     let options = [one, other].map(Options::read);
-    let of_options = OF_COIL.iter().filter_map(|of| of_option(of, &options));
+    let other_content = |name: &str| {
+        let sums = [one, other].map(|folder| checksum(folder, name));
+        sums[0].is_some() && sums[1].is_some() && sums[0] != sums[1]
+    };
+    let of_options = OF_COIL
+        .iter()
+        .filter_map(|of| of_option(of, &options, other_content(of.name)));
     let coil = table()
         .iter()
         .filter(|row| !row.name.starts_with("output."));
-    let of_scenes = coil.filter_map(|row| difference(row, &scenes, &idle));
+    let of_scenes = coil.filter_map(|row| difference(row, &scenes, &idle, other_content(row.name)));
     Some(of_options.chain(of_scenes).collect())
 }
 
-fn of_option(of: &CoilOption, options: &[Options; 2]) -> Option<Difference> {
+fn of_option(of: &CoilOption, options: &[Options; 2], other_content: bool) -> Option<Difference> {
     let [one, other] = options.each_ref().map(|options| options.value(of.name));
     let shown = |value: Option<&str>| {
         let text = format!("{} {}", value?, of.unit);
         Some(text.trim_end().to_owned())
     };
-    (one != other).then(|| Difference {
+    let values = [one, other].map(|value| shown(value).unwrap_or_default());
+    (one != other || other_content).then(|| Difference {
         name: of.name,
         meaning: of.meaning,
-        values: [one, other].map(|value| shown(value).unwrap_or_default()),
+        values: marked(values),
     })
 }
 
@@ -57,6 +67,7 @@ fn difference(
     row: &Variable,
     scenes: &[SceneSettings; 2],
     idle: &[BTreeSet<&str>; 2],
+    other_content: bool,
 ) -> Option<Difference> {
     let Access::Parameter { get, .. } = row.access else {
         return None;
@@ -64,14 +75,22 @@ fn difference(
     let values = scenes.each_ref().map(get);
     let idle = idle.each_ref().map(|keys| keys.contains(row.name));
     let differs = row.name != "scene.file" && values[0] != values[1] && idle != [true, true];
-    differs.then(|| Difference {
+    (differs || other_content).then(|| Difference {
         name: row.name,
         meaning: row.description,
-        values: [0, 1].map(|run| match idle[run] {
+        values: marked([0, 1].map(|run| match idle[run] {
             true => NO_EFFECT.to_owned(),
             false => shown(row, &values[run]),
-        }),
+        })),
     })
+}
+
+/// Two values that differ, the second one marked where it has the words of the first.
+fn marked([one, other]: [String; 2]) -> [String; 2] {
+    match one == other {
+        true => [one, other + OTHER_CONTENT],
+        false => [one, other],
+    }
 }
 
 /// A value in the unit that people use, or what a 0 stands for.
@@ -95,6 +114,7 @@ fn shown(row: &Variable, value: &Value) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::options::{READ, WOUND_WITH};
     use super::*;
 
     #[test]
@@ -143,6 +163,27 @@ mod tests {
         let told: Vec<_> = found.iter().map(|d| (d.name, &d.values)).collect();
         let values = ["of the material".to_owned(), "100 MPa".to_owned()];
         assert_eq!(told, [("wire.yield_stress", &values)]);
+    }
+
+    /// A core of the same name that had been drawn anew in between was no difference.
+    #[test]
+    fn a_file_of_the_same_name_and_other_content_is_told() {
+        let [one, other] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
+        let scene = "[core]\nshape = \"mesh\"\nfile = \"/core.stl\"\n";
+        let put = |folder: &tempfile::TempDir, inputs: u32, core: u32| {
+            let head = format!(
+                "{WOUND_WITH} --inputs a.csv\n{READ} core.file={core:08x} --inputs={inputs:08x}\n"
+            );
+            fs::write(folder.path().join("scene.toml"), head + scene).expect("a file");
+        };
+        put(&one, 7, 8);
+        put(&other, 7, 8);
+        assert_eq!(differences(one.path(), other.path()), Some(Vec::new()));
+        put(&other, 6, 9);
+        let found = differences(one.path(), other.path()).expect("two scenes");
+        let names: Vec<_> = found.iter().map(|d| d.name).collect();
+        assert_eq!(names, ["--inputs", "core.file"]);
+        assert_eq!(found[0].values, ["a.csv", "a.csv (with other content)"]);
     }
 
     /// Keys of a box stood among the differences from a cylinder, and those of a mesh too.

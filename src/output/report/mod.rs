@@ -16,7 +16,7 @@ use differences::{Difference, differences};
 pub use error::ReportError;
 use folder::Run;
 pub use missing::missing_files;
-pub use options::WOUND_WITH;
+pub use options::{READ, WOUND_WITH};
 use serde::Serialize;
 use std::path::Path;
 

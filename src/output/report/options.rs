@@ -1,10 +1,13 @@
-//! The options of a run that are no part of its scene, as the head of its `scene.toml` has them.
+//! The options of a run that are no part of its scene, and what it read, as the head of its `scene.toml` has them.
 
 use std::fs;
 use std::path::Path;
 
 /// Begins the line that has them.
 pub const WOUND_WITH: &str = "# wound with:";
+
+/// Begins the line that has the checksums of the files that a run read.
+pub const READ: &str = "# read:";
 
 /// An option with a value that decides which coil is wound.
 pub(super) struct CoilOption {
@@ -35,6 +38,17 @@ pub(super) const OF_COIL: [CoilOption; 3] = [
         unit: "s",
     },
 ];
+
+/// The checksum of a file that the run in a folder read, by the name of its key or option; none where it is not known.
+pub(super) fn checksum(directory: &Path, name: &str) -> Option<String> {
+    let text = fs::read_to_string(directory.join("scene.toml")).ok()?;
+    let read = text
+        .lines()
+        .take(2)
+        .find_map(|line| line.strip_prefix(READ))?;
+    let of_name = |word: &str| Some(word.strip_prefix(name)?.strip_prefix('=')?.to_owned());
+    words(read).iter().find_map(|word| of_name(word))
+}
 
 /// The options of a run, word by word.
 #[derive(Default)]
