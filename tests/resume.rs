@@ -66,6 +66,28 @@ fn a_run_that_is_killed_goes_on_to_the_same_bytes() {
 }
 
 /// On a communication grid, stopped by a signal, which ends a step in its middle.
+/// A stop in the middle of a step went back to the checkpoint before, which may be that of the start.
+#[test]
+fn a_run_that_is_stopped_loses_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    for k in 0..8 {
+        let out = folder.path().join(k.to_string());
+        let words = ["run", "fig8", "--checkpoint-every", "600", "--no-report"];
+        let mut command = coilwind();
+        command.args(words).arg("--out").arg(&out);
+        let child = command.stderr(Stdio::piped()).spawn().unwrap();
+        wait_for_checkpoint(&out);
+        std::thread::sleep(Duration::from_millis(40 + 3 * k));
+        let mut kill = Command::new("kill");
+        let killed = kill.args(["-INT", &child.id().to_string()]).status();
+        assert!(killed.unwrap().success());
+        let output = child.wait_with_output().unwrap();
+        let said = said(&output);
+        assert_eq!(output.status.code(), Some(130), "{said}");
+        assert!(!said.contains("computed again"), "{said}");
+    }
+}
+
 #[test]
 fn a_run_by_inputs_that_is_stopped_goes_on_to_the_same_bytes() {
     let folder = tempfile::tempdir().unwrap();

@@ -10,7 +10,7 @@ use super::members;
 use super::run::{Judged, RunArgs, wind_one};
 use super::runs_bar::runs_bar;
 use super::shell::{begin_again, resume_command};
-use super::terminal::{print, stop_flag};
+use super::terminal::{StopFlags, print};
 use coilwind::measure::{DefectKind, UNJUDGED, Verdict};
 use coilwind::settings::SceneSettings;
 use rayon::prelude::*;
@@ -192,12 +192,14 @@ fn judged(directory: &Path) -> Result<Judged, Failure> {
 fn wind(args: &RunArgs, directory: &Path, held: Locked, all: Vec<Member>) -> Result<(), Failure> {
     let count = all.len();
     let bar = runs_bar(args.quiet, count as u64);
-    let stop = stop_flag();
+    let stop = StopFlags::on_signals();
     let wind = |member: Member| {
         let ended = match member {
             Member::Ended(judged) => Some(judged),
             // Members that have not begun when Ctrl-C comes leave no folder.
-            Member::Open(one) => (!stop.load(Ordering::SeqCst)).then(|| wind_one(&one, &stop)),
+            Member::Open(one) => {
+                (!stop.asked.load(Ordering::SeqCst)).then(|| wind_one(&one, &stop))
+            }
         };
         bar.inc(1);
         ended

@@ -8,7 +8,7 @@ use super::frames::Frames;
 use super::progress::Progress;
 use super::read_files;
 use super::shell::{begin_again, note, resume_command};
-use super::terminal::{print, stop_flag};
+use super::terminal::{StopFlags, print};
 use clap::Args;
 use clap::builder::NonEmptyStringValueParser;
 use coilwind::measure::{Defect, DefectKind, Verdict};
@@ -18,7 +18,7 @@ use coilwind::settings::{NozzleFollows, SceneSettings};
 use coilwind::simulation::{SimError, Simulation};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 /// Folder of the results where neither `--out` nor the scene names one.
@@ -171,11 +171,11 @@ struct Start {
 
 /// Runs a scene, or goes on with a run.
 pub(super) fn run(args: &RunArgs) -> Result<(), Failure> {
-    wind_one(args, &stop_flag()).map(drop)
+    wind_one(args, &StopFlags::on_signals()).map(drop)
 }
 
 /// The same, until the flag is up.
-pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged, Failure> {
+pub(super) fn wind_one(args: &RunArgs, stop: &StopFlags) -> Result<Judged, Failure> {
     let start = match &args.resume {
         Some(directory) => resume(directory, args)?,
         None => begin(args)?,
@@ -210,7 +210,7 @@ pub(super) fn wind_one(args: &RunArgs, stop: &Arc<AtomicBool>) -> Result<Judged,
             failed: false,
         },
     };
-    simulation.stop_on(Arc::clone(stop));
+    simulation.stop_on(Arc::clone(&stop.overdue));
     let mut ended = record.wind(&mut simulation, &mut drive, stop, args.resume.is_none());
     // The coil of the last row. The checkpoint is of before, so that a run which goes on knows nothing of it.
     match simulation.settled() {
@@ -511,14 +511,14 @@ impl Record {
         &mut self,
         simulation: &mut Simulation,
         drive: &mut Drive,
-        stop: &AtomicBool,
+        stop: &StopFlags,
         new: bool,
     ) -> Result<Ending, Stop> {
         if new {
             self.history.row(simulation.time(), simulation)?;
         }
         loop {
-            let stopped = stop.load(Ordering::SeqCst);
+            let stopped = stop.asked.load(Ordering::SeqCst);
             if stopped || Instant::now() >= self.checkpoints.due {
                 let mark = self.history.mark()?;
                 self.checkpoints
@@ -533,7 +533,7 @@ impl Record {
             self.progress.tell(&simulation.drain_events());
             let time = match advanced {
                 // In the middle of a communication step: the run goes on from the checkpoint before it.
-                Err(_) if stop.load(Ordering::SeqCst) => {
+                Err(_) if stop.asked.load(Ordering::SeqCst) => {
                     self.history.row(simulation.time(), simulation)?;
                     return Ok(Ending::Interrupted);
                 }

@@ -1,7 +1,7 @@
 //! `coilwind stress`: random scenes, a line each, totals by region, files of what failed.
 
 use super::failure::Failure;
-use super::terminal::{print, stop_flag};
+use super::terminal::{StopFlags, print};
 use clap::Args;
 use coilwind::lab::stress::case_files::{self, Files};
 use coilwind::lab::stress::invariants::judge;
@@ -67,7 +67,7 @@ pub(super) fn stress(args: &StressArgs) -> Result<(), Failure> {
         n => n,
     };
     let bar = bar(args);
-    let stop = stop_flag();
+    let stop = StopFlags::on_signals().asked;
     let next = AtomicU64::new(0);
     let (send, receive) = mpsc::channel();
     let totals = thread::scope(|scope| {

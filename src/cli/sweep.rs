@@ -12,7 +12,7 @@ use super::sweep_grid::Grid;
 use super::sweep_ledger::Ledger;
 use super::sweep_range::{Range, variable_of};
 use super::sweep_row::Row;
-use super::terminal::{print, stop_flag};
+use super::terminal::{StopFlags, print};
 use super::{
     sweep_find_max as find_max, sweep_map as map, sweep_statistics as statistics,
     sweep_wind as wind,
@@ -86,7 +86,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         answer: None,
         ledger,
         bar: runs_bar(args.quiet, 0),
-        stop: stop_flag(),
+        stop: StopFlags::on_signals().asked,
         pool,
         grid,
     };
