@@ -183,4 +183,8 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except OSError as error:
+        print(f"control.py: cannot write: {error.strerror or error}", file=sys.stderr)
+        sys.exit(3)

@@ -1,14 +1,15 @@
 #!/usr/bin/env python3
 """Accuracy and speed of `fig8` by tolerance: the tables of docs/validation/convergence.md.
 
-    scripts/accuracy.py [--command PATH] [--tables docs/validation/tables] [speed | verdict | default | paper ...]
+    scripts/accuracy.py [--command PATH] [--tables docs/validation/tables] [speed | verdict | default | coils | paper ...]
 
 speed:    fig8-speed.md, bulge and gap against the converged ensemble and the time a run takes, by speed and tolerance
 verdict:  fig8-verdict.md, mean gap and verdicts of ensembles as tolerance and spacing are made finer
 default:  fig8-default.md, mean gap of fig8 and fig8_gap at the default and at a quarter of the tolerance with half the spacing
+coils:    coils.md, mean gap of other coils at the default tolerance, a quarter and a sixteenth of it
 paper:    fig8-paper.md, the paper's explicit method beside the production method
 
-Without a name all are written (eight minutes). Let the machine do nothing else: speed and paper tell times.
+Without a name all are written (twelve minutes). Let the machine do nothing else: speed and paper tell times.
 """
 
 import argparse
@@ -17,6 +18,8 @@ import math
 import statistics
 import subprocess
 import sys
+import tempfile
+from collections import Counter
 from pathlib import Path
 
 import fig8
@@ -56,6 +59,21 @@ TURNS = 3.5
 # default: tolerance m, spacing mm
 FINENESS = [(2e-6, 0.3), (5e-7, 0.15)]
 MANY = 16
+
+# coils: label, rad/s, diameter mm, settings of a scene of defaults
+SHARES = (1.0, 0.25, 0.0625)
+COILS = [
+    ("aluminium 1.5 mm on 40 x 60 mm", 20, 1.5, "wire.material=aluminium core.width_x_mm=40 core.height_z_mm=60 core.length_y_mm=50"
+     " core.corner_radius_mm=6 nozzle.distance_mm=150 tensioner.tension=30 traverse.per_turn_mm=1.65"),
+    ("copper 0.4 mm on 14 x 20 mm", 150, 0.4, "wire.material=copper core.width_x_mm=14 core.height_z_mm=20 core.length_y_mm=20"
+     " core.corner_radius_mm=1.5 nozzle.distance_mm=70 tensioner.tension=6 traverse.per_turn_mm=0.42"),
+    ("copper 0.05 mm on 4 x 6 mm", 500, 0.05, "wire.material=copper core.width_x_mm=4 core.height_z_mm=6 core.length_y_mm=6"
+     " core.corner_radius_mm=0.2 nozzle.distance_mm=20 tensioner.tension=0.12 tensioner.mass_g=0.02 traverse.per_turn_mm=0.055"),
+    ("copper 0.7 mm on 16 x 40 mm", 100, 0.7, "wire.material=copper core.width_x_mm=16 core.height_z_mm=40 core.corner_radius_mm=3 nozzle.distance_mm=80"),
+    ("copper 0.3 mm on a cylinder of 18 mm", 300, 0.3, "wire.material=copper core.shape=cylinder core.radius_mm=9 core.length_y_mm=20"
+     " nozzle.distance_mm=55 tensioner.tension=3 traverse.per_turn_mm=0.32"),
+]
+COILS.insert(1, (COILS[0][0], 40, *COILS[0][2:]))
 
 # paper: label, words of `coilwind bench W`
 PAPER = [
@@ -144,6 +162,36 @@ def default(args):
     return tables.write(args.tables, "fig8-default", "scripts/accuracy.py default", title, told, tables.table(head, rows))
 
 
+def coils(args):
+    rows = []
+    with tempfile.NamedTemporaryFile("w", suffix=".toml", encoding="utf-8") as scene:
+        scene.write('preset = "default"\n')
+        scene.flush()
+        for label, omega, diameter, words in COILS:
+            given = [word.split("=") for word in words.split()]
+            settings = dict(given) | {"wire.diameter_mm": diameter, "spindle.speed": omega, "spindle.turns": TURNS}
+            rows.append([label, omega, *(of_coil(args.command, scene.name, diameter, settings, share) for share in SHARES)])
+    head = ["wire and core", "rad/s", *("default" if share == 1.0 else f"{share:g} of it" for share in SHARES)]
+    told = (
+        f"Mean gap over the diameter and verdict on turn 2 of ensembles of {MEMBERS} runs of {TURNS} turns, nozzle at +-0.5 d about the scene's distance."
+        " The default spacing throughout. Results do not depend on the machine."
+    )
+    return tables.write(args.tables, "coils", "scripts/accuracy.py coils", "What the tolerance leaves of the gaps of other coils", told, tables.table(head, rows))
+
+
+def of_coil(command, scene, diameter, settings, share):
+    """Mean gap and verdicts of an ensemble at this share of the default tolerance, in words."""
+    middle = float(settings["nozzle.distance_mm"] if "nozzle.distance_mm" in settings else 60.0)
+    found = []
+    for k in range(MEMBERS):
+        distance = middle + 0.5 * diameter * (2 * k / (MEMBERS - 1) - 1)
+        own = settings | {"nozzle.distance_mm": f"{distance:.6g}", "solver.tolerance": share * 2e-6 * diameter / 0.7}
+        found.append(fig8.wind(command, {"scene": scene, "set": own.items()}))
+    counts = Counter(member["verdict"] for member in found)
+    gap = statistics.fmean(member["gap_mean"] for member in found) / (1e-3 * diameter)
+    return f"{gap:.3f}; " + ", ".join(f"{count} {verdict}" for verdict, count in counts.most_common())
+
+
 def mean_gaps(command, scene, omega, tolerance, spacing):
     """Mean gap of turn 2 of each member, m."""
     found = [fig8.wind(command, {"scene": scene, "set": settings}) for settings in ensemble(omega, tolerance, spacing, MANY)]
@@ -181,9 +229,9 @@ def write_paper(folder, where, rows):
 
 
 def main():
-    every = {"speed": speed, "verdict": verdict, "default": default, "paper": paper}
+    every = {"speed": speed, "verdict": verdict, "default": default, "coils": coils, "paper": paper}
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("which", nargs="*", metavar="speed | verdict | default | paper")
+    parser.add_argument("which", nargs="*", metavar="speed | verdict | default | coils | paper")
     parser.add_argument("--command", default="target/release/coilwind")
     parser.add_argument("--tables", type=Path, default=tables.TABLES)
     args = parser.parse_args()

@@ -10,6 +10,7 @@ import argparse
 import csv
 from pathlib import Path
 
+import folder as folders
 import numpy as np
 from calibration_curves import UNITS
 from failure import Mistake, told
@@ -36,7 +37,7 @@ def main():
         for text in args.noise:
             column, values = measure(args, text, random)
             measured[column] = values
-        write(args.output, measured)
+        folders.write_whole(args.output, lambda path: write(path, measured))
         print(f"wrote {args.output}")
 
 

@@ -7,7 +7,9 @@ Each argument is a run's directory or its history.csv.
 """
 
 import argparse
+from pathlib import Path
 
+import folder as folders
 import matplotlib
 
 matplotlib.use("Agg")
@@ -23,7 +25,7 @@ COLUMNS = ["spindle_angle", "wire_tension", "wire_tension_min", "wire_tension_ma
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("runs", nargs="+", help="directory of a run, or its history.csv")
-    parser.add_argument("-o", "--output", default="tension.png", help="picture to write")
+    parser.add_argument("-o", "--output", type=Path, default=Path("tension.png"), help="picture to write")
     arguments = parser.parse_args()
 
     with told(parser.prog):
@@ -56,7 +58,7 @@ def plot(arguments):
     axes[0, 0].set_xlim(np.min(spans), np.max(spans))
     axes[-1, 0].set_xlabel("turns of the spindle from the start position")
     figure.supylabel("wire tension at the nozzle (N)", fontsize=9, color="#30343b")
-    figure.savefig(arguments.output)
+    folders.write_whole(arguments.output, figure.savefig)
 
 
 def titled(run):

@@ -11,7 +11,9 @@ from it (up): to one scale where all wires are as thick, else each row to its ow
 import argparse
 from collections import Counter
 from dataclasses import dataclass
+from pathlib import Path
 
+import folder as folders
 import matplotlib
 
 matplotlib.use("Agg")
@@ -41,7 +43,7 @@ class Section:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("runs", nargs="+", metavar="DIR", help="folder of a run, or its stations.csv")
-    parser.add_argument("-o", "--output", default="sections.png", metavar="FILE", help="picture to write")
+    parser.add_argument("-o", "--output", type=Path, default=Path("sections.png"), metavar="FILE", help="picture to write")
     parser.add_argument("--turn", type=int, default=2, metavar="N", help="turn of the gap panel, from 1 (default: 2)")
     arguments = parser.parse_args()
     with told(parser.prog):
@@ -71,7 +73,7 @@ def draw(arguments):
                 axis.set_ylabel(words, color=section.colour, fontweight="bold", fontsize=8)
         before = section.places
     draw_gaps(figure.add_subplot(grid[-1, :]), sections, arguments.turn)
-    figure.savefig(arguments.output)
+    folders.write_whole(arguments.output, figure.savefig)
 
 
 def sections_of(paths):

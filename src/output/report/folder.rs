@@ -8,7 +8,7 @@ use crate::output::vtp::SIDES;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 /// Points of a curve over time; longer histories are thinned such that peaks stay.
@@ -47,11 +47,12 @@ struct Frame {
 impl Run {
     pub(super) fn read(directory: &Path) -> Result<Self, ReportError> {
         let path = directory.join("summary.json");
-        let text = fs::read_to_string(&path).map_err(|_| match directory.is_file() {
-            true => ReportError::NoFolder {
+        let text = fs::read_to_string(&path).map_err(|error| match error.kind() {
+            ErrorKind::InvalidData => broken(&path, "it is no text"),
+            _ if directory.is_file() => ReportError::NoFolder {
                 path: directory.to_owned(),
             },
-            false => ReportError::NoRun {
+            _ => ReportError::NoRun {
                 directory: directory.to_owned(),
                 missing: "summary.json",
             },
@@ -329,8 +330,8 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
 
 /// Measures at every degree of every turn.
 fn stations(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
-    let names = ["arc", "gap", "bulge", "layer", "measured"];
-    let Some([arc, gap, bulge, layer, measured]) = table(path, names)? else {
+    let names = ["arc", "gap", "bulge", "layer", "measured", "crosses"];
+    let Some([arc, gap, bulge, layer, measured, crosses]) = table(path, names)? else {
         return Ok(None);
     };
     Ok(Some(BTreeMap::from([
@@ -339,6 +340,7 @@ fn stations(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, Report
         ("bulge", Array::reals(bulge)),
         ("layer", Array::bytes(layer)),
         ("measured", Array::bytes(measured)),
+        ("crosses", Array::bytes(crosses)),
     ])))
 }
 

@@ -89,7 +89,7 @@ class Run {
     const at = this.turnOf[k];
     const words = [`turn ${Math.floor(at) + 1}, ${Math.round((at % 1) * STATIONS)}°`, `tension ${digits(tension[k])} N`];
     if (Number.isFinite(gap[k])) words.push(`gap ${mm(gap[k])}`);
-    if (Number.isFinite(bulge[k])) words.push(`height ${mm(bulge[k])}`, `layer ${layer[k]}`);
+    if (Number.isFinite(bulge[k])) words.push(`bulge ${mm(bulge[k])}`, `layer ${layer[k]}`);
     this.view.goTo(points.subarray(3 * k, 3 * k + 3), words.join("  ·  "), at, this.timeOf(at));
   }
 
@@ -124,7 +124,7 @@ function head(run) {
 /** Share of metal in the winding window, or of wire in the coil where there is no window. */
 function fill(p) {
   if (p.window) return [["Metal in window", fixed(100 * p.window.fill_bare, 1), "%"]];
-  return [["Fill factor", p.fill > 0 ? fixed(100 * p.fill, 1) : "–", "%"]];
+  return [p.fill > 0 ? ["Fill factor", fixed(100 * p.fill, 1), "%"] : ["Fill factor", "–", ""]];
 }
 
 function product(run) {

@@ -1,4 +1,4 @@
-// The unrolled coil: a row a turn, a column a degree, coloured by gap, height or layer; defects are rings.
+// The unrolled coil: a row a turn, a column a degree, coloured by gap, bulge or layer; defects are rings.
 
 /** The map of a run, or null without stations. A click goes to that place of the wire. */
 function defectMap(run) {
@@ -11,7 +11,8 @@ function defectMap(run) {
   const row = Math.min(30, Math.max(3, 420 / turns));
   const measure = (key, of = stations) => {
     if (key === "layer") return of.layer;
-    return of[key].map((value, k) => (of.measured[k] ? value : NaN));
+    // (a gap in a crossover is none)
+    return of[key].map((value, k) => (of.measured[k] && !(key === "gap" && of.crosses[k]) ? value : NaN));
   };
   let key = "gap";
   let values, colours, picture;
@@ -77,7 +78,7 @@ function defectMap(run) {
     if (!at) return;
     const parts = [`turn ${at.turn + 1}, ${at.angle}°`];
     if (at.index < values.length) {
-      parts.push(`gap ${mm(stations.gap[at.index])}`, `height ${mm(stations.bulge[at.index])}`, `layer ${stations.layer[at.index]}`);
+      parts.push(`gap ${mm(stations.gap[at.index])}`, `bulge ${mm(stations.bulge[at.index])}`, `layer ${stations.layer[at.index]}`);
     } else parts.push("not at rest");
     tip.textContent = parts.join("  ·  ");
     tip.style.left = `${Math.max(0, Math.min(event.offsetX + 12, board.clientWidth - tip.offsetWidth))}px`;
@@ -100,7 +101,7 @@ function defectMap(run) {
   const note = [run.defects.length ? "Rings mark defects." : "No defects.", ...(run.view?.renderer ? ["A click moves the view there."] : [])].join(" ");
   return el("section", { class: "card map" }, bar, el("div", { class: "plot" }, board, tip),
     el("div", { class: "legend", style: "position: static; display: inline-block; margin-top: 8px" }, legendBox),
-    el("p", { class: "note" }, `${note} Grey is not judged: shaped by the clamp, without a neighbour, or in the step to the next layer.`));
+    el("p", { class: "note" }, `${note} Grey is not judged: shaped by the clamp, without a neighbour, in the step to the next layer, or a gap in a crossover.`));
 }
 
 /** The measures as a picture, a pixel a station. */
