@@ -106,13 +106,8 @@ impl Bvh {
         radius > 0.0 && reaching_walk(&self.nodes, mesh, p, 0, radius * radius)
     }
 
-    /// Signed distance, closest point and normal of a point `p`, core frame, m.
-    pub fn nearest(&self, mesh: &TriMesh, p: V3) -> Nearest {
-        self.nearest_from(mesh, p, u32::MAX).0
-    }
-
-    /// [`Self::nearest`] and its triangle. A guess of that triangle, if there is one of that number, spares most of the search
-    /// and changes nothing about what is found.
+    /// Signed distance, closest point and normal of a point `p`, core frame, m, and the triangle of that point. A guess of the triangle,
+    /// if there is one of that number, spares most of the search and changes nothing about what is found.
     pub fn nearest_from(&self, mesh: &TriMesh, p: V3, guess: u32) -> (Nearest, u32) {
         let mut best = match (guess as usize) < mesh.len() {
             true => (mesh.closest(guess, p).distance_sq, guess),

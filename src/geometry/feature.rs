@@ -191,7 +191,7 @@ impl TriMesh {
     }
 
     /// Signed distance, closest point and normal, by asking every triangle: the slow twin of
-    /// [`super::Bvh::nearest`].
+    /// [`super::Bvh::nearest_from`].
     pub fn nearest_brute(&self, p: V3) -> Nearest {
         let mut best = (f64::INFINITY, 0);
         for triangle in 0..self.len() as u32 {

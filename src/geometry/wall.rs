@@ -5,7 +5,7 @@
 //! by wall: from a triangle downhill, never across a concave edge that is no seam. The foot ends where the distance is
 //! least on that wall, and moves smoothly with the point; a foot on the border of its wall comes off it smoothly too.
 //!
-//! A surface without such edges has one wall, with the distance of [`super::Bvh::nearest`].
+//! A surface without such edges has one wall, with the distance of [`super::Bvh::nearest_from`].
 
 use super::elements::Facet;
 use super::feature::{Closest, Region};

@@ -165,7 +165,7 @@ mod tests {
         assert_eq!(told, [("wire.yield_stress", &values)]);
     }
 
-    /// A core of the same name that had been drawn anew in between was no difference.
+    /// A core of the same name that had been drawn again in between was no difference.
     #[test]
     fn a_file_of_the_same_name_and_other_content_is_told() {
         let [one, other] = [(); 2].map(|()| tempfile::tempdir().expect("a folder"));
