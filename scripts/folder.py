@@ -122,6 +122,10 @@ def refuse_without_run(folder):
     """A mistake where there is no folder of a run."""
     if not folder.is_dir():
         raise Mistake(f"{folder} is no folder; name that of a run (coilwind run SCENE --out DIR)")
+    if members(folder):
+        raise Mistake(f"{folder} holds an ensemble; name a member, such as {folder / '1'}")
+    if any(has(folder, name) for name in SIGNS["another sweep"]):
+        raise Mistake(f"{folder} holds a sweep; name the folder of a run")
     if not any(has(folder, name) for name in [*SIGNS["another run"], "stations.csv", "coil.vtp", "frames.pvd"]):
         raise Mistake(f"{folder} holds no results of a run; wind one with: {shlex.join(['coilwind', 'run', 'SCENE', '--out', str(folder)])}")
 

@@ -320,6 +320,14 @@ fn a_folder_without_a_whole_run_says_what_to_do() {
         said(&output)
     );
 
+    let file = folder.path().join("file");
+    std::fs::write(&file, "{}").unwrap();
+    refused(&mut resume(&file), "is a file; name the folder of a run");
+    refused(
+        &mut of_a_moment(&file),
+        "is a file; name a folder with --out",
+    );
+
     let mut child = short(&out).spawn().unwrap();
     let checkpoint = out.join("checkpoint.bin");
     while !checkpoint.exists() {

@@ -130,6 +130,9 @@ impl Checkpoint {
             directory: place.to_string(),
             reason,
         };
+        if directory.is_file() {
+            return Err(resume("is a file; name the folder of a run".to_owned()));
+        }
         let bytes = fs::read(&path).map_err(|_| {
             let has = |name: &str| directory.join(name).exists();
             resume(match (has_ended(directory), has("scene.toml")) {

@@ -20,6 +20,12 @@ const SWEEP: &str = "a sweep";
 /// Makes the folder; one that holds a run is refused unless `force` says otherwise, and one with an ensemble or a sweep that goes
 /// on in any case.
 pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
+    if directory.is_file() {
+        return Err(Failure::Resume {
+            directory: directory.display().to_string(),
+            reason: "is a file; name a folder with --out".to_owned(),
+        });
+    }
     refuse_occupied(directory, force)?;
     drop(hold_ensemble(directory)?);
     drop(sweep_files::hold(directory)?);

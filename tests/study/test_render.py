@@ -142,6 +142,15 @@ def test_what_cannot_be_drawn_is_told_in_a_line(words, complaint, script, tmp_pa
     assert complaint.format(folder=tmp_path) in said and "Traceback" not in said
 
 
+@pytest.mark.parametrize(
+    ("name", "complaint"), [("ensemble.json", "holds an ensemble; name a member, such as {folder}/1"), ("sweep.json", "holds a sweep; name the folder of a run")]
+)
+def test_a_folder_of_many_runs_is_told_from_one_without(name, complaint, script, tmp_path):
+    (tmp_path / name).write_text('{"members": 2}', encoding="utf-8")
+    code, said = script("scripts/render.py", tmp_path, python=RENDER)
+    assert code == 2 and complaint.format(folder=tmp_path) in said, said
+
+
 @pytest.mark.parametrize(("words", "complaint"), [([], "coil.vtp is missing; wind the run without --no-geometry"), (["--film", "x.gif"], "wind the run with --frames N")])
 def test_a_run_without_geometry_is_told_from_a_folder_without_a_run(words, complaint, run, script, tmp_path):
     for name in ("summary.json", "scene.toml", "history.csv"):
