@@ -3,6 +3,7 @@
 mod common;
 
 use coilwind::math::V3;
+use coilwind::measure::Verdict;
 use coilwind::scene::Scene;
 use coilwind::settings::SceneSettings;
 use coilwind::signals::{EventKind, Inputs};
@@ -315,6 +316,21 @@ fn same_input_same_output() {
     // in another thread too
     let c = std::thread::scope(|s| s.spawn(run).join()).expect("no panic");
     assert_eq!(a.outputs(), c.outputs());
+}
+
+/// Steps damp the shaking that lays wire beside its neighbour: the default tells gaps that finer steps do not.
+#[test]
+fn a_gap_near_its_limit_is_told_to_be_in_doubt() {
+    let doubts = |more: &[(&str, &str)]| {
+        let sim = wind(&fig8(more), 2.5);
+        let doubts = |reason: &String| reason.contains("may come of the tolerance");
+        (sim.verdict(), sim.reasons().iter().any(doubts))
+    };
+    assert_eq!(doubts(&[]), (Verdict::Gap, true));
+    let wide = doubts(&[("defects.gap", "0.05"), ("traverse.per_turn_mm", "0.9")]);
+    assert_eq!(wide, (Verdict::Gap, false));
+    let none = doubts(&[("defects.gap", "0.5")]);
+    assert_eq!(none, (Verdict::Marginal, false));
 }
 
 #[test]
