@@ -349,7 +349,7 @@ def test_a_sweep_that_is_stopped_goes_on_to_the_same_bytes(stop, stopped, uninte
     again = subprocess.run(line.replace(" --quiet", ""), shell=True, capture_output=True, text=True, check=False)
     assert again.returncode == 0 and f"4 runs, {4 - runs} of them new" in again.stdout, again.stderr
     assert (out / "sweep.csv").read_bytes() == uninterrupted
-    assert not list(out.glob("*.partial"))
+    assert not list(out.glob("*.partial*"))
 
 
 def test_a_lost_scheduler_leaves_the_rows(stopped, uninterrupted, tmp_path):
@@ -360,7 +360,7 @@ def test_a_lost_scheduler_leaves_the_rows(stopped, uninterrupted, tmp_path):
 
 
 def test_a_full_disk_leaves_the_rows(stopped, uninterrupted, tmp_path):
-    code, said, out = stopped(lambda _: (tmp_path / "out/sweep.csv.partial").symlink_to("/dev/full"), "--workers", "1")
+    code, said, out = stopped(lambda _: (tmp_path / "out/sweep.partial.csv").symlink_to("/dev/full"), "--workers", "1")
     assert code == 3 and f"cannot write {out}/sweep.csv: No space left on device; " in said and "go on with: " in said, said
     assert uninterrupted.startswith((out / "sweep.csv").read_bytes())
 
