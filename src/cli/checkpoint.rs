@@ -5,6 +5,7 @@
 
 use super::drive::{Motion, Place};
 use super::failure::Failure;
+use super::read_files;
 use super::shell::{begin_again, quoted};
 use coilwind::output::{Mark, write_whole_bytes};
 use coilwind::settings::SceneSettings;
@@ -105,11 +106,10 @@ fn has_ended(directory: &Path) -> bool {
 }
 
 fn checksum(path: &Path) -> Result<u32, Failure> {
-    let bytes = fs::read(path).map_err(|error| Failure::Signals {
+    read_files::checksum(path).map_err(|error| Failure::Signals {
         file: path.display().to_string(),
         reason: format!("cannot be read: {error}"),
-    })?;
-    Ok(crc32fast::hash(&bytes))
+    })
 }
 
 impl Checkpoint {

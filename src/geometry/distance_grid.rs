@@ -103,6 +103,7 @@ impl DistanceGrid {
 mod tests {
     use super::super::generate;
     use super::super::surface::Surface;
+    use super::CELLS;
     use crate::math::V3;
     use proptest::prelude::*;
 
@@ -123,12 +124,14 @@ mod tests {
         }
     }
 
-    /// The grid of a plate has no more cells than others.
+    /// Cubes in proportion to the volume of its box would be a million times as many.
     #[test]
     fn a_thin_plate_has_a_grid() {
         let plate = generate::rounded_box(0.5, 1.0, 1e-6, 0.0, 1);
         let surface = Surface::new(plate.expect("a plate"));
-        let within = surface.grid().bounds(V3::new(0.1, 0.0, 0.2));
-        assert!(within.least > -0.03 && within.most < 0.03, "{within:?}");
+        assert!(surface.grid().cells.len() <= CELLS);
+        let p = V3::new(0.1, 0.0, 0.2);
+        let (bounds, exact) = (surface.grid().bounds(p), surface.nearest(p).distance);
+        assert!(bounds.least <= exact && exact <= bounds.most, "{bounds:?}");
     }
 }
