@@ -82,6 +82,7 @@ def wind(command, case):
         "status": summary["status"],
         "turns_settled": summary["turns_settled"],
         "steps": summary["steps"],
+        "gaps": {t["turn"]: t.get("gap_mean") for t in summary["turns"]},
         **found,
     }
 

@@ -462,6 +462,36 @@ fn a_chain_behind_the_nozzle_is_saved_and_goes_on_to_the_bit() {
     );
 }
 
+/// A line with mass kept in mind the tension at the nozzle, and got longer by that in its span: in short steps again and again under the
+/// same pull, or hardly at all.
+#[test]
+fn a_line_with_mass_yields_as_much_in_short_steps() {
+    let scene = fig8(&[
+        ("wire.material", "copper"),
+        ("tensioner.line_inertia", "true"),
+        ("tensioner.mass", "2e-3"),
+        ("solver.steps_beyond", "off"),
+    ]);
+    let stretched = |step: f64| {
+        let mut inputs = Inputs {
+            tension_setpoint: 30.0,
+            nozzle_position: scene.nozzle_law.start(),
+            spindle_speed: 100.0,
+            ..Inputs::HELD
+        };
+        let mut run = Simulation::starting_with(&scene, inputs).expect("starts");
+        for k in 0..(14e-3 / step) as u32 {
+            // (it yields at 38.5 N)
+            inputs.tension_setpoint = (30.0 + 2e3 * step * f64::from(k)).min(43.0);
+            run.advance(inputs, step).expect("goes on");
+        }
+        let o = run.outputs();
+        o.fed_length - o.tensioner_position
+    };
+    let found = [40e-6, 10e-6, 4e-6].map(stretched);
+    assert!((found[2] / found[0] - 1.0).abs() < 0.02, "{found:?}");
+}
+
 #[test]
 fn a_chain_where_it_cannot_be_is_refused_with_what_is_lacking() {
     use coilwind::settings::SceneSettings;

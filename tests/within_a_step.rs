@@ -73,6 +73,24 @@ fn slack_in_which_no_wire_is_laid_is_none() {
     }
 }
 
+/// At 300 rad/s and above a snap of 0.1 ms condemned a coil, since the core turned by more than a station meanwhile.
+#[test]
+fn slack_counts_by_the_time_that_the_tensioner_takes_however_fast_the_core_turns() {
+    for (back, told) in [(70e-6, false), (300e-6, true)] {
+        let mut sim = wound(100.0, 0.7e-3, 30);
+        let mut inputs = sim.inputs();
+        let mut least = f64::INFINITY;
+        for (speed, time) in [(-600.0, back), (600.0, back + 20e-6), (100.0, 1e-3)] {
+            inputs.spindle_speed = speed;
+            sim.advance(inputs, time).unwrap();
+            least = sim.outputs().wire_tension_min.min(least);
+        }
+        assert!(600.0 * back > 2.0 * STATION_STEP);
+        let o = sim.outputs();
+        assert_eq!((least, o.defect_count_slack), (0.0, i32::from(told)));
+    }
+}
+
 /// A core that turns away and comes back to where the wire was slack has slack of another time there: it was counted once for all.
 #[test]
 fn slack_that_comes_again_after_turns_between_counts_again() {

@@ -126,6 +126,8 @@ pub struct Feed {
     pub longer: f64,
     /// tension in the line at the nozzle, N
     pub line_tension: f64,
+    /// tension in the span of line before the nozzle, N: that at the nozzle but for what speeds up the wire there
+    pub span_tension: f64,
     /// damper that the machine adds to the tensioner's own, N s/m
     pub damping: f64,
 }
@@ -148,6 +150,7 @@ impl Feed {
             guided_rate: 0.0,
             longer: 0.0,
             line_tension: tension,
+            span_tension: tension,
             damping: 0.0,
         }
     }
@@ -232,6 +235,7 @@ impl Feed {
         self.fed += grown;
         self.rate = grown / dt;
         self.line_tension = tension;
+        self.span_tension = tension;
         if elastic_line {
             self.longer += yields.longer(tension);
             self.paid += dt * self.paid_rate;

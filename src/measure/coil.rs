@@ -411,6 +411,8 @@ impl Coil {
             (position.y / self.spec.diameter).floor() as i64,
         );
         let (number, pass) = self.passes.at(angle);
+        let last_crossing = self.last_crossing(position.y);
+        let in_crossover = self.is_in_crossover(last_crossing);
         let at = RowPlace {
             angle,
             bucket,
@@ -418,24 +420,19 @@ impl Coil {
             height,
             flange: wire.flange,
             plumb: Plumb::at(position, segment.way(), segment.rise(), self.spec.direction),
+            crosses: in_crossover,
         };
         let (row, support, rises) = self.row_and_support(pass, &at);
         let (bulge, stands_off) = (height - support.held, height - support.level);
-        // A drawn loop lies close on wire that itself stands off the core as it would alone.
-        let at_rest = |profile: &Profile| match support.is_wire {
-            true => 0.0,
-            false => profile.at(self.polar_at(angle), position.y),
-        };
         let (layer, other_layer) = self.layer_after(support.layer, row);
         let (neighbour, window) = self.neighbour(angle, position, row);
-        let last_crossing = self.last_crossing(position.y);
         // Beside a double turn, in the place after it, lies the turn below that one.
         let after_double = || {
             let before = index.checked_sub(STATIONS_PER_TURN);
             before.is_some_and(|before| self.is_double(before))
         };
         let neighbour = neighbour.filter(|_| !after_double());
-        let crosses = self.is_in_crossover(last_crossing) && !self.is_hole(neighbour);
+        let crosses = in_crossover && !self.is_hole(neighbour);
         // The nozzle turns here or the flange is near, and the wire leaves its row.
         let lifts = !self.is_pressed_up_next()
             && (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
@@ -449,11 +446,7 @@ impl Coil {
             time: wire.time,
             height,
             bulge,
-            bulge_excess: self
-                .spec
-                .profile
-                .as_ref()
-                .map(|profile| bulge - at_rest(profile)),
+            bulge_excess: self.over_rest(bulge, (angle, position.y), &support, wire.tension),
             neighbour,
             overlap_depth: 0.0,
             flange_gap: segment

@@ -9,6 +9,7 @@
 //! the spindle reverses. Whatever it knows after a node is stored with that node, so giving nodes
 //! back is truncation and leaves exactly what was there before.
 
+mod at_rest;
 mod below;
 mod buckets;
 mod climb;

@@ -132,6 +132,8 @@ pub(crate) struct RowPlace {
     pub(crate) flange: Option<f64>,
     /// which way is down
     pub(crate) plumb: Plumb,
+    /// it lies in its crossover or beside it, as far as the plan has one
+    pub(crate) crosses: bool,
 }
 
 impl RowPlace {

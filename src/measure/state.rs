@@ -141,7 +141,6 @@ impl Coil {
     /// How large a defect is that shows at `index`, m.
     fn size_at(&self, kind: DefectKind, index: usize) -> Option<f64> {
         let Record { station, signs, .. } = &self.records[index];
-        let turn = || index.saturating_sub(STATIONS_PER_TURN)..=index;
         match kind {
             DefectKind::Gap => station.neighbour.map(|n| n.gap),
             DefectKind::Overlap => Some(station.overlap_depth),
@@ -152,8 +151,11 @@ impl Coil {
             // for its tension alone a turn has no size
             DefectKind::LooseTurn => self.loosest(index).map(|(_, bulge)| bulge),
             DefectKind::Overstretch => {
-                let arc = station.arc - self.records[*turn().start()].station.arc;
-                Some(signs.strain * arc)
+                // the turn up to here, or the first one
+                let first = index.saturating_sub(STATIONS_PER_TURN);
+                let last = (first + STATIONS_PER_TURN).min(self.records.len() - 1);
+                let [from, to] = [first, last].map(|index| self.records[index].station.arc);
+                Some(signs.strain * (to - from))
             }
             _ => Some(station.bulge),
         }

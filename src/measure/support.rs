@@ -40,6 +40,8 @@ pub(crate) struct Support {
     pub(crate) layer: u32,
     /// row of the wire that it would rest on
     pub(crate) row: Option<u32>,
+    /// station of that wire
+    pub(crate) below: Option<usize>,
     /// rise over wire of its own row that it has climbed on, m
     pub(crate) own_row: Option<f64>,
     /// the same as `level` where wire of its own row and a flange hold it between them as well, m
@@ -150,7 +152,7 @@ impl Coil {
     }
 
     /// What lies below wire at `y` (m) and `height` over the core (m), on wire that passes the same polar angle beside it. Only
-    /// rows before number `row` carry it, and the first part of this row where it climbed, which the turn after crosses. On other
+    /// rows before number `row` carry it, and the first part of this row where it climbed, if the turn after crosses that. On other
     /// wire it has climbed.
     ///
     /// Down is the direction of the wire's height: what lies beside the wire does not carry it, unless a flange leaves no room for the
@@ -175,6 +177,7 @@ impl Coil {
             stands_on_wire: false,
             layer: 1,
             row: None,
+            below: None,
             own_row: None,
             held: 0.0,
             highest: 0.0,
@@ -193,7 +196,9 @@ impl Coil {
                 let earlier = of.number < row;
                 let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
                 let climbing = of.number > 1 && station.angle < of.from + STEP_UP;
-                let carries = earlier || (one_turn_back && climbing);
+                // what lies along the climb of its own row, and not across it, has ridden up
+                let crossed = climbing && (at.crosses || aside >= CLIMBED);
+                let carries = earlier || (one_turn_back && crossed);
                 let wedge = wedged(&lower);
                 // pressed up between a flange and the turn before, it is in its place there as long as that is a place and it lies in it
                 let off = self.spec.limits.overlap_height * d;
@@ -236,6 +241,7 @@ impl Coil {
                     support.level = level;
                     support.is_wire = true;
                     support.stands_on_wire = aside < ON_WIRE;
+                    support.below = Some(index);
                     support.row = (of.number < row || climbing).then_some(of.number);
                 }
             }

@@ -3,9 +3,7 @@
 use super::Winding;
 use crate::feed::FeedSpec;
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
-use crate::measure::{
-    Defect, DefectKind, DefectPlace, OnTurn, STATION_STEP, TurnMeasures, Verdict,
-};
+use crate::measure::{Defect, DefectKind, DefectPlace, OnTurn, TurnMeasures, Verdict};
 use crate::signals::EventKind;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -24,13 +22,13 @@ impl Winding {
         let t = self.wire_tension();
         self.run.outputs.meet_tension(t);
         self.run.outputs.meet_depth(self.sys.state.depth);
-        let now = (self.sys.state.spindle.angle, self.sys.state.time);
+        let now = self.sys.state.time;
         self.run.slack_since = match t < self.slack_tension() {
             true => self.run.slack_since.or(Some(now)),
             false => None,
         };
         let slack = self.run.slack_since.filter(|since| self.lasts(*since));
-        if let Some((_, since)) = slack {
+        if let Some(since) = slack {
             self.note_slack(since);
         } else if self.run.slack_at.is_some_and(|at| !self.is_same_slack(at)) {
             // the core may come back to where it was
@@ -46,15 +44,13 @@ impl Winding {
         weight * 0.5 * self.scene.nozzle.distance
     }
 
-    /// Whether wire that lost its tension at this angle of the core, rad, and time, s, is slack by now.
+    /// Whether wire that lost its tension at this time, s, is slack by now.
     ///
-    /// It is once a station of it is laid so, or once the tensioner on its line could have followed: after a radian of its swing. A turn
-    /// that snaps into its groove takes the tension away for some microseconds, and no wire is laid in them.
-    fn lasts(&self, (core, since): (f64, f64)) -> bool {
+    /// It is once the tensioner on its line could have followed: after a radian of its swing. A turn that snaps into its groove takes
+    /// the tension away for less, however fast the core turns.
+    fn lasts(&self, since: f64) -> bool {
         let radian = |feed: FeedSpec| (feed.mass / feed.line_stiffness).sqrt();
-        let state = &self.sys.state;
-        (state.spindle.angle - core).abs() >= STATION_STEP
-            || state.time - since >= self.sys.model.feed.map_or(0.0, radian)
+        self.sys.state.time - since >= self.sys.model.feed.map_or(0.0, radian)
     }
 
     /// Whether wire that is slack now is so still where it was slack with the core at this angle, rad.

@@ -80,6 +80,8 @@ impl System {
 
     /// The wire in the line yields to the tension there at this instant.
     ///
+    /// Of a line with mass it is the tension in its span, by which the step has let it get longer: by the tension at the nozzle,
+    /// the wire would forget some of that, and yield to the same pull again in the next step.
     /// A step takes the edge at the nozzle as elastic, and so the line's tension where the edge then
     /// yields: the line pulls no harder than the edge does, but for friction at the exit. Wire that comes out yields to
     /// the tension behind that friction on its way.
@@ -96,10 +98,15 @@ impl System {
             edge * grip
         };
         let tension = feed.line_tension.min(behind);
+        let in_span = if spec.has_chain() {
+            feed.span_tension
+        } else {
+            tension
+        };
         let law = &self.model.laws.stretch;
         self.state
             .line_wire
-            .pull(law, spec.line_length, feed.fed, tension);
+            .pull(law, spec.line_length, feed.fed, in_span);
         let comes = feed.rate > 0.0;
         let after = if comes { tension * grip } else { 0.0 };
         self.state.line_wire.pull_at_exit(law, after);

@@ -294,6 +294,31 @@ fn crossing_the_climb_beside_the_flange_was_an_overlap() {
     assert_eq!(riding.turns()[6].verdict, Verdict::Overlap);
 }
 
+/// A second layer whose second turn lies on its first one over a quarter of a turn, on the climb of that and along it: no overlap was told.
+#[test]
+fn wire_along_the_climb_of_its_own_row_has_ridden_up() {
+    let rides = |angle: f64| (TURNS + 1.0..TURNS + 1.2).contains(&(angle / TAU));
+    let along = |aside: f64| {
+        let place = |angle: f64| {
+            let (y, height) = orthocyclic(angle);
+            if !rides(angle) {
+                return (y, height);
+            }
+            let (y, below) = orthocyclic(angle - TAU);
+            (y - aside * D, below + D * (1.0 - aside * aside).sqrt())
+        };
+        let mut coil = wound(spec(), &on_cylinder(2.0 * TURNS - 0.15, 1.0, place));
+        coil.begin_pass((TURNS - 0.05) * TAU, -1.0);
+        coil
+    };
+    let on_top = along(0.02);
+    let overlaps = on_top.defects().into_iter();
+    let overlap = overlaps.filter(|d| d.kind == DefectKind::Overlap).count();
+    assert_eq!(overlap, 1, "{:?}", on_top.defects());
+    // beside the climb it leans on it
+    assert!(!along(0.7).flags().overlap, "{:?}", along(0.7).defects());
+}
+
 /// Place of wire in three layers between flanges. Before the last turn of the second layer wire sinks into the hole beside the
 /// flange, down to the first layer's height, and comes up again.
 fn sunk_beside_the_flange(angle: f64) -> (f64, f64) {

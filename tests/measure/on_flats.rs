@@ -2,7 +2,7 @@
 
 use crate::coils::{D, PULL, spec, wound};
 use coilwind::math::V3;
-use coilwind::measure::{Coil, SettledNode};
+use coilwind::measure::{Coil, CoilSpec, Profile, SettledNode};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Half of the flats of the core along x and z, and the radius of its corners, m.
@@ -63,8 +63,9 @@ fn perimeter() -> f64 {
     4.0 * (FLAT[0] + FLAT[1]) + CORNER * TAU
 }
 
-/// Three layers in grooves, of which the wire from the second turn of the third on stands `off` (m) over its groove.
-fn three_layers(off: f64) -> Coil {
+/// Three layers in grooves, of which the wire from the second turn of the third on stands `off` (m) over its groove, and the third
+/// is laid with this `pull` (N). A loop at rest stands [`BOW`] off the core.
+fn three_layers(off: f64, pull: f64) -> Coil {
     let groove = D * 0.75_f64.sqrt();
     let step = 0.1e-3;
     let whole = perimeter();
@@ -87,12 +88,16 @@ fn three_layers(off: f64) -> Coil {
                 height,
                 flange: None,
                 plastic_strain: 0.0,
-                tension: PULL,
+                tension: if layer == 2.0 { pull } else { PULL },
                 time: way,
             }
         })
         .collect();
-    let mut coil = wound(spec(), &nodes);
+    let spec = CoilSpec {
+        profile: Profile::new(vec![BOW]),
+        ..spec()
+    };
+    let mut coil = wound(spec, &nodes);
     coil.begin_pass(TURNS * TAU, -1.0);
     coil.begin_pass(2.0 * TURNS * TAU, 1.0);
     coil
@@ -102,7 +107,7 @@ fn three_layers(off: f64) -> Coil {
 #[test]
 fn a_bulge_at_the_end_of_a_flat_is_as_high_as_in_its_middle() {
     for off in [0.0, 0.5 * D] {
-        let coil = three_layers(off);
+        let coil = three_layers(off, PULL);
         // the second and third turn of the third layer, which lie on two turns all round
         let first = (2.0 * TURNS) as usize + 1;
         let stations: Vec<_> = coil.stations().collect();
@@ -116,4 +121,16 @@ fn a_bulge_at_the_end_of_a_flat_is_as_high_as_in_its_middle() {
             );
         }
     }
+}
+
+/// Layers wound ever looser, as is usual, stand as far off the layers below as they do at rest: they were told as loose turns.
+#[test]
+fn a_layer_that_is_meant_to_be_looser_has_no_loose_turns() {
+    let share = 0.6_f64;
+    let off = BOW * (share.sqrt().recip() - 1.0);
+    let loose = |pull: f64| three_layers(off, pull).flags().loose_turn;
+    assert!(off > 0.15 * D && loose(PULL), "{}", off / D);
+    assert!(!loose(share * PULL));
+    // less than half of what was meant is loose all the same
+    assert!(loose(0.4 * PULL));
 }

@@ -398,6 +398,15 @@ fn wire_drawn_out_is_overstretched_where_it_is() {
     assert!(!within.flags().overstretch);
 }
 
+/// Of wire drawn out in its first turn, only what lay between clamp and place was told: a fifth of the stretch.
+#[test]
+fn wire_drawn_out_in_its_first_turn_is_so_by_a_turn() {
+    let stretched = altered(|turn| turn > 0.2, |node| node.plastic_strain = 0.03);
+    let turn = TAU * (crate::coils::RADIUS + D / 2.0);
+    let size = only(DefectKind::Overstretch, &stretched).size_m.unwrap();
+    assert!((size / turn - 0.03).abs() < 0.001, "{size}");
+}
+
 /// Verdicts of the complete turns from the second on.
 fn verdicts(coil: &Coil) -> Vec<Verdict> {
     let turns = coil.turns();

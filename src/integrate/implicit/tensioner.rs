@@ -137,6 +137,7 @@ impl Chain {
             rate: farther / g,
             longer: feed.longer + self.yields.longer(tension),
             line_tension: line,
+            span_tension: tension,
             ..*feed
         };
         let mut behind = tension;
@@ -223,6 +224,7 @@ pub(super) fn advance(
             false => feed.longer,
         },
         line_tension: line,
+        span_tension: line,
         ..*feed
     }
 }
