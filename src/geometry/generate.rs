@@ -19,6 +19,9 @@ use std::f64::consts::{PI, TAU};
 /// Most chords of a full turn. Chosen: a sagitta of 3e-6 radii at most is lost.
 const MOST_SEGMENTS: usize = 4096;
 
+/// Share of a plate's thickness that is nothing but rounding.
+const ROUNDING: f64 = 1e-9;
+
 /// Share of its distance by which the section at a flange's inner face is taken before it: single precision in an STL file.
 const AT_FACE: f64 = 1e-6;
 
@@ -191,6 +194,9 @@ impl Plates {
             let (cos, sin) = unit_in_quarter(step, edge_chords);
             wall.push([outer - edge + edge * sin, rim + edge * cos]);
         }
+        // where edges meet each other or the core, two sums put one point apart by rounding
+        let apart = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+        wall.dedup_by(|a, b| apart(*a, *b) <= ROUNDING * self.thickness);
         wall
     }
 
@@ -418,6 +424,33 @@ mod tests {
         assert_eq!(mesh.len(), 4 * 4 * (n + 1));
         let high = mesh.vertices.iter().fold(V3::zeros(), |m, v| m.sup(v));
         assert_eq!(high, V3::new(0.5 * w, 0.5 * l, 0.5 * h));
+    }
+
+    /// One flange of ten with edges of half its thickness was refused as a mesh: its two edges met in points that rounding put apart.
+    #[test]
+    fn edges_of_flanges_may_meet() {
+        for step in 0..200 {
+            let width = 0.01 + 1.37e-5 * f64::from(step);
+            let core = Shape::Cylinder {
+                radius: 0.5 * width,
+                half_y: 0.01,
+            };
+            for (height, edge_radius) in [(1.5e-3, 0.5e-3), (0.5e-3, 0.5e-3)] {
+                let flanges = Flanges {
+                    core: core.clone(),
+                    half_inner: 0.5 * width - 1.1e-3,
+                    height,
+                    thickness: 1e-3,
+                    edge_radius,
+                };
+                let mesh = flanged(&flanges, 8, 4).expect("it has corners");
+                let least = |t: usize| {
+                    let [a, b, c] = mesh.triangles[t].map(|k| mesh.vertices[k as usize]);
+                    (b - a).cross(&(c - a)).norm()
+                };
+                assert!((0..mesh.len()).all(|t| least(t) > 1e-12), "{width}");
+            }
+        }
     }
 
     #[test]

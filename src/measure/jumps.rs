@@ -8,6 +8,9 @@ use std::f64::consts::TAU;
 /// Wire that lies above its planned layer for longer than this, rad, has climbed early, whatever it does later. Chosen: a turn. Wire
 /// that rides up on its neighbour comes down again within one.
 const STAYS: f64 = TAU;
+/// The same for wire above the last layer, rad: it has no layer to go to, and the coil ends before wire that climbs in the last turn
+/// has lain there for long. Chosen: half a turn, as for a double turn.
+const STAYS_ABOVE_LAST: f64 = 0.5 * TAU;
 
 impl Coil {
     /// The layer planned for wire at this winding angle, from 1; a climb is planned until a quarter of a turn after it may begin.
@@ -51,11 +54,16 @@ impl Coil {
     /// Turns by which wire that has lain above its layer since then, rad, climbed before it was meant to.
     ///
     /// Whether a climb was a jump and no wire that rides up shows where the jump was meant to be: wire still lies above. So it does where
-    /// it stays there for long.
+    /// it stays there for long, or for half as long above the last layer.
     pub(super) fn early(&self, angle: f64, since: f64) -> Option<f64> {
         let jump = self.spec.jumps.get(self.planned_layer(angle) - 1);
         let meant = jump.map(|[from, _]| *from).or(self.spec.full)?;
-        let is_due = angle >= meant - STEP_UP || angle - since > STAYS;
+        let stays = if jump.is_some() {
+            STAYS
+        } else {
+            STAYS_ABOVE_LAST
+        };
+        let is_due = angle >= meant - STEP_UP || angle - since > stays;
         (is_due && angle < meant + STEP_UP).then_some((meant - since) / TAU)
     }
 

@@ -224,6 +224,11 @@ fn planned(turns: f64) -> CoilSpec {
 
 /// Five turns, then back over them.
 fn jumping(spec: CoilSpec) -> Coil {
+    jumping_up_to(9.0, spec)
+}
+
+/// The same up to this turn.
+fn jumping_up_to(end: f64, spec: CoilSpec) -> Coil {
     let place = |angle: f64| {
         let turn = (angle / TAU).floor();
         match turn < TURNS {
@@ -231,7 +236,7 @@ fn jumping(spec: CoilSpec) -> Coil {
             false => (D * (2.0 * TURNS - 0.5 - turn), step()),
         }
     };
-    let mut coil = wound(spec, &on_cylinder(9.0, 1.0, place));
+    let mut coil = wound(spec, &on_cylinder(end, 1.0, place));
     coil.begin_pass(TURNS * TAU, -1.0);
     coil
 }
@@ -281,6 +286,9 @@ fn a_climb_out_of_the_last_layer_is_early() {
     // the last turn, known where it ends
     let jump = only(DefectKind::EarlyJump, &jumping(one_layer(6.0)));
     assert!((jump.size_d.unwrap() - 1.0).abs() < 0.05, "{jump:?}");
+    // the last third of that turn has not come to rest: no defect was told
+    let last = |end: f64| jumping_up_to(end, one_layer(6.0)).flags().early_jump;
+    assert!(last(5.65) && !last(5.45));
     // what comes after the plan is not judged
     assert!(!jumping(one_layer(5.0)).flags().early_jump);
 }
