@@ -1,18 +1,20 @@
 #!/usr/bin/env python3
 """Accuracy and speed of `fig8` by tolerance: the tables of docs/validation/convergence.md.
 
-    scripts/accuracy.py [--command PATH] [--tables docs/validation/tables] [speed | verdict | default | coils | paper ...]
+    scripts/accuracy.py [--command PATH] [--tables docs/validation/tables] [speed | verdict | default | coils | line | paper ...]
 
 speed:    fig8-speed.md, bulge and gap against the converged ensemble and the time a run takes, by speed and tolerance
 verdict:  fig8-verdict.md, mean gap and verdicts of ensembles as tolerance and spacing are made finer
 default:  fig8-default.md, mean gap of fig8 and fig8_gap at the default and at a quarter of the tolerance with half the spacing
 coils:    coils.md, mean gap of other coils, of turn 2 and of those after it, at the default tolerance, a quarter and a sixteenth of it
+line:     feed-line.md, extremes of the tension of fig8 with what may stand behind the nozzle
 paper:    fig8-paper.md, the paper's explicit method beside the production method
 
 Without a name all are written (twelve minutes). Let the machine do nothing else: speed and paper tell times.
 """
 
 import argparse
+import csv
 import json
 import math
 import statistics
@@ -76,6 +78,18 @@ COILS = [
      " nozzle.distance_mm=55 tensioner.tension=3 traverse.per_turn_mm=0.32"),
 ]
 COILS.insert(1, (COILS[0][0], 40, *COILS[0][2:]))
+
+# line: what stands behind the nozzle, its settings
+LINES = [
+    ("default", []),
+    ("`tensioner.line_inertia=true`", ["tensioner.line_inertia=true"]),
+    ("`tensioner.pulley_friction=3`", ["tensioner.pulley_friction=3"]),
+    (
+        "the same, line inertia and `tensioner.pulley_mass=2e-3`",
+        ["tensioner.pulley_friction=3", "tensioner.line_inertia=true", "tensioner.pulley_mass=2e-3"],
+    ),
+]
+LINE_SPEEDS = (100, 500)
 
 # paper: label, words of `coilwind bench W`
 PAPER = [
@@ -215,6 +229,28 @@ def ensemble(omega, tolerance, spacing, members):
         yield [*settings, ("nozzle.distance_mm", f"{60 + offset:.6g}")]
 
 
+def line(args):
+    rows = [[label, *(extremes(args.command, omega, settings) for omega in LINE_SPEEDS)] for label, settings in LINES]
+    head = ["behind the nozzle", *(f"{omega} rad/s: least, largest" for omega in LINE_SPEEDS)]
+    told = "Tension of `fig8` at the nozzle after the first third of the run, by `coilwind run fig8 --set spindle.speed=W` with these settings."
+    title = "What stands behind the nozzle, and the tension there"
+    return tables.write(args.tables, "feed-line", "scripts/accuracy.py line", title, told, tables.table(head, rows))
+
+
+def extremes(command, omega, settings):
+    """Least and largest tension at the nozzle after the first third of the rows of a run of `fig8`, in words."""
+    with tempfile.TemporaryDirectory() as folder:
+        words = [command, "run", "fig8", "--quiet", "--no-geometry", "--out", folder]
+        for setting in (f"spindle.speed={omega}", *settings):
+            words += ["--set", setting]
+        subprocess.run(words, check=True)
+        with (Path(folder) / "history.csv").open(encoding="utf-8", newline="") as file:
+            lines = csv.DictReader(line for line in file if not line.startswith("#"))
+            tensions = [float(row["wire_tension"]) for row in lines]
+    late = tensions[len(tensions) // 3 :]
+    return f"{min(late):.1f}, {max(late):.1f} N"
+
+
 def paper(args):
     rows = []
     for label, words in PAPER:
@@ -233,9 +269,9 @@ def write_paper(folder, where, rows):
 
 
 def main():
-    every = {"speed": speed, "verdict": verdict, "default": default, "coils": coils, "paper": paper}
+    every = {"speed": speed, "verdict": verdict, "default": default, "coils": coils, "line": line, "paper": paper}
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("which", nargs="*", metavar="speed | verdict | default | coils | paper")
+    parser.add_argument("which", nargs="*", metavar="speed | verdict | default | coils | line | paper")
     parser.add_argument("--command", default="target/release/coilwind")
     parser.add_argument("--tables", type=Path, default=tables.TABLES)
     args = parser.parse_args()

@@ -126,6 +126,13 @@ impl SceneSettings {
             Some(index) => (Some((index, Scale::Tens(0))), 1.0),
             None => (found(&header, ("angle", "rad")), TAU),
         };
+        let is_angle = |name: &&str| *name == "turns" || scale_of(name, ("angle", "rad")).is_some();
+        let is_value = |name: &&str| form.columns.iter().any(|of| scale_of(name, *of).is_some());
+        let angles: Vec<&str> = header.iter().filter(is_angle).collect();
+        let values: Vec<&str> = header.iter().filter(is_value).collect();
+        if let Some(twice) = [angles, values].into_iter().find(|names| names.len() > 1) {
+            return Err(format!("its columns {} tell the same", twice.join(" and ")));
+        }
         let mut columns = form.columns.iter();
         let value = columns.find_map(|&column| Some((column.0, found(&header, column)?)));
         match (angle, value) {
@@ -158,13 +165,17 @@ struct Opened {
 /// Index of a column, and how its numbers become SI.
 type Place = (usize, Scale);
 
-/// Where a column stands, with its unit in the name or none where it is SI.
-fn found(header: &csv::StringRecord, (stem, unit): Column) -> Option<Place> {
-    header.iter().enumerate().find_map(|(index, name)| {
-        if name == stem {
-            return Some((index, Scale::Tens(0)));
-        }
-        let (found, of, scale) = split_suffix(name)?;
-        (found == stem && of == unit).then_some((index, scale))
-    })
+/// Where a column stands.
+fn found(header: &csv::StringRecord, column: Column) -> Option<Place> {
+    let mut names = header.iter().enumerate();
+    names.find_map(|(index, name)| Some((index, scale_of(name, column)?)))
+}
+
+/// How numbers under a name become SI if it is that of a column, with its unit or none where it is SI.
+fn scale_of(name: &str, (stem, unit): Column) -> Option<Scale> {
+    if name == stem {
+        return Some(Scale::Tens(0));
+    }
+    let (found, of, scale) = split_suffix(name)?;
+    (found == stem && of == unit).then_some(scale)
 }

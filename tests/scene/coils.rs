@@ -186,6 +186,10 @@ fn a_table_gives_the_way() {
         ("angle_deg,y_mm\n0,0\n360,x\n", "line 3: \"x\" is no number"),
         ("angle_deg,y_mm\n0,0\n", "less than two rows"),
         ("time,y_mm\n0,0\n", "its columns are time, y_mm"),
+        (
+            "turns,y_mm,y_m\n0,0,0\n1,1,1\n",
+            "its columns y_mm and y_m tell the same",
+        ),
         ("angle_deg,y_mm\n0,0\n360,90\n", "past an end of the core"),
     ] {
         write("bad.csv", text);
