@@ -3,7 +3,9 @@
 use super::Winding;
 use crate::feed::FeedSpec;
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
-use crate::measure::{Defect, DefectKind, DefectPlace, OnTurn, TurnMeasures, Verdict};
+use crate::measure::{
+    Defect, DefectKind, DefectPlace, OnTurn, STATION_STEP, TurnMeasures, Verdict,
+};
 use crate::signals::EventKind;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -12,6 +14,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 /// A free span that goes slack swings, and every swing lets the tension fall to zero again. A quarter of a turn
 /// lies between the corners of a core, each of which may jerk the wire again.
 const SAME_SLACK: f64 = FRAC_PI_2;
+
+/// Turn of the core in which so much wire is laid slack as a bulge or an overlap needs to count, rad: eight stations.
+const SLACK_RUN: f64 = 8.0 * STATION_STEP;
 
 /// Standard acceleration of free fall, m/s^2 (CGPM 1901).
 const GRAVITY: f64 = 9.80665;
@@ -22,13 +27,13 @@ impl Winding {
         let t = self.wire_tension();
         self.run.outputs.meet_tension(t);
         self.run.outputs.meet_depth(self.sys.state.depth);
-        let now = self.sys.state.time;
+        let now = (self.sys.state.spindle.angle, self.sys.state.time);
         self.run.slack_since = match t < self.slack_tension() {
             true => self.run.slack_since.or(Some(now)),
             false => None,
         };
         let slack = self.run.slack_since.filter(|since| self.lasts(*since));
-        if let Some(since) = slack {
+        if let Some((_, since)) = slack {
             self.note_slack(since);
         } else if self.run.slack_at.is_some_and(|at| !self.is_same_slack(at)) {
             // the core may come back to where it was
@@ -44,13 +49,15 @@ impl Winding {
         weight * 0.5 * self.scene.nozzle.distance
     }
 
-    /// Whether wire that lost its tension at this time, s, is slack by now.
+    /// Whether wire that lost its tension at this angle of the core, rad, and time, s, is slack by now.
     ///
-    /// It is once the tensioner on its line could have followed: after a radian of its swing. A turn that snaps into its groove takes
-    /// the tension away for less, however fast the core turns.
-    fn lasts(&self, since: f64) -> bool {
+    /// It is once the tensioner on its line could have followed, after a radian of its swing, or once as much wire is laid so as any
+    /// defect takes. A turn that snaps into its groove takes the tension away for less.
+    fn lasts(&self, (core, since): (f64, f64)) -> bool {
         let radian = |feed: FeedSpec| (feed.mass / feed.line_stiffness).sqrt();
-        self.sys.state.time - since >= self.sys.model.feed.map_or(0.0, radian)
+        let state = &self.sys.state;
+        (state.spindle.angle - core).abs() >= SLACK_RUN
+            || state.time - since >= self.sys.model.feed.map_or(0.0, radian)
     }
 
     /// Whether wire that is slack now is so still where it was slack with the core at this angle, rad.

@@ -46,8 +46,8 @@ pub(super) struct RunState {
     /// outputs have told so
     pub(super) told_over: bool,
     pub(super) was_slack: bool,
-    /// time from which on the line has had no tension, s
-    pub(super) slack_since: Option<f64>,
+    /// angle of the core, rad, and time, s, from which on the line has had no tension
+    pub(super) slack_since: Option<(f64, f64)>,
     /// slack and breaks, in the order of their times
     pub(super) faults: Vec<Defect>,
     /// turns at rest that have been told
