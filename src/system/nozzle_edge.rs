@@ -80,8 +80,9 @@ impl System {
 
     /// The wire in the line yields to the tension there at this instant.
     ///
-    /// Of a line with mass it is the tension in its span, by which the step has let it get longer: by the tension at the nozzle,
-    /// the wire would forget some of that, and yield to the same pull again in the next step.
+    /// Of a line with mass it is the tension in its span, by which the step has let it get longer. By that at the nozzle
+    /// the wire would yield to the same pull again in the next step.
+    ///
     /// A step takes the edge at the nozzle as elastic, and so the line's tension where the edge then
     /// yields: the line pulls no harder than the edge does, but for friction at the exit. Wire that comes out yields to
     /// the tension behind that friction on its way.
