@@ -175,3 +175,89 @@ fn a_law_that_nothing_follows_is_not_judged() {
         "traverse.per_turn has no effect: the nozzle follows its input; set traverse.mode = by-angle"
     );
 }
+
+/// Winds with the speed alone told, in steps of this length, s, up to a time, s; the wire is taken to that time.
+fn told_in(scene: &Scene, step: f64, end: f64, beyond: bool) -> Simulation {
+    let (start, _) = inputs(&Simulation::new(scene).expect("starts"));
+    let mut told = Simulation::starting_by_law(scene, start).expect("starts");
+    told.step_beyond(beyond);
+    while told.time() < end {
+        let (now, rates) = inputs(&told);
+        told.advance_ramped(now, rates, step).expect("goes on");
+        let off = told.outputs().nozzle_y - scene.nozzle_law.position(told.outputs().spindle_angle);
+        assert!(off.abs() < 1e-12, "{off:e} m at {} s", told.time());
+    }
+    told
+}
+
+/// Each communication step was a step of the method: steps of 20 us cost 6 to 8 times what free ones do.
+#[test]
+fn fine_steps_by_law_cost_no_solves() {
+    let scene = scene("bobbin");
+    let end = 800.0 * STEP;
+    let mut runs = [STEP, STEP / 8.0, STEP / 64.0].map(|step| told_in(&scene, step, end, true));
+    for run in &mut runs {
+        run.settle().expect("a step");
+    }
+    let steps = runs.each_ref().map(|run| run.statistics().steps);
+    println!("{steps:?} steps of the method");
+    let every = told_in(&scene, STEP / 8.0, end, false).statistics().steps;
+    assert!(
+        steps[2] <= steps[0] + 2 && steps[0] < every / 2,
+        "{steps:?}, {every}"
+    );
+    let corners = scene.nozzle_law.pieces().iter();
+    let turned = runs[0].outputs().spindle_angle;
+    assert!(corners.filter(|piece| piece.from < turned).count() > 5);
+    // (the first step after the ramp ends at a communication point)
+    let fed = runs.each_ref().map(|run| run.outputs().fed_length);
+    for (one, fed_in_it) in fed.iter().enumerate() {
+        let off = fed_in_it - fed[0];
+        println!("run {one}: {off:e} m of wire more");
+        assert!(off.abs() < scene.solver.tolerance, "{off:e} m");
+    }
+}
+
+/// As [`a_core_that_turns_back_takes_the_nozzle_along`], with speeds that hold, change and turn within steps ahead.
+#[test]
+fn steps_ahead_by_law_follow_a_speed_that_changes() {
+    let scene = scene("bobbin");
+    let law = scene.nozzle_law.clone();
+    let start = inputs(&Simulation::new(&scene).expect("starts")).0;
+    let mut told = Simulation::starting_by_law(&scene, start).expect("starts");
+    told.step_beyond(true);
+    let go = |run: &mut Simulation, from: u32, to: u32| {
+        for k in from..to {
+            let (speed, rate) = match k % 2000 {
+                0..500 => (80.0, 0.0),
+                500..1000 => (80.0 - 0.2 * f64::from(k % 2000 - 500), -1e4),
+                1000..1300 => (-20.0, 0.0),
+                _ => (40.0 + f64::from(k % 3), 0.0),
+            };
+            let now = Inputs {
+                spindle_speed: speed,
+                ..start
+            };
+            let rates = Inputs {
+                spindle_speed: rate,
+                ..Inputs::HELD
+            };
+            run.advance_ramped(now, rates, 2e-5).expect("goes on");
+            let place = law.position(run.outputs().spindle_angle.abs());
+            let off = run.outputs().nozzle_y - place;
+            assert!(off.abs() < 1e-12, "{off:e} m in step {k}");
+        }
+    };
+    for k in [700, 1234, 2500, 4001] {
+        let from = (told.time() / 2e-5).round();
+        go(&mut told, from as u32, k);
+        let bytes = told.to_bytes().expect("bytes");
+        let mut restored = Simulation::from_bytes(&scene, &bytes).expect("a state");
+        restored.step_beyond(true);
+        let mut copy = told.clone();
+        go(&mut restored, k, k + 300);
+        go(&mut copy, k, k + 300);
+        assert_eq!(copy.outputs(), restored.outputs());
+        assert!(copy.to_bytes().expect("bytes") == restored.to_bytes().expect("bytes"));
+    }
+}

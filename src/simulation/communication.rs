@@ -78,9 +78,14 @@ impl Simulation {
 
     fn advance_as_meant(
         &mut self,
-        (inputs, rates): (Inputs, Inputs),
+        (mut inputs, mut rates): (Inputs, Inputs),
         dt: f64,
     ) -> Result<(), SimError> {
+        if self.now.run.nozzle_by_law {
+            // (what a master says of its place is not heeded)
+            inputs.nozzle_position = self.inputs().nozzle_position;
+            rates.nozzle_position = 0.0;
+        }
         if !self.may_step_beyond(&inputs, &rates, dt) || dt.is_nan() || dt <= 0.0 {
             return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
         }
@@ -100,7 +105,12 @@ impl Simulation {
         if goes_on {
             self.talk.wait = self.talk.wait.saturating_sub(1);
         } else {
-            self.change_to(Course::from(&given, before), &given)?;
+            let course = Course::from(&given, before);
+            let course = match self.now.run.nozzle_by_law {
+                true => course.by_law(),
+                false => course,
+            };
+            self.change_to(course, &given)?;
         }
         if self.talk.wait > 0 {
             return self.step_to_the_point(|winding| {
@@ -159,10 +169,7 @@ impl Simulation {
         let gone = if debt > ROUNDING * served.time {
             winding.run.events.clear();
             winding.reset_extremes();
-            let gone = match course.is_of_scene() {
-                true => winding.go_along_scene(debt),
-                false => winding.go_along(&course, debt),
-            };
+            let gone = winding.go_along(&course, debt);
             self.talk.events.append(&mut winding.run.events);
             gone
         } else {
@@ -217,11 +224,7 @@ impl Simulation {
     /// Whether steps need not end at communication points, as far as inputs do not matter.
     fn finds_its_own_steps(&self) -> bool {
         let method = &self.now.stepper;
-        self.steps_beyond
-            && !self.now.run.nozzle_by_law
-            && method.is_implicit()
-            && method.fixed().is_none()
-            && !self.now.run.over
+        self.steps_beyond && method.is_implicit() && method.fixed().is_none() && !self.now.run.over
     }
 
     /// Whether a step may reach beyond the communication point at all, when the inputs of a step of `dt`, s, change at `rates`.
@@ -233,7 +236,7 @@ impl Simulation {
         );
         let damped =
             inputs.tensioner_damping == now.tensioner_damping && rates.tensioner_damping == 0.0;
-        // (courses know of no way aside, of no law of the nozzle, and of one damper)
+        // (courses know of no way aside, and of one damper)
         self.finds_its_own_steps() && damped && aside <= NOZZLE * self.now.scene.solver.tolerance
     }
 
@@ -264,13 +267,13 @@ impl Simulation {
     /// A controller changes the tension every few communication steps, mostly by little. The step under way is kept then, and the
     /// next one takes the tension up. A change that comes alone acts at once, for a master that learns from small changes.
     fn change_to(&mut self, course: Course, given: &Given) -> Result<(), SimError> {
-        let before = self.talk.newest().map(|course| course.start);
-        let went_on = before.map_or(f64::INFINITY, |start| course.start - start);
+        let before = self.talk.newest().map(|course| course.begun);
+        let went_on = before.map_or(f64::INFINITY, |begun| course.begun - begun);
         let lasted = std::mem::replace(&mut self.talk.lasted, went_on);
         let little = went_on < self.now.stepper.next()
             && self.goes_on_as(given, self.talk.course, CORRECTION);
         if !self.talk.may_wait(little, self.ahead.is_some()) {
-            let even = (went_on - lasted).abs() <= ROUNDING * course.start;
+            let even = (went_on - lasted).abs() <= ROUNDING * course.begun;
             return self.turn_to(course, given.dt, even);
         }
         self.talk.wait = 0;
@@ -310,11 +313,14 @@ impl Simulation {
         Ok(())
     }
 
-    /// The course at the winding's time. Where a stretch of the scene's own motion has ended, the next begins.
+    /// The course at the winding's time. Where a stretch of the scene's own motion or of the nozzle's law has ended, the next begins.
     fn course_from_here(&mut self) -> Option<Course> {
         let (course, time) = (self.talk.course?, self.now.run.time);
-        if course.left(time) <= ROUNDING * time {
-            self.talk.course = self.now.stretch_of_scene(course.at(time));
+        if course.ends_by(time) {
+            self.talk.course = match course.is_by_law() {
+                true => Some(self.now.along_law(course)),
+                false => self.now.stretch_of_scene(course.at(time)),
+            };
         }
         self.talk.course
     }
@@ -384,7 +390,11 @@ impl Simulation {
         let Some(course) = self.talk.course else {
             return Ok(());
         };
-        let inputs = inputs.unwrap_or_else(|| course.at(point));
+        let there = course.at(point);
+        let mut inputs = inputs.unwrap_or(there);
+        if course.is_by_law() {
+            inputs.nozzle_position = there.nozzle_position;
+        }
         let end = self.ahead.as_ref().map(|ahead| &*ahead.winding);
         served.read(&self.now, end, &course, inputs);
         let both = [told, &served.outputs];
@@ -411,9 +421,14 @@ impl Simulation {
 impl Winding {
     /// Goes along `course` for `duration`, s, and no farther.
     fn go_along(&mut self, course: &Course, duration: f64) -> Result<(), SimError> {
+        if course.is_of_scene() {
+            return self.go_along_scene(duration);
+        }
         let drive = course.drive(self.run.time, duration);
-        self.begin_drive(&drive);
-        self.through(&drive)
+        match course.is_by_law() {
+            true => self.follow_by_law(&drive),
+            false => self.follow(&drive),
+        }
     }
 
     /// Goes along the scene's own motion for `duration`, s, and no farther.

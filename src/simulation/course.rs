@@ -9,18 +9,33 @@ use serde::{Deserialize, Serialize};
 /// Even acceleration of the spindle and, along the core's axis, of the nozzle, and an even change of the set tension, from `start` on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Course {
-    /// time of the run at which it begins, s
-    pub(super) start: f64,
+    /// time of the run at which a master began it, s
+    pub(super) begun: f64,
+    /// time of the run at which its inputs are as said here, s
+    start: f64,
     /// speed, nozzle position and set tension then
     inputs: Inputs,
     /// their rates then, per s
     rates: Inputs,
     /// of the nozzle, m/s2
     acceleration: f64,
-    /// when a stretch of the scene's own motion ends, s; none for what a master gives
+    source: Source,
+    /// when the nozzle's way has its next corner, or a stretch of the scene's own motion ends, s; none for what a master gives, and
+    /// for a nozzle by law whose place on it has not been looked up
     until: Option<f64>,
     /// when a master that changes its inputs in even intervals changes them next, s
     next: Option<f64>,
+}
+
+/// Where a motion comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+enum Source {
+    /// the inputs of a master
+    Master,
+    /// the inputs of a master, and the scene's law for the nozzle
+    MasterAndLaw,
+    /// the scene's own motion
+    Scene,
 }
 
 /// A communication step as a master gives it.
@@ -86,19 +101,47 @@ impl Course {
         let mut rates = given.rates;
         rates.nozzle_position -= 0.5 * acceleration * given.dt;
         Self {
+            begun: given.start,
             start: given.start,
             inputs: given.inputs,
             rates,
             acceleration,
+            source: Source::Master,
             until: None,
             next: None,
+        }
+    }
+
+    /// The same with the nozzle on the scene's law, wherever that has it.
+    pub(super) fn by_law(self) -> Self {
+        Self {
+            source: Source::MasterAndLaw,
+            ..self
+        }
+    }
+
+    /// The same from `time`, s, on, when the nozzle is at `nozzle`, m, and goes with the core by the `part` of its law.
+    pub(super) fn along(self, part: &Drive, time: f64, nozzle: f64) -> Self {
+        let travel = part.travel().unwrap_or(0.0);
+        let mut now = self.at(time);
+        now.nozzle_position = nozzle;
+        Self {
+            start: time,
+            inputs: now,
+            rates: Inputs {
+                nozzle_position: travel * now.spindle_speed,
+                ..self.rates
+            },
+            acceleration: travel * self.rates.spindle_speed,
+            until: Some(time + part.duration),
+            ..self
         }
     }
 
     /// The same, which goes on for as long as the one before, s, if a master changes its inputs in even intervals.
     pub(super) fn as_long_as(self, before: f64) -> Self {
         Self {
-            next: Some(self.start + before),
+            next: Some(self.begun + before),
             ..self
         }
     }
@@ -110,6 +153,7 @@ impl Course {
         let until = start + drive.duration;
         let is_over = end - start <= ROUNDING * end;
         Self {
+            begun: start,
             start,
             inputs: Inputs {
                 spindle_speed: drive.speed,
@@ -121,6 +165,7 @@ impl Course {
                 ..Inputs::HELD
             },
             acceleration: travel * drive.acceleration,
+            source: Source::Scene,
             until: Some(if is_over { until } else { until.min(end) }),
             next: None,
         }
@@ -128,11 +173,24 @@ impl Course {
 
     /// Whether it is a stretch of the scene's own motion.
     pub(super) fn is_of_scene(&self) -> bool {
-        self.until.is_some()
+        self.source == Source::Scene
+    }
+
+    /// Whether the nozzle follows the scene's law in it.
+    pub(super) fn is_by_law(&self) -> bool {
+        self.source == Source::MasterAndLaw
+    }
+
+    /// Whether it says nothing of the motion from `time`, s, on.
+    pub(super) fn ends_by(&self, time: f64) -> bool {
+        match self.until {
+            Some(until) => until - time <= ROUNDING * time,
+            None => self.is_by_law(),
+        }
     }
 
     /// How much of it is left at `time`, s.
-    pub(super) fn left(&self, time: f64) -> f64 {
+    fn left(&self, time: f64) -> f64 {
         self.until.map_or(f64::INFINITY, |until| until - time)
     }
 
@@ -179,8 +237,10 @@ impl Course {
             ..self.rates
         };
         self.start.is_finite()
+            && self.begun.is_finite()
             && self.until.is_none_or(|until| until > self.start)
-            && self.next.is_none_or(|next| next > self.start)
+            && (self.until.is_some() || !self.is_of_scene())
+            && self.next.is_none_or(|next| next > self.begun)
             && self.acceleration.is_finite()
             && self.rates.tension_setpoint.is_finite()
             && check_finite(&self.inputs, 0.0).is_ok()
@@ -200,7 +260,7 @@ impl Course {
         let (start, end) = (given.start, given.start + given.dt);
         let nozzle = [start, end].map(|time| {
             let apart = self.at(time).nozzle_position - given.at(time).nozzle_position;
-            apart.abs() <= alike.nozzle
+            self.is_by_law() || apart.abs() <= alike.nozzle
         });
         let [slow, fast] = [start, until].map(|time| {
             let apart = self.at(time).spindle_speed - given.at(time).spindle_speed;

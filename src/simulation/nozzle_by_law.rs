@@ -1,8 +1,10 @@
 //! A nozzle that follows the scene's law of core angle while speed and tension are inputs.
 //!
 //! The law is a polyline over the angle that the core has turned, whichever way round. A communication step is divided
-//! where the core passes a corner of the law or turns back, so that the nozzle goes with the core within each part.
+//! where the core passes a corner of the law or turns back, so that the nozzle goes with the core within each part. So is what a step
+//! beyond the communication point follows.
 
+use super::course::Course;
 use super::{SimError, WORTH_A_STEP, Winding};
 use crate::scene::{NozzleLaw, Scene};
 use crate::signals::Inputs;
@@ -35,8 +37,17 @@ impl Winding {
     /// Goes through the motion `whole` with the nozzle on its law.
     pub(super) fn follow_by_law(&mut self, whole: &Drive) -> Result<(), SimError> {
         let angle = self.sys.state.spindle.angle - self.run.angle0;
-        let parts = parts(whole, &self.scene.nozzle_law, angle);
-        parts.iter().try_for_each(|part| self.follow(part))
+        let law = self.scene.nozzle_law.clone();
+        parts(*whole, &law, angle).try_for_each(|part| self.follow(&part))
+    }
+
+    /// The course from the winding's time to the next corner of the nozzle's law.
+    pub(super) fn along_law(&self, course: Course) -> Course {
+        let angle = self.sys.state.spindle.angle - self.run.angle0;
+        let time = self.run.time;
+        let endless = course.drive(time, f64::INFINITY);
+        let part = parts(endless, &self.scene.nozzle_law, angle).next();
+        course.along(&part.unwrap_or(endless), time, self.nozzle_by_law())
     }
 
     /// Where the law has the nozzle along the core axis now, m; where it is, as long as that is as good.
@@ -52,44 +63,46 @@ impl Winding {
 /// The parts of a motion in which the nozzle travels evenly with the core, which stands at `angle`, rad, at its start.
 ///
 /// What would be shorter than the solver can take a step for is left out.
-fn parts(whole: &Drive, law: &NozzleLaw, mut angle: f64) -> Vec<Drive> {
-    let mut parts = Vec::new();
+fn parts(whole: Drive, law: &NozzleLaw, mut angle: f64) -> impl Iterator<Item = Drive> {
     let mut gone = 0.0;
-    while gone < whole.duration {
-        let left = whole.duration - gone;
-        let speed = whole.speed + whole.acceleration * gone;
-        // which way the core turns once it moves, and whether that is away from its start
-        let sense = (speed + whole.acceleration * WORTH_A_STEP.min(left)).signum();
-        let side = if angle == 0.0 { sense } else { angle.signum() };
-        let (travel, edge) = law.towards(angle.abs(), sense * side);
-        let forward = (speed * sense).max(0.0);
-        let gain = whole.acceleration * sense;
-        let to_edge = time_for((edge - angle.abs()).abs(), forward, gain);
-        let to_turning = if gain < 0.0 {
-            forward / -gain
-        } else {
-            f64::INFINITY
-        };
-        let mut duration = to_edge.min(to_turning).min(left);
-        if left - duration < WORTH_A_STEP {
-            duration = left;
+    std::iter::from_fn(move || {
+        while gone < whole.duration {
+            let left = whole.duration - gone;
+            let speed = whole.speed + whole.acceleration * gone;
+            // which way the core turns once it moves, and whether that is away from its start
+            let sense = (speed + whole.acceleration * WORTH_A_STEP.min(left)).signum();
+            let side = if angle == 0.0 { sense } else { angle.signum() };
+            let (travel, edge) = law.towards(angle.abs(), sense * side);
+            let forward = (speed * sense).max(0.0);
+            let gain = whole.acceleration * sense;
+            let to_edge = time_for((edge - angle.abs()).abs(), forward, gain);
+            let to_turning = if gain < 0.0 {
+                forward / -gain
+            } else {
+                f64::INFINITY
+            };
+            let mut duration = to_edge.min(to_turning).min(left);
+            if left - duration < WORTH_A_STEP {
+                duration = left;
+            }
+            angle = match to_edge <= to_turning {
+                true => side * edge,
+                false => angle + (speed + 0.5 * whole.acceleration * duration) * duration,
+            };
+            if duration >= WORTH_A_STEP || duration == left {
+                let part = Drive {
+                    duration,
+                    speed,
+                    nozzle: NozzleDrive::WithSpindle(travel * side),
+                    tension: whole.tension + whole.tension_rate * gone,
+                    ..whole
+                };
+                gone += duration;
+                return Some(part);
+            }
         }
-        if duration >= WORTH_A_STEP || duration == left {
-            parts.push(Drive {
-                duration,
-                speed,
-                nozzle: NozzleDrive::WithSpindle(travel * side),
-                tension: whole.tension + whole.tension_rate * gone,
-                ..*whole
-            });
-            gone += duration;
-        }
-        angle = match to_edge <= to_turning {
-            true => side * edge,
-            false => angle + (speed + 0.5 * whole.acceleration * duration) * duration,
-        };
-    }
-    parts
+        None
+    })
 }
 
 /// Time to go `distance`, m or rad, from a speed of 0 or more at a constant rate of change; infinite if that never leads there.
@@ -130,7 +143,7 @@ mod tests {
 
     /// Follows the parts and compares the nozzle with the law at the end of each.
     fn check(whole: &Drive, law: &NozzleLaw, start: f64) -> usize {
-        let parts = parts(whole, law, start);
+        let parts: Vec<Drive> = parts(*whole, law, start).collect();
         let (mut angle, mut y, mut time) = (start, law.position(start.abs()), 0.0);
         for part in &parts {
             assert_eq!(part.speed, whole.speed + whole.acceleration * time);

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 29;
+const VERSION: u32 = 30;
 
 /// More turns than any run winds: the stations of that many would take a hundred gigabytes. Of a fault that lies beyond them, the
 /// table of turns would take all memory.
@@ -186,7 +186,7 @@ impl Simulation {
             ));
         }
         let ahead = match saved.ahead {
-            Some((course, first)) if course.is_sound() && course.left(winding.time()) > 0.0 => {
+            Some((course, first)) if course.is_sound() && !course.ends_by(winding.time()) => {
                 let ahead = Ahead::of(Arc::new(winding.clone()), course, first);
                 Some(ahead.map_err(|_| RestoreError::Impossible("no step leads ahead"))?)
             }
