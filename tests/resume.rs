@@ -552,3 +552,42 @@ fn a_run_that_begins_again_takes_its_inputs_its_end_and_its_frames() {
     assert!(again.status.success(), "{line}: {}", said(&again));
     assert!(results() == wound);
 }
+
+/// `run scene.toml --out .` said that the folder held another run, and `--force`, as it advised, replaced the only copy of the scene.
+#[test]
+fn a_scene_of_ones_own_is_not_overwritten() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("scene.toml");
+    let own = "# my own\n[spindle]\nturns = 0.02\nramp_turns = 0.01\n";
+    std::fs::write(&scene, own).unwrap();
+    let run = |force: &[&str]| {
+        let mut command = coilwind();
+        command.args(["run", "--quiet", "--no-report", "scene.toml", "--out", "."]);
+        command.args(force).current_dir(folder.path());
+        command
+    };
+    for force in [&[][..], &["--force"]] {
+        refused(&mut run(force), "would be lost");
+        assert_eq!(std::fs::read_to_string(&scene).unwrap(), own);
+    }
+    // the scene that a run has kept may be wound again in its place
+    let out = folder.path().join("out");
+    let first = coilwind()
+        .args(["run", "--quiet", "--no-report"])
+        .args([scene.as_os_str(), "--out".as_ref(), out.as_os_str()])
+        .status();
+    assert!(first.unwrap().success());
+    let again = coilwind()
+        .args([
+            "run",
+            "--quiet",
+            "--no-report",
+            "scene.toml",
+            "--out",
+            ".",
+            "--force",
+        ])
+        .current_dir(&out)
+        .status();
+    assert!(again.unwrap().success());
+}

@@ -56,3 +56,5 @@ mod sequences;
 mod state;
 #[cfg(test)]
 mod told;
+#[cfg(test)]
+mod written_start_values;

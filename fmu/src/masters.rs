@@ -108,6 +108,7 @@ fn a_value_that_contradicts_the_scene_is_told() {
 fn values_that_overrule_the_scene_are_told_where_it_cannot_start() {
     let mut instance = Instance::for_tests();
     set_text(&mut instance, "scene.file", "bobbin");
+    set_text(&mut instance, "traverse.mode", "orthocyclic");
     set(&mut instance, "core.flange.inner_distance", 0.0);
     set(&mut instance, "winding.turns_per_layer", 0.0);
     instance.enter_initialization_mode().expect("enters");

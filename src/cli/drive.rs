@@ -95,7 +95,7 @@ impl Drive {
             });
         };
         let signals = Signals::read(path)?;
-        if follows == NozzleFollows::Law && signals.has("nozzle_position") {
+        if follows.is_law() && signals.has("nozzle_position") {
             return Err(twice(path));
         }
         let end = motion.stop_time.unwrap_or(signals.end());

@@ -79,7 +79,7 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
         members: count,
         no_report: args.no_report,
     };
-    folder::prepare(&directory, args.force)?;
+    folder::prepare(&directory, args.force, None)?;
     folder::clear_all(&directory)?;
     let mut held = ensemble_files::begin(&directory)?;
     let path = directory.join(PLAN);

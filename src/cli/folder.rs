@@ -14,17 +14,23 @@ use std::path::{Path, PathBuf};
 /// Files by which a folder is known to hold a run.
 const SIGNS: [&str; 4] = ["summary.json", "history.csv", SCENE, checkpoint::FILE];
 
+/// Why a scene in the folder of its results is refused.
+const REMOVES_SCENE: &str = "the scene lies in this folder under the name of a file of results, and would be lost; --out for another folder, or copy the scene";
+
 /// What a folder holds that holds a sweep.
 const SWEEP: &str = "a sweep";
 
 /// Makes the folder; one that holds a run is refused unless `force` says otherwise, and one with an ensemble or a sweep that goes
-/// on in any case.
-pub(super) fn prepare(directory: &Path, force: bool) -> Result<(), Failure> {
+/// on in any case. So is one in which the run would overwrite this `scene`.
+pub(super) fn prepare(directory: &Path, force: bool, scene: Option<&str>) -> Result<(), Failure> {
     if directory.is_file() {
         return Err(Failure::Resume {
             directory: directory.display().to_string(),
             reason: "is a file; name a folder with --out".to_owned(),
         });
+    }
+    if let Some(scene) = scene {
+        refuse_to_overwrite(directory, scene)?;
     }
     refuse_occupied(directory, force)?;
     drop(hold_ensemble(directory)?);
@@ -122,10 +128,21 @@ pub(super) fn refuse_own_scene(directory: &Path, scene: &str) -> Result<(), Fail
     match given.is_some() && kept.any(is_given) {
         true => Err(Failure::Resume {
             directory: directory.display().to_string(),
-            reason: "the scene lies in this folder and would be removed with the run in it; copy the scene, or --out for another folder".to_owned(),
+            reason: REMOVES_SCENE.to_owned(),
         }),
         false => Ok(()),
     }
+}
+
+/// An error where this scene is its writer's own and lies where a run keeps its scene. The kept scene of an earlier run says the
+/// same when it is wound again.
+fn refuse_to_overwrite(directory: &Path, scene: &str) -> Result<(), Failure> {
+    let of_run = SIGNS.iter().filter(|sign| **sign != SCENE);
+    let holds_run = of_run.into_iter().any(|sign| has(directory, sign));
+    if holds_run {
+        return Ok(());
+    }
+    refuse_own_scene(directory, scene)
 }
 
 /// Removes all that a run left, for a sweep or an ensemble in its place.

@@ -327,7 +327,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     }
     let simulation = match (&drive, follows) {
         (Drive::MotionProfile { .. }, _) => Simulation::new(&scene),
-        (Drive::Signals { held, .. }, NozzleFollows::Law) => {
+        (Drive::Signals { held, .. }, NozzleFollows::LawByInputs | NozzleFollows::Law) => {
             Simulation::starting_by_law(&scene, *held)
         }
         (Drive::Signals { held, .. }, NozzleFollows::Input) => {
@@ -338,7 +338,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     simulation.step_beyond(reaches_beyond(&motion, &scene));
     let directory = args.directory(&settings);
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
-    folder::prepare(&directory, args.force)?;
+    folder::prepare(&directory, args.force, args.scene.as_deref())?;
     let history = History::create(&directory.join("history.csv"))?;
     let read = read_files::note(&settings, args.inputs.as_deref());
     folder::begin(&directory, &settings, &(note(&args.wound_with()) + &read))?;

@@ -6,6 +6,7 @@
 
 use super::failure::Failure;
 use super::members::rounded;
+use coilwind::scene::{WITH_COMMAS, foreign_separator};
 use coilwind::signals::Inputs;
 use coilwind::variables::{Access, Causality, Value, Variable, by_name, table};
 use std::collections::BTreeSet;
@@ -258,16 +259,9 @@ impl Signals {
 
 /// Where the header is not one of columns with commas between them: what it is, and what would do.
 fn foreign(header: &csv::StringRecord) -> Option<String> {
-    let first = header.get(0)?;
-    let marks = [(';', "semicolons"), ('\t', "tabs")];
-    let (_, name) = marks.into_iter().find(|(mark, _)| first.contains(*mark))?;
-    Some(format!(
-        "{name} stand between its columns; {REMEDY}, such as time,spindle_speed and 0.5,30"
-    ))
+    let told = foreign_separator(header)?;
+    Some(format!("{told}, such as time,spindle_speed and 0.5,30"))
 }
-
-/// What helps a table from another country.
-const REMEDY: &str = "save it with commas between columns and points in numbers";
 
 /// What is wrong with a row that is not as long as the header.
 fn unequal(error: &csv::Error, header: &csv::StringRecord, file: &str) -> Failure {
@@ -290,7 +284,9 @@ fn unequal(error: &csv::Error, header: &csv::StringRecord, file: &str) -> Failur
     let names: Vec<&str> = header.iter().collect();
     let remedy = match len > expected_len {
         true => {
-            format!("leave out those beyond it, or, if its numbers have decimal commas, {REMEDY}")
+            format!(
+                "leave out those beyond it, or, if its numbers have decimal commas, {WITH_COMMAS}"
+            )
         }
         false => "write the cells that are missing".to_owned(),
     };

@@ -1,6 +1,7 @@
 //! Tables over the spindle's angle: a CSV file with a column of angles, from 0 on and rising, and one of values.
 
 use super::SceneError;
+use super::foreign_table::{WITH_COMMAS, foreign_separator};
 use super::impossible::si;
 use super::problems::Problems;
 use crate::settings::SceneSettings;
@@ -62,7 +63,13 @@ impl SceneSettings {
             let record = match record {
                 Ok(record) => record,
                 Err(error) => {
-                    wrong.push(problem(error.to_string()));
+                    let remedy = match error.kind() {
+                        csv::ErrorKind::UnequalLengths { .. } => {
+                            format!("; if its numbers have decimal commas, {WITH_COMMAS}")
+                        }
+                        _ => String::new(),
+                    };
+                    wrong.push(problem(format!("{error}{remedy}")));
                     continue;
                 }
             };
@@ -143,6 +150,7 @@ impl SceneSettings {
                 value,
             }),
             _ if header.iter().all(str::is_empty) => Err("it is empty".to_owned()),
+            _ if let Some(told) = foreign_separator(&header) => Err(told),
             _ => {
                 let names: Vec<&str> = header.iter().collect();
                 Err(format!("its columns are {}", names.join(", ")))

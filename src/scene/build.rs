@@ -15,7 +15,7 @@ use crate::geometry::stl::{self, StlError};
 use crate::geometry::{Crossing, Room, Surface, TriMesh};
 use crate::math::V3;
 use crate::rod::Twist;
-use crate::settings::{NozzleFollows, Origin, SceneSettings, SolverSettings, Spindle};
+use crate::settings::{BY_INPUT, NozzleFollows, Origin, SceneSettings, SolverSettings, Spindle};
 use std::path::{Path, PathBuf};
 
 /// How far beside the clamp the core is looked at too, diameters. Chosen: far above the rounding of an STL file's numbers.
@@ -65,7 +65,23 @@ impl SceneSettings {
         let core = problems.note(core);
         let placed = core.as_ref().and_then(|(_, extent)| self.placed(extent));
         let settings = placed.as_ref().unwrap_or(self);
-        settings.build_on(core, wire, (problems, follows))
+        let mut plan = Problems::default();
+        if !follows.is_law()
+            && let Some((_, extent)) = &core
+        {
+            let (section, way) = (wire.as_ref().map(|w| &w.section), &mut Problems::default());
+            settings.nozzle_law(section, extent, (&mut plan, way), follows);
+        }
+        if plan.is_empty() {
+            return settings.build_on(core, wire, (problems, follows));
+        }
+        let mut unplanned = settings.clone();
+        BY_INPUT.clone_into(&mut unplanned.traverse.mode);
+        let (scene, mut warnings) = unplanned.build_on(core, wire, (problems, follows))?;
+        warnings.extend(
+            plan.as_warnings("no layers are planned, since the nozzle follows its input and"),
+        );
+        Ok((scene, warnings))
     }
 
     /// The scene with this core and wire, where there are any.
@@ -82,9 +98,10 @@ impl SceneSettings {
         self.check_counts(&mut problems);
         let mut way = Problems::default();
         let law = core.as_ref().and_then(|(_, extent)| {
-            self.nozzle_law(wire.as_ref(), extent, (&mut problems, &mut way))
+            let section = wire.as_ref();
+            self.nozzle_law(section, extent, (&mut problems, &mut way), follows)
         });
-        if follows == NozzleFollows::Law {
+        if follows.is_law() {
             problems.append(way);
         }
         self.check_motion_and_friction(law.as_ref(), &mut problems);

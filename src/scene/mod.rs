@@ -17,6 +17,7 @@ mod features;
 mod file;
 mod first_turn;
 mod follow_on;
+mod foreign_table;
 mod impossible;
 mod key;
 mod material;
@@ -40,6 +41,7 @@ pub use description::{
 };
 pub use error::{SceneError, Warning};
 pub use file::packed_names;
+pub use foreign_table::{WITH_COMMAS, foreign_separator};
 pub(crate) use impossible::si;
 pub use key::{assignment, refuse_repeated, unit_suffixes};
 pub use nozzle_law::{NozzleLaw, Piece};

@@ -11,7 +11,7 @@ use super::nozzle_law::NozzleLaw;
 use super::nozzle_trail::Trail;
 use super::problems::Problems;
 use crate::rod::Section;
-use crate::settings::SceneSettings;
+use crate::settings::{NozzleFollows, SceneSettings};
 use std::f64::consts::TAU;
 
 /// Turns of a run by the law `by-angle` that does not say how many.
@@ -153,6 +153,7 @@ impl SceneSettings {
         wire: Option<&Section>,
         extent: &Extent,
         (problems, of_way): (&mut Problems, &mut Problems),
+        follows: NozzleFollows,
     ) -> Option<NozzleLaw> {
         let t = &self.traverse;
         let diameter = self.wire.outer_diameter();
@@ -191,7 +192,12 @@ impl SceneSettings {
                 };
                 let law = NozzleLaw::even(self.nozzle.y_start + t.lead, travel, turns);
                 if extent.window.is_some() {
-                    self.check_way(law.range(), None, extent, of_way);
+                    // (inputs turn the core as far as they like, and at least begin a turn)
+                    let judged = match follows {
+                        NozzleFollows::LawByInputs => law.clone().for_turns(turns.min(1.0)),
+                        NozzleFollows::Law | NozzleFollows::Input => law.clone(),
+                    };
+                    self.check_way(judged.range(), None, extent, of_way);
                 }
                 return Some(law);
             }

@@ -1,6 +1,7 @@
 //! All that is wrong with a scene, collected before any of it is told.
 
-use super::SceneError;
+use super::{SceneError, Warning};
+use crate::variables::by_name;
 
 /// Errors in the order in which they were found.
 #[derive(Debug, Default)]
@@ -24,6 +25,31 @@ impl Problems {
     /// The value, if there is one; otherwise its error is added.
     pub(super) fn note<T>(&mut self, result: Result<T, SceneError>) -> Option<T> {
         result.map_err(|error| self.add(error)).ok()
+    }
+
+    /// Whether nothing is wrong.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// What is wrong, as warnings of a scene that goes without it, since `so`.
+    pub(super) fn as_warnings(&self, so: &str) -> Vec<Warning> {
+        let warning = |error: &SceneError| match error {
+            SceneError::Impossible {
+                origin,
+                key,
+                value,
+                reason,
+                allowed,
+            } => Some(Warning {
+                origin: origin.clone(),
+                key: by_name(key)?.name,
+                value: value.to_string(),
+                message: format!("{so} {reason}; allowed: {allowed}"),
+            }),
+            _ => None,
+        };
+        self.0.iter().filter_map(warning).collect()
     }
 
     /// An error where there was one, of all where there were several.

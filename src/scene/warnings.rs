@@ -109,7 +109,7 @@ impl SceneSettings {
         (extent, window): (&Extent, Option<Window>),
         (law, follows): (&NozzleLaw, NozzleFollows),
     ) -> Vec<Warning> {
-        let by_law = follows == NozzleFollows::Law;
+        let by_law = follows.is_law();
         let reader = Reader {
             settings: self,
             integrator: solver.integrator,
@@ -156,7 +156,7 @@ impl SceneSettings {
             warn("core.file", message);
         }
         let last = law.position(law.end());
-        let by_angle = by_law && self.traverse.mode == "by-angle";
+        let by_angle = follows == NozzleFollows::Law && self.traverse.mode == "by-angle";
         if by_angle && beside(last) && !beside(self.nozzle.y_start) {
             let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
             warn(PER_TURN, message);

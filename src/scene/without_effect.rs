@@ -93,7 +93,7 @@ struct KeysOfPart {
 const KEYS_OF_PARTS: &[KeysOfPart] = &[
     KeysOfPart {
         keys: &[PER_TURN],
-        lacks: |r| r.follows != NozzleFollows::Law && r.settings.origin(PER_TURN) == Origin::Set,
+        lacks: |r| !r.follows.is_law() && r.settings.origin(PER_TURN) == Origin::Set,
         why: "the nozzle follows its input; set traverse.mode = by-angle",
     },
     KeysOfPart {
@@ -215,7 +215,7 @@ impl Reader<'_> {
     /// What a run has chosen, in words. A nozzle that follows its input leaves the scene's own mode to say what is wound.
     fn chosen(&self, choice: &str, now: &str) -> String {
         match choice {
-            MODE if self.follows != NozzleFollows::Law && now != BY_INPUT => {
+            MODE if !self.follows.is_law() && now != BY_INPUT => {
                 format!("{BY_INPUT} in a scene of {now}")
             }
             _ => now.to_owned(),
@@ -225,11 +225,12 @@ impl Reader<'_> {
     /// Keys that were given although nothing reads them.
     pub(super) fn warnings(&self) -> Vec<Warning> {
         let settings = self.settings;
-        let by_law = self.follows == NozzleFollows::Law;
+        let by_law = self.follows.is_law();
         let usual = SceneSettings::default();
         let is_kept = self.is_kept();
-        // (an importer writes every start value)
-        let has_all = all_keys().all(|key| settings.origins.contains_key(key));
+        // (an importer writes every start value, but perhaps for texts and files; nobody sets half of all keys by hand)
+        let by_name = |key: &&str| settings.origins.get(*key) == Some(&Origin::Set);
+        let has_all = 2 * all_keys().filter(by_name).count() >= all_keys().count();
         let mut warnings: Vec<Warning> = Vec::new();
         let mut warn = |key: &'static str, why: &str| {
             let (origin, value) = (settings.told_origin(key), settings.shown(key));

@@ -217,10 +217,19 @@ impl WireSettings {
 /// What the nozzle of a run follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NozzleFollows {
-    /// the scene's own law of the core's angle
+    /// the scene's own law of the core's angle, in a run of the scene's own motion
     Law,
+    /// that law, in a run whose inputs turn the core as far as they like
+    LawByInputs,
     /// the input `nozzle_position`
     Input,
+}
+
+impl NozzleFollows {
+    /// Whether it is the scene's own law.
+    pub fn is_law(self) -> bool {
+        self != Self::Input
+    }
 }
 
 impl SceneSettings {
@@ -258,7 +267,7 @@ impl SceneSettings {
     /// What the nozzle of a run follows that is driven by inputs.
     pub fn nozzle_follows(&self) -> NozzleFollows {
         match self.nozzle_follows_law() {
-            true => NozzleFollows::Law,
+            true => NozzleFollows::LawByInputs,
             false => NozzleFollows::Input,
         }
     }

@@ -83,10 +83,20 @@ impl Winding {
         self.report(
             EventKind::Slack,
             format!(
-                "the wire went slack at the nozzle (tension below {} N); raise the tension (tensioner.tension, or the input tension_setpoint) or change the spindle's speed more gently",
-                four_digits(self.slack_tension())
+                "the wire went slack at the nozzle (tension below {} N); raise the tension (tensioner.tension, or the input tension_setpoint) or {}",
+                four_digits(self.slack_tension()),
+                self.gentler()
             ),
         );
+    }
+
+    /// What shakes the wire less: the nozzle, where it moves faster than the core would at its distance, or else the spindle.
+    fn gentler(&self) -> &'static str {
+        let (nozzle, speed) = (self.sys.state.support[1], self.sys.state.spindle.speed);
+        match nozzle.velocity.norm() > speed.abs() * self.nozzle_distance() {
+            true => "move the nozzle more gently",
+            false => "change the spindle's speed more gently",
+        }
     }
 
     /// No wire can be wound after what happened at a live node; from now on it stays as it is.
@@ -105,10 +115,11 @@ impl Winding {
         let half = 0.5 * rest[edge];
         let before_nozzle = rest[edge..].iter().sum::<f64>() - half;
         let text = format!(
-            "the wire broke {:.1} mm before the nozzle: {} N is above its strength of {} N; lower the tension (tensioner.tension, or the inputs tension_setpoint and brake_torque) or change the spindle's speed more gently",
+            "the wire broke {:.1} mm before the nozzle: {} N is above its strength of {} N; lower the tension (tensioner.tension, or the inputs tension_setpoint and brake_torque) or {}",
             1e3 * before_nozzle,
             four_digits(self.sys.state.load.tension[edge]),
             four_digits(self.scene.wire.strength),
+            self.gentler()
         );
         self.note_end(DefectKind::Break, edge, text);
         self.run.outputs.break_position += half;
@@ -270,4 +281,49 @@ impl Winding {
 /// A number to four significant digits.
 fn four_digits(x: f64) -> f64 {
     format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Simulation;
+    use crate::settings::SceneSettings;
+    use crate::signals::{EventKind, Inputs};
+
+    /// What is told of wire that breaks when the inputs jump to these.
+    fn told(jump: impl Fn(Inputs) -> Inputs) -> String {
+        let settings = SceneSettings::load("fig8").expect("packed");
+        let scene = settings.build().expect("valid");
+        let mut sim = Simulation::new(&scene).expect("starts");
+        let to = jump(sim.inputs());
+        for _ in 0..100 {
+            sim.advance(to, 1e-3).expect("goes on");
+            let events = sim.drain_events();
+            if let Some(event) = events.iter().find(|e| e.kind == EventKind::Break) {
+                return event.text.clone();
+            }
+        }
+        panic!("it does not break");
+    }
+
+    /// A nozzle that jumped tore the wire, and a gentler spindle was advised.
+    #[test]
+    fn wire_that_the_nozzle_tears_is_told_so() {
+        let by_nozzle = told(|now| Inputs {
+            nozzle_offset_x: 1.0,
+            ..now
+        });
+        assert!(
+            by_nozzle.contains("move the nozzle more gently"),
+            "{by_nozzle}"
+        );
+        let by_pull = told(|now| Inputs {
+            tension_setpoint: 200.0,
+            spindle_speed: 10.0,
+            ..now
+        });
+        assert!(
+            by_pull.contains("the spindle's speed more gently"),
+            "{by_pull}"
+        );
+    }
 }

@@ -4,6 +4,10 @@ use super::Winding;
 use crate::math::V3;
 use crate::scene::{Scene, si};
 use crate::signals::{EventKind, Inputs};
+use std::f64::consts::TAU;
+
+/// Share of a turn's way that rounding may add up to. Chosen: too little to be seen.
+const NEAR: f64 = 1e-9;
 
 /// Place of the nozzle by its inputs, in the frame at rest, m.
 pub(super) fn nozzle_of(scene: &Scene, inputs: &Inputs) -> V3 {
@@ -47,6 +51,35 @@ impl Winding {
         }
     }
 
+    /// Tells where a nozzle that goes on evenly by its law, as far as inputs turn the core, begins a turn that has no place on the core;
+    /// it was at `before` along the core axis, m, at the last communication point, if there was one.
+    pub(super) fn watch_even_law(&mut self, before: Option<f64>) {
+        let (law, traverse) = (&self.scene.nozzle_law, &self.scene.traverse);
+        if !self.run.nozzle_by_law || traverse.mode != "by-angle" {
+            return;
+        }
+        // (a turn ends a turn's way behind its place)
+        let way = TAU * law.pieces()[0].travel.abs();
+        let room = way + traverse.lead.abs() - self.scene.wire.radius();
+        let [low, high] = [self.ends[0] - room, self.ends[1] + room];
+        let (now, near) = (self.sys.state.support[1].point.y, NEAR * way);
+        let has_no_place = |y: f64| y < low - near || y > high + near;
+        if has_no_place(now) && before.is_some_and(|y| !has_no_place(y)) {
+            let end = if now < low {
+                self.ends[0]
+            } else {
+                self.ends[1]
+            };
+            self.report(
+                EventKind::Judgement,
+                format!(
+                    "the nozzle has gone on past the end of the winding, at {} m, and the turns from here on have no place beside the others; let it turn back by another traverse.mode, wind fewer turns, or set traverse.per_turn to less",
+                    si(end)
+                ),
+            );
+        }
+    }
+
     /// Distance of the nozzle from the core axis, m.
     pub(super) fn nozzle_distance(&self) -> f64 {
         let nozzle = self.sys.state.support[1].point;
@@ -57,7 +90,7 @@ impl Winding {
 #[cfg(test)]
 mod tests {
     use super::super::Simulation;
-    use super::{EventKind, Inputs};
+    use super::{EventKind, Inputs, TAU};
     use crate::settings::SceneSettings;
 
     /// How often it is told, of a nozzle that starts at the first of these places and is sent to the others, m.
@@ -78,6 +111,48 @@ mod tests {
             e.kind == EventKind::Judgement && e.text.contains("unit of nozzle_position")
         };
         events.iter().filter(told).count()
+    }
+
+    /// Inputs may turn the core farther than an even law has room for. The scene's own number of turns was judged, which they do not wind.
+    #[test]
+    fn a_nozzle_whose_law_goes_on_past_a_flange_is_told_once() {
+        let mut settings = SceneSettings::load("fig8").expect("packed");
+        for (name, value) in [
+            ("traverse.mode", "by-angle"),
+            ("core.flange.inner_distance", "3e-3"),
+            ("core.flange.height", "5e-3"),
+            ("nozzle.y_start", "-1.1e-3"),
+            ("start.clamp_y", "-1.1e-3"),
+            ("spindle.turns", "14"),
+        ] {
+            settings.set_text(name, value).expect("a setting");
+        }
+        let refused = settings.build().expect_err("14 turns have no room");
+        assert!(refused.to_string().contains("for 14 turns"), "{refused}");
+        let by_inputs = settings.build_for(settings.nozzle_follows());
+        let (scene, _) = by_inputs.expect("inputs may wind fewer");
+        let start = scene.start_inputs();
+        let mut sim = Simulation::starting_by_law(&scene, start).expect("starts");
+        sim.step_beyond(true);
+        let turning = Inputs {
+            spindle_speed: 60.0,
+            ..start
+        };
+        let mut told = Vec::new();
+        for _ in 0..700 {
+            sim.advance(turning, 1e-3).expect("goes on");
+            let events = sim.drain_events().into_iter();
+            told.extend(events.filter(|e| e.text.contains("no place beside the others")));
+        }
+        assert_eq!(told.len(), 1, "{told:?}");
+        // places from -1.1 to 1.15 mm hold four turns, 0.7 mm apart
+        assert!((told[0].angle / TAU - 4.2).abs() < 0.3, "{told:?}");
+        settings
+            .set_text("nozzle.y_start", "-2e-3")
+            .expect("a setting");
+        let past = settings.build_for(settings.nozzle_follows());
+        let past = past.expect_err("the first turn lies in the flange");
+        assert!(past.to_string().contains("nozzle.y_start"), "{past}");
     }
 
     /// 6 instead of 6e-3 m was wound with, and nothing was said.

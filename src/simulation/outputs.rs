@@ -156,7 +156,9 @@ impl Winding {
         self.count_defects();
         let nozzle_angle = self.nozzle_angle();
         let began = self.run.time > 0.0;
-        self.watch_nozzle(began.then_some(self.run.outputs.nozzle_y));
+        let nozzle_was = began.then_some(self.run.outputs.nozzle_y);
+        self.watch_nozzle(nozzle_was);
+        self.watch_even_law(nozzle_was);
         let machine = self.for_the_machine(&layon);
         let rod = &self.sys.state.rod;
         let o = &mut self.run.outputs;

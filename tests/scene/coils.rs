@@ -163,13 +163,7 @@ fn a_table_gives_the_way() {
     };
     let law = scene("way.csv").unwrap().nozzle_law;
     assert_eq!(law.turns(), 3.0);
-    for (turns, y) in [
-        (0.0, -3e-3),
-        (1.0, 0.0),
-        (2.0, 3e-3),
-        (2.5, 3e-3),
-        (9.0, 3e-3),
-    ] {
+    for (turns, y) in [(0.0, -3e-3), (1.0, 0.0), (2.0, 3e-3), (9.0, 3e-3)] {
         assert!((law.position(turns * TAU) - y).abs() < 1e-15);
     }
     assert_eq!(scene("turns.csv").unwrap().nozzle_law.turns(), 3.0);
@@ -186,6 +180,8 @@ fn a_table_gives_the_way() {
         ("angle_deg,y_mm\n0,0\n360,x\n", "line 3: \"x\" is no number"),
         ("angle_deg,y_mm\n0,0\n", "less than two rows"),
         ("time,y_mm\n0,0\n", "its columns are time, y_mm"),
+        ("turns;y_mm\n0;0,5\n", "semicolons stand between"),
+        ("turns,y_mm\n0,0,5\n1,1,5\n", "decimal commas, save it"),
         (
             "turns,y_mm,y_m\n0,0,0\n1,1,1\n",
             "its columns y_mm and y_m tell the same",
