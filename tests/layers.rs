@@ -286,7 +286,7 @@ fn a_coil_over_a_rim_without_a_defect_is_not_judged() {
     let mut sim = started(
         "wire.material = 'copper'\nwire.diameter_mm = 0.5\ncore.shape = 'cylinder'\ncore.radius_mm = 8\n\
          core.flange.inner_distance_mm = 6\ncore.flange.height_mm = 0.6\nnozzle.distance_mm = 20\n\
-         tensioner.tension = 6\nspindle.speed = 40\nspindle.turns = 7\ntraverse.per_turn_mm = 0.52\n",
+         tensioner.tension = 7\nspindle.speed = 40\nspindle.turns = 7\ntraverse.per_turn_mm = 0.52\n",
     );
     wound(&mut sim, 6.0);
     assert_eq!(sim.doubt(), None);

@@ -202,9 +202,13 @@ fn corrected(sim: &mut Simulation, from: u32, to: u32) {
     }
 }
 
-/// Winds for 0.25 s at 30 rad/s. The tension is measured and set anew every 0.1 ms, with as much of what it is off by as `gain` says.
-fn controlled(beyond: bool, gain: f64) -> (Simulation, f64) {
-    let (mut sim, mut integral, mut set, mut off) = (start(beyond), 0.0, TENSION, 0.0);
+/// Winds for 0.25 s at 30 rad/s with the nozzle at a `distance`, m. The tension is measured and set anew every 0.1 ms, with as much
+/// of what it is off by as `gain` says.
+fn controlled(beyond: bool, gain: f64, distance: &str) -> (Simulation, f64) {
+    let scene = fig8(&[("nozzle.distance", distance)]);
+    let mut sim = Simulation::starting_with(&scene, held(0.0, 0.0)).expect("starts");
+    sim.step_beyond(beyond);
+    let (mut integral, mut set, mut off) = (0.0, TENSION, 0.0);
     for k in 0..12_500 {
         if k % 5 == 0 {
             let error = TENSION - sim.outputs().wire_tension;
@@ -224,23 +228,28 @@ fn controlled(beyond: bool, gain: f64) -> (Simulation, f64) {
 /// Every change of an input once dropped the step under way, and a controller had three to six times the solves of constant tension.
 #[test]
 fn a_controller_costs_less_than_twice_a_constant_tension() {
-    let [
-        (sim, off),
-        (plain, off_plain),
-        (constant, _),
-        (constant_plain, _),
-    ] = [(true, 0.3), (false, 0.3), (true, 0.0), (false, 0.0)]
-        .map(|(beyond, gain)| controlled(beyond, gain));
-    let [taken, to_each, held] = [&sim, &plain, &constant].map(|sim| sim.statistics().evaluations);
-    let [fed, fed_at_constant] = [(&sim, &plain), (&constant, &constant_plain)]
-        .map(|(a, b)| a.outputs().fed_length - b.outputs().fed_length);
-    println!("{taken} evaluations, {to_each} to each point, {held} at a constant tension");
-    println!(
-        "tension off by {off:.3} and {off_plain:.3} N, fed wire by {fed:.2e} m ({fed_at_constant:.2e} m)"
-    );
-    assert!(taken < 2 * held, "{taken} against {held}");
-    assert!(off < 1.2 * off_plain, "{off} against {off_plain}");
+    // (landings scatter fed wire by some um, so the mean of three coils is judged)
+    let (mut sums, distances) = ([0.0; 2], ["0.0597", "0.06", "0.0603"]);
+    for distance in distances {
+        let [
+            (sim, off),
+            (plain, off_plain),
+            (constant, _),
+            (constant_plain, _),
+        ] = [(true, 0.3), (false, 0.3), (true, 0.0), (false, 0.0)]
+            .map(|(beyond, gain)| controlled(beyond, gain, distance));
+        let counts = [&sim, &plain, &constant];
+        let [taken, to_each, held] = counts.map(|sim| sim.statistics().evaluations);
+        let fed = [(&sim, &plain), (&constant, &constant_plain)]
+            .map(|(a, b)| a.outputs().fed_length - b.outputs().fed_length);
+        println!("{taken} evaluations, {to_each} to each point, {held} at a constant tension");
+        println!("tension off by {off:.3} and {off_plain:.3} N, fed wire by {fed:?} m");
+        assert!(taken < 2 * held, "{taken} against {held}");
+        assert!(off < 1.2 * off_plain, "{off} against {off_plain}");
+        sums = [sums[0] + fed[0], sums[1] + fed[1]];
+    }
     // (short steps lessen the method's own error, also at a constant tension)
+    let [fed, fed_at_constant] = sums;
     let ratio = (fed - fed_at_constant).abs() / fed_at_constant.abs();
     assert!(ratio < 1.0, "{fed} against {fed_at_constant}");
 }

@@ -77,7 +77,9 @@ fn slack_in_which_no_wire_is_laid_is_none() {
             least = sim.outputs().wire_tension_min.min(least);
         }
         let o = sim.outputs();
-        assert_eq!((least, o.defect_count_slack), (0.0, i32::from(told)));
+        // (no tension is left but what the iteration leaves)
+        assert!(least < 1e-9, "{least} N");
+        assert_eq!(o.defect_count_slack, i32::from(told));
         assert!(!o.defect_slack && o.wire_tension > 1.0);
     }
 }

@@ -23,13 +23,13 @@ pub struct Past {
     pub fed: [f64; 2],
     /// its rate one instant back, m/s
     pub fed_rate: f64,
-    /// tensioner's way, m, and speed, m/s, one instant back
-    pub paid: f64,
-    /// see `paid`
+    /// tensioner's way one and two instants back, m
+    pub paid: [f64; 2],
+    /// its speed one instant back, m/s
     pub paid_rate: f64,
-    /// the pulley's way, m, and speed, m/s, one instant back
-    pub guided: f64,
-    /// see `guided`
+    /// the pulley's way one and two instants back, m
+    pub guided: [f64; 2],
+    /// its speed one instant back, m/s
     pub guided_rate: f64,
     /// how much longer the line's wire was for good one instant back, m
     pub longer: f64,
@@ -77,18 +77,17 @@ impl Past {
     pub(crate) fn keep_feed(&mut self, feed: &Feed) {
         self.fed = [feed.fed, self.fed[0]];
         self.fed_rate = feed.rate;
-        (self.paid, self.paid_rate) = (feed.paid, feed.paid_rate);
-        (self.guided, self.guided_rate) = (feed.guided, feed.guided_rate);
+        self.paid = [feed.paid, self.paid[0]];
+        self.paid_rate = feed.paid_rate;
+        self.guided = [feed.guided, self.guided[0]];
+        self.guided_rate = feed.guided_rate;
         self.longer = feed.longer;
     }
 
     /// Takes `wire`, m, as passed everywhere.
     pub(crate) fn shift_feed(&mut self, wire: f64) {
-        for place in self
-            .fed
-            .iter_mut()
-            .chain([&mut self.paid, &mut self.guided])
-        {
+        let places = [&mut self.fed, &mut self.paid, &mut self.guided];
+        for place in places.into_iter().flatten() {
             *place += wire;
         }
     }

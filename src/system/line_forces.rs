@@ -16,7 +16,8 @@ impl System {
             self.state.past.q[0].extend(self.state.rod.x.iter().map(|x| spin.to_core(*x)));
             if let Some(f) = &self.state.feed {
                 self.state.past.keep_feed(f);
-                self.state.past.fed = [f.fed; 2];
+                // (two instants back is the present one as well)
+                self.state.past.keep_feed(f);
             }
             if self.model.twist.is_carried() {
                 self.state.past.forget_rolls(self.state.rod.edges());

@@ -9,6 +9,7 @@ use super::tensioner::advance;
 use super::unknowns::Unknowns;
 use super::work::Work;
 use crate::contact::LimitFrom;
+use crate::feed::Feed;
 use crate::math::{Spin, V3};
 use crate::system::{Spindle, Support, System};
 
@@ -40,7 +41,8 @@ impl Implicit {
         );
         let turning = sys.state.turning;
         w.unknowns.hand_over(sys, self.scheme, step);
-        let (fed, grown) = self::feed(sys, step, nozzle, &w.q);
+        let fed = self::feed(sys, step, nozzle, &w.q);
+        let grown = fed.map_or(0.0, |(_, grown)| grown);
         for i in 0..nodes {
             let x = spin.to_lab(w.q[i]);
             match self.scheme {
@@ -67,8 +69,9 @@ impl Implicit {
         let inflow = grown * 0.5 * sys.model.section.mass_per_length();
         let feeds = sys.state.feed.is_some();
         let mut passing = 0.0;
-        if let (Some(f), Some(feed)) = (fed, &mut sys.state.feed) {
-            *feed = f;
+        if let (Some((next, _)), Some(feed)) = (fed, &mut sys.state.feed) {
+            sys.state.past.keep_feed(feed);
+            *feed = next;
             let last = sys.state.rod.edges() - 1;
             passing = sys.pass_nozzle(grown);
             sys.keep_set_at_nozzle(grown);
@@ -154,15 +157,14 @@ impl Implicit {
 }
 
 /// The feed after the step and how much wire came in.
-fn feed(
-    sys: &mut System,
+pub(super) fn feed(
+    sys: &System,
     step: &StepFormula,
     nozzle: Option<NozzleEdge>,
     q: &[V3],
-) -> (Option<crate::feed::Feed>, f64) {
-    let (Some(nozzle), Some(spec), Some(feed)) = (nozzle, &sys.model.feed, &sys.state.feed) else {
-        return (None, 0.0);
-    };
+) -> Option<(Feed, f64)> {
+    let (nozzle, spec) = (nozzle?, sys.model.feed.as_ref()?);
+    let feed = sys.state.feed.as_ref()?;
     let last = sys.state.rod.edges() - 1;
     let length = (q[last + 1] - q[last]).norm();
     let elastic = nozzle.rest(length) - sys.state.rod.rest[last];
@@ -175,6 +177,5 @@ fn feed(
     let set = sys.set_tension_after(step.share * step.h);
     let passed = (grown, line, set);
     let next = advance(spec, feed, &sys.state.past, step, passed, &sys.line_yield());
-    sys.state.past.keep_feed(feed);
-    (Some(next), grown)
+    Some((next, grown))
 }

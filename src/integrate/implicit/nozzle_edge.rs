@@ -323,7 +323,7 @@ mod tests {
         let past = Past {
             known: 1,
             fed: [0.012 - 3e-4; 2],
-            paid: 0.012 - 3e-4 - 14.0 / 97_800.0,
+            paid: [0.012 - 3e-4 - 14.0 / 97_800.0; 2],
             paid_rate: 2.9,
             h: [1e-4, 0.0],
             ..Past::default()
@@ -337,7 +337,7 @@ mod tests {
         let (spec, mut feed, mut past, step) = setting();
         (feed.rate, feed.paid_rate) = (0.0, 0.0);
         past.fed = [feed.fed; 2];
-        (past.paid, past.paid_rate) = (feed.paid, 0.0);
+        (past.paid, past.paid_rate) = ([feed.paid; 2], 0.0);
         (spec, feed, past, step)
     }
 
@@ -500,8 +500,8 @@ mod tests {
         });
         // (at rest: its bearing holds it while the line pulls by 1 N more or less than behind it)
         feed.guided = feed.paid + 0.6 * 20.0 / 97_800.0;
-        past.guided = feed.guided;
-        (feed.paid_rate, past.paid_rate, past.paid) = (0.0, 0.0, feed.paid);
+        past.guided = [feed.guided; 2];
+        (feed.paid_rate, past.paid_rate, past.paid) = (0.0, 0.0, [feed.paid; 2]);
         let (ea, rest, plastic) = (48_900.0, 3e-3, [0.02, 0.001]);
         for grip in [1.0, 1.3] {
             let edge = NozzleEdge::new(

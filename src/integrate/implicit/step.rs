@@ -1,11 +1,15 @@
 //! One step: guess, solve, estimate the error, commit or try again.
 
+use super::commit::feed;
 use super::model::Model;
+use super::nozzle_edge::NozzleEdge;
 use super::predictor::{moved, step_of};
+use super::scheme::StepFormula;
 use super::step_control::{MOST_TURN, SHORT};
 use super::unknowns::Unknowns;
 use super::work::Work;
-use super::{CLOSE, Implicit, Scheme, StepError, newton};
+use super::{CLOSE, Implicit, Scheme, StepError, newton, tensioner};
+use crate::math::V3;
 use crate::system::System;
 
 impl Implicit {
@@ -73,7 +77,10 @@ impl Implicit {
                     0.5 * h
                 }
                 Ok(_) => {
-                    let error = step.error * work.difference();
+                    let difference = work
+                        .difference()
+                        .max(feed_difference(sys, &step, nozzle, &work.q));
+                    let error = step.error * difference;
                     let factor = self.length_factor(error.max(1e-30));
                     if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
                         self.commit(work, sys, &step, spindle, &support, nozzle);
@@ -107,4 +114,13 @@ impl Implicit {
             }
         }
     }
+}
+
+/// How far the places of pulley and tensioner after the step are from where their ways lead, m.
+fn feed_difference(sys: &System, step: &StepFormula, nozzle: Option<NozzleEdge>, q: &[V3]) -> f64 {
+    let spec = sys.model.feed.as_ref().zip(sys.state.feed.as_ref());
+    let next = feed(sys, step, nozzle, q);
+    spec.zip(next).map_or(0.0, |((spec, feed), (next, _))| {
+        tensioner::difference(spec, feed, &sys.state.past, step.share * step.h, &next)
+    })
 }

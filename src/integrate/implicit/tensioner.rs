@@ -3,7 +3,7 @@
 //! The tensioner's mass, damper and pull, and a line without mass, make the line's tension a straight line over the wire
 //! passed. Mass of the line's wire, and a pulley with its bearing, make it a [`Curve`].
 
-use super::scheme::StepFormula;
+use super::scheme::{StepFormula, extrapolation};
 use crate::feed::{Curve, Feed, FeedSpec, LineYield, Span};
 use crate::system::Past;
 
@@ -75,12 +75,12 @@ impl Chain {
         };
         let late = feed.longer - (nozzle.place - end.place);
         let guided = body(
-            [feed.guided, past.guided],
+            [feed.guided, past.guided[0]],
             [feed.guided_rate, past.guided_rate],
             front.half_mass + rear.half_mass + spec.pulley.map_or(0.0, |pulley| pulley.mass),
         );
         let tensioner = body(
-            [feed.paid, past.paid],
+            [feed.paid, past.paid[0]],
             [feed.paid_rate, past.paid_rate],
             rear.half_mass + spec.mass,
         );
@@ -175,7 +175,7 @@ pub(super) fn line_over_fed(
         let slope = spec.mass / (g * g);
         return (pull - slope * (fed + g * rate) - drag * fed, slope + drag);
     }
-    let paid = step.blend(feed.paid, past.paid);
+    let paid = step.blend(feed.paid, past.paid[0]);
     let (k, c) = (spec.line_stiffness, spec.line_damping);
     let end = step.blend(feed.fed - feed.longer, past.fed[0] - past.longer);
     // T = k (x - s) + c (x' - u) with x = fed - longer, s = s* + g u, u damped = u* + g (T - pull) / m
@@ -189,6 +189,26 @@ pub(super) fn line_over_fed(
 /// By how much a damper, N s/m, of a tensioner with mass lowers its speed in a step with this gamma, s.
 fn damped(damping: f64, spec: &FeedSpec, gamma: f64) -> f64 {
     1.0 + gamma * damping / spec.mass
+}
+
+/// How far, m, the places of pulley and tensioner in `next`, after a step of `h`, s, are from where their ways up to the step lead.
+///
+/// Both ring on the line, and where a core turns slowly their wire hardly tells.
+pub(super) fn difference(spec: &FeedSpec, feed: &Feed, past: &Past, h: f64, next: &Feed) -> f64 {
+    let e = extrapolation(h, past);
+    let off = |next: f64, (now, rate): (f64, f64), [one, two]: [f64; 2]| match past.known {
+        0 => (next - now - rate * h).abs(),
+        _ => (next - now * e[0] - one * e[1] - two * e[2]).abs(),
+    };
+    let mut largest: f64 = 0.0;
+    if spec.mass > 0.0 {
+        largest = off(next.paid, (feed.paid, feed.paid_rate), past.paid);
+    }
+    if spec.pulley.is_some_and(|pulley| pulley.mass > 0.0) {
+        let guided = (feed.guided, feed.guided_rate);
+        largest = largest.max(off(next.guided, guided, past.guided));
+    }
+    largest
 }
 
 /// The feed after a step that let the edge grow by `grown` under the line tension `line`.
@@ -210,7 +230,7 @@ pub(super) fn advance(
     let (paid, paid_rate) = if has_spring {
         let undamped = step.blend(feed.paid_rate, past.paid_rate) + g * (line - pull) / spec.mass;
         let u = undamped / damped(feed.damping_on(spec), spec, g);
-        (step.blend(feed.paid, past.paid) + g * u, u)
+        (step.blend(feed.paid, past.paid[0]) + g * u, u)
     } else {
         (fed, rate)
     };
