@@ -252,7 +252,8 @@ class Coil:
         # One place that stands out must not take the colours from all others.
         low, high = (values.min(), values.max()) if counted else np.percentile(values, [1, 99])
         shown = factor * self.end[array].astype(float)
-        reach = np.nanmin(shown), np.nanmax(shown)
+        # (what rounding leaves of zero is zero)
+        reach = [0.0 if abs(x) < 1e-9 * high else x for x in (np.nanmin(shown), np.nanmax(shown))]
         if not counted and (reach[0] < low or reach[1] > high):
             title += f"\nvalues from\n{reach[0]:.3g} to {reach[1]:.3g}"
         high, labels = whole_steps(low, high) if counted else (max(high, low + 1e-9), 5)

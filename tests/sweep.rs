@@ -37,7 +37,12 @@ fn a_run_that_fails_has_no_verdict() {
     sweep
         .args(["--set", "spindle.turns=1.2", "--out"])
         .arg(&out);
-    finished(sweep, 0);
+    // (the reason stood in the table alone)
+    let said = complaint(sweep, 0);
+    assert!(
+        said.contains("the solver gave up 1 of 1 runs, one with this reason: no step of"),
+        "{said}"
+    );
     let rows = rows(&out.join("sweep.csv"));
     assert_eq!(rows[0]["outcome"], "failed");
     assert_eq!(rows[0]["verdict"], "unjudged");

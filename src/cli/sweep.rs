@@ -133,6 +133,13 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
             work.grid.remedy()
         );
     }
+    if let Some(row) = work.ledger.rows().values().find(|row| row.failed()) {
+        eprintln!(
+            "warning: the solver gave up {failed} of {total} runs, one with this reason: {}; column reason of {} has all",
+            row.reason,
+            files::ROWS
+        );
+    }
     let found = match &answer {
         Ok(Some(words)) => format!("{words}\n{ON_TRUST}\n"),
         _ => String::new(),

@@ -136,7 +136,9 @@ function product(run) {
   ];
   if (run.history) {
     const [least, most] = [Math.min(...run.history.tension_min), Math.max(...run.history.tension_max)];
-    figures.push(["Tension at the nozzle", `${digits(least, 2)} to ${digits(most, 2)}`, "N"]);
+    // two digits of the largest, and the same decimals of the least
+    const decimals = most > 0 ? Math.max(0, 1 - Math.floor(Math.log10(most))) : 0;
+    figures.push(["Tension at the nozzle", `${fixed(least, decimals)} to ${digits(most, 2)}`, "N"]);
   }
   if (run.enamelled) figures.push(["Over the enamel", digits(1e3 * p.enamelled_diameter_m), "mm"]);
   if (p.clearance_m != null) figures.push(["Clearance in window", digits(1e3 * p.clearance_m), "mm"]);
