@@ -40,7 +40,7 @@ fn a_run_that_fails_has_no_verdict() {
     // (the reason stood in the table alone)
     let said = complaint(sweep, 0);
     assert!(
-        said.contains("the solver gave up 1 of 1 runs, one with this reason: no step of"),
+        said.contains("the solver gave up 1 of 1 runs, one with this reason: at t = 0.0159"),
         "{said}"
     );
     let rows = rows(&out.join("sweep.csv"));
