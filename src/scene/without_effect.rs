@@ -230,13 +230,13 @@ impl Reader<'_> {
         let is_kept = self.is_kept();
         // (an importer writes every start value, but perhaps for texts and files; nobody sets half of all keys by hand)
         let by_name = |key: &&str| settings.origins.get(*key) == Some(&Origin::Set);
-        let has_all = 2 * all_keys().filter(by_name).count() >= all_keys().count();
+        let by_an_importer = 2 * all_keys().filter(by_name).count() >= all_keys().count();
         let mut warnings: Vec<Warning> = Vec::new();
         let mut warn = |key: &'static str, why: &str| {
             let (origin, value) = (settings.told_origin(key), settings.shown(key));
             let says_nothing = match settings.origins.get(key) {
                 Some(Origin::File { .. }) => is_kept,
-                _ => has_all,
+                _ => by_an_importer,
             };
             let is_given =
                 settings.origins.contains_key(key) && !(says_nothing && value == usual.shown(key));

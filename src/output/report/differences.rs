@@ -18,6 +18,9 @@ pub(super) struct Difference {
     values: [String; 2],
 }
 
+/// Unit of spindle speeds, which people say in another one as well.
+const SPEED: &str = "rad/s";
+
 /// What a key has in place of a value where nothing reads it.
 const NO_EFFECT: &str = "no effect";
 
@@ -107,6 +110,14 @@ fn shown(row: &Variable, value: &Value) -> String {
     // Seven digits: the product with a factor has no more to say.
     let rounded: f64 = format!("{:.6e}", factor * x + offset).parse().unwrap_or(*x);
     let name = if name == "1" { "" } else { name };
+    if row.unit == SPEED {
+        // (scenes have either)
+        return format!(
+            "{} {SPEED} ({} {name})",
+            Value::Real(*x),
+            Value::Real(rounded)
+        );
+    }
     format!("{} {name}", Value::Real(rounded))
         .trim_end()
         .to_owned()
@@ -125,25 +136,29 @@ mod tests {
         };
         put(
             &one,
-            "[wire]\ndiameter = 7e-4\n[output]\nhistory_interval = 0.1\n",
+            "[wire]\ndiameter = 7e-4\n[spindle]\nspeed = 150\n[output]\nhistory_interval = 0.1\n",
         );
         assert_eq!(differences(one.path(), other.path()), None, "no scene");
         put(
             &other,
-            "[core]\nshape = \"cylinder\"\n[wire]\ndiameter_mm = 0.3\n",
+            "[core]\nshape = \"cylinder\"\n[wire]\ndiameter_mm = 0.3\n[spindle]\nspeed_rpm = 1200\n",
         );
         let found = differences(one.path(), other.path()).expect("two scenes");
         let told: Vec<_> = found.iter().map(|d| (d.name, &d.values)).collect();
-        assert_eq!(
-            told,
-            [
-                ("wire.diameter", &["0.7 mm".to_owned(), "0.3 mm".to_owned()]),
-                (
-                    "core.shape",
-                    &["rounded-box".to_owned(), "cylinder".to_owned()]
+        let values = |one: &str, other: &str| [one.to_owned(), other.to_owned()];
+        let expected = [
+            ("wire.diameter", &values("0.7 mm", "0.3 mm")),
+            ("core.shape", &values("rounded-box", "cylinder")),
+            (
+                "spindle.speed",
+                // (speeds stood there in rpm alone)
+                &values(
+                    "150 rad/s (1432.394 rpm)",
+                    "125.66370614359172 rad/s (1200 rpm)",
                 ),
-            ]
-        );
+            ),
+        ];
+        assert_eq!(told, expected);
         assert!(
             found[0]
                 .meaning
