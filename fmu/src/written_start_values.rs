@@ -58,21 +58,3 @@ fn values_without_effect_do_not_hide_what_overrules_the_scene() {
     let overruled = |text: &&String| text.contains("wire.material = copper was set and holds");
     assert_eq!(warnings.iter().filter(overruled).count(), 1);
 }
-
-/// An importer that only says where results go got an empty folder of a core at rest.
-#[test]
-fn a_folder_of_results_leaves_the_demonstration_as_it_is() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let mut instance = Instance::for_tests();
-    let at = by_name("output.directory").expect("a variable").reference;
-    let out = folder.path().join("out").display().to_string();
-    instance.set(&[at], [out]).expect("set");
-    instance.setup_experiment(None, 0.0, None).expect("valid");
-    instance.enter_initialization_mode().expect("enters");
-    instance.exit_initialization_mode().expect("starts");
-    for k in 0..10 {
-        instance.do_step(1e-3 * f64::from(k), 1e-3).expect("a step");
-    }
-    let angle = by_name("spindle_angle").expect("a variable").reference;
-    assert!(instance.get::<f64>(&[angle]).expect("a value")[0] > 0.0);
-}

@@ -12,22 +12,19 @@ use coilwind::variables::{Value, by_reference};
 use coilwind_model_description::Category;
 use std::f64::consts::TAU;
 
-/// How parameters begin that say where results go, and which; none of them moves anything.
-const OF_RESULTS: &str = "output.";
-
 /// Speed of the demonstration, rad/s, where the scene's is not lower: turns lie close, and a second of
 /// computing winds the coil.
 const SPEED: f64 = 100.0;
 
 impl Instance {
-    /// Demonstrates the scene's motion if nothing was set to another value than that in `modelDescription.xml`, but for where results go.
+    /// Demonstrates the scene's motion if nothing was set to another value than that in `modelDescription.xml`.
     pub(super) fn begin_demonstration(&mut self) {
         let default = SceneSettings::default();
         let starts_so = |reference: u32, given: &Value| {
-            by_reference(reference).is_some_and(|row| {
-                row.name.starts_with(OF_RESULTS)
-                    || row.start_in_fmu(&default).as_ref() == Some(given)
-            })
+            by_reference(reference)
+                .and_then(|row| row.start_in_fmu(&default))
+                .as_ref()
+                == Some(given)
         };
         let inputs = self.start_inputs.iter();
         self.demonstrates = self.start_rates.is_empty()
