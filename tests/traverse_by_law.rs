@@ -82,6 +82,19 @@ fn layers_are_those_of_the_scene() {
     assert!(worst < 1e-7, "{worst:e} m");
 }
 
+/// The inputs of `start` with another speed, rad/s, that changes at a `rate`, rad/s2, and the rates of all.
+fn turning(start: Inputs, speed: f64, rate: f64) -> (Inputs, Inputs) {
+    let now = Inputs {
+        spindle_speed: speed,
+        ..start
+    };
+    let rates = Inputs {
+        spindle_speed: rate,
+        ..Inputs::HELD
+    };
+    (now, rates)
+}
+
 #[test]
 fn a_core_that_turns_back_takes_the_nozzle_along() {
     let scene = scene("bobbin");
@@ -97,14 +110,7 @@ fn a_core_that_turns_back_takes_the_nozzle_along() {
         } else {
             50.0 - 400.0 * (time - 0.2)
         };
-        let now = Inputs {
-            spindle_speed: speed,
-            ..start
-        };
-        let rates = Inputs {
-            spindle_speed: rate,
-            ..Inputs::HELD
-        };
+        let (now, rates) = turning(start, speed, rate);
         told.advance_ramped(now, rates, 1e-3).expect("goes on");
         let angle = told.outputs().spindle_angle.abs();
         farthest = farthest.max(angle);
@@ -234,14 +240,7 @@ fn steps_ahead_by_law_follow_a_speed_that_changes() {
                 1000..1300 => (-20.0, 0.0),
                 _ => (40.0 + f64::from(k % 3), 0.0),
             };
-            let now = Inputs {
-                spindle_speed: speed,
-                ..start
-            };
-            let rates = Inputs {
-                spindle_speed: rate,
-                ..Inputs::HELD
-            };
+            let (now, rates) = turning(start, speed, rate);
             run.advance_ramped(now, rates, 2e-5).expect("goes on");
             let place = law.position(run.outputs().spindle_angle.abs());
             let off = run.outputs().nozzle_y - place;

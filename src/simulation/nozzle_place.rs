@@ -51,8 +51,9 @@ impl Winding {
         }
     }
 
-    /// Tells where a nozzle that goes on evenly by its law, as far as inputs turn the core, begins a turn that has no place on the core;
-    /// it was at `before` along the core axis, m, at the last communication point, if there was one.
+    /// Tells where a nozzle that goes on evenly by its law begins a turn that has no place on the core. Inputs may turn the core that far.
+    ///
+    /// It was at `before` along the core axis, m, at the last communication point, if there was one.
     pub(super) fn watch_even_law(&mut self, before: Option<f64>) {
         let (law, traverse) = (&self.scene.nozzle_law, &self.scene.traverse);
         if !self.run.nozzle_by_law || traverse.mode != "by-angle" {
