@@ -180,6 +180,7 @@ impl SceneSettings {
             ),
             start: self.start,
             spindle: Spindle {
+                speed: self.spindle.speed * self.spindle.sense(),
                 turns: match self.spindle.turns {
                     0.0 => nozzle_law.turns(),
                     turns => turns,

@@ -185,7 +185,7 @@ impl SceneSettings {
             }
             // without inputs the nozzle goes with the core's angle
             _ => {
-                let travel = t.per_turn / TAU * self.spindle.speed.signum();
+                let travel = t.per_turn / TAU;
                 let turns = match self.spindle.turns {
                     0.0 => TURNS,
                     turns => turns,
@@ -496,7 +496,7 @@ impl SceneSettings {
         let by_angle = t.mode == "by-angle";
         if by_angle {
             // a way that goes on evenly ends a turn behind the place of its last one
-            let behind = t.per_turn * self.spindle.speed.signum();
+            let behind = t.per_turn;
             ends[usize::from(behind > 0.0)] += behind;
         }
         // (where the wire has no place at all, that has been told)

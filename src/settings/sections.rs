@@ -100,8 +100,10 @@ impl Start {
 /// Spindle motion profile of a native run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spindle {
-    /// final speed about +y, rad/s
+    /// final speed, rad/s; in a [`Scene`](crate::scene::Scene) about +y, with its sign
     pub speed: f64,
+    /// axis about which it winds: `+y` or `-y`
+    pub direction: String,
     /// revolutions over which the speed rises with constant acceleration
     pub ramp_turns: f64,
     /// revolutions until the run ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle
@@ -114,6 +116,16 @@ pub struct Spindle {
     pub flange_share: f64,
     /// revolutions over which the speed falls to that before a climb, and rises again after it
     pub flange_turns: f64,
+}
+
+impl Spindle {
+    /// 1 where it winds about +y, -1 where it winds about -y.
+    pub fn sense(&self) -> f64 {
+        match self.direction.as_str() {
+            "-y" => -1.0,
+            _ => 1.0,
+        }
+    }
 }
 
 /// Two flanges beside the core; none where the inner distance is 0.

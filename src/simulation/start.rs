@@ -72,10 +72,9 @@ impl FirstSpan {
         let aside = libm::atan2(-nozzle.z, nozzle.x);
         let turned = crate::settings::Start::core_angle(half, radius, distance);
         let clamp = V3::new(half + radius, scene.start.clamp_y, 0.0);
-        let direction = if inputs.spindle_speed < 0.0 {
-            -1.0
-        } else {
-            1.0
+        let direction = match inputs.spindle_speed {
+            0.0 => scene.spindle.speed.signum(),
+            speed => speed.signum(),
         };
         let angle = match &scene.core {
             Core::Mesh { .. } => clear_angle(scene, surface, (clamp, nozzle), |back| {

@@ -2,6 +2,8 @@
 
 use super::Winding;
 use super::nozzle_way::{Found, Traverse};
+use crate::math::wrap_to_pi;
+use crate::signals::EventKind;
 use std::f64::consts::TAU;
 
 /// Way back along y from which on the nozzle has turned, wire diameters; less is jitter. Chosen: half of the
@@ -26,6 +28,7 @@ impl Winding {
             }
             self.run.traverse = Traverse::new(self.sys.state.support[1].point.y);
             self.tell_of_changes("the core winds the other way round");
+            self.tell_of_other_way(direction);
         }
         let core = turn * self.coil.spec().direction;
         let y = self.sys.state.support[1].point.y;
@@ -49,5 +52,24 @@ impl Winding {
                 self.tell_of_changes("the nozzle has turned since");
             }
         }
+    }
+
+    /// Tells that the core winds the other way round than in this direction, 1 or -1, for which it stood at the start.
+    fn tell_of_other_way(&mut self, stood_for: f64) {
+        let axis = |direction: f64| if direction < 0.0 { "-y" } else { "+y" };
+        let nozzle = self.sys.state.support[1].point;
+        let facing = libm::atan2(-nozzle.z, nozzle.x);
+        let idle = 2.0 * wrap_to_pi(self.run.angle0 - facing).abs().to_degrees();
+        let law = match self.run.nozzle_by_law {
+            true => ", for which the traverse law does not wait",
+            false => "",
+        };
+        let (now, stood_for) = (axis(-stood_for), axis(stood_for));
+        self.report(
+            EventKind::Judgement,
+            format!(
+                "the core winds about {now}, and stood for winding about {stood_for} at the start: it lays wire only after {idle:.0} degrees{law}; set spindle.direction = {now} to begin this way round"
+            ),
+        );
     }
 }
