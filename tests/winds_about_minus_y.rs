@@ -85,7 +85,7 @@ fn a_machine_that_starts_at_rest_winds_as_the_scene_says() {
 
 #[test]
 fn it_is_told_that_the_core_stands_for_the_other_way_round() {
-    let (_, events) = from_rest("+y");
+    let (_, events) = from_rest("auto");
     let told = told(&events);
     assert_eq!(told.len(), 1, "{told:?}");
     assert!(told[0].contains("set spindle.direction = -y"), "{told:?}");

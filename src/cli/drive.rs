@@ -4,9 +4,9 @@ use super::failure::Failure;
 use super::shell::quoted;
 use super::signals::{Grid, Signals};
 use coilwind::scene::Scene;
-use coilwind::settings::{NozzleFollows, SceneSettings};
+use coilwind::settings::{NozzleFollows, SceneSettings, Spindle};
 use coilwind::signals::Inputs;
-use coilwind::simulation::{MotionProfile, SimError, Simulation};
+use coilwind::simulation::{MotionProfile, OTHER_WAY, SimError, Simulation};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -30,6 +30,15 @@ impl Motion {
 }
 
 impl Motion {
+    /// Whether steps may reach beyond its points or rows.
+    pub(super) fn reaches_beyond(&self, scene: &Scene) -> bool {
+        let features = scene.solver.features;
+        match self.inputs {
+            Some(_) => features.steps_beyond,
+            None => features.rows_between,
+        }
+    }
+
     /// The options that ask for it, a blank before each, as a shell in any folder takes them.
     pub(super) fn options(&self) -> String {
         let mut words = String::new();
@@ -114,6 +123,18 @@ impl Drive {
             file: path.display().to_string(),
             end,
         })
+    }
+
+    /// The axis about which the inputs wind, for `spindle.direction`, where that is `auto` and their speed at the start says another
+    /// one: a machine starts at rest.
+    pub(super) fn winds_otherwise(&self, spindle: &Spindle) -> Option<&'static str> {
+        let Self::Signals { signals, held, .. } = self else {
+            return None;
+        };
+        let sense = signals.winding_sense(OTHER_WAY);
+        let otherwise = sense * spindle.sense_from(held.spindle_speed) < 0.0;
+        let axis = if sense < 0.0 { "-y" } else { "+y" };
+        (spindle.direction == "auto" && otherwise).then_some(axis)
     }
 
     /// What holds where the run begins before the inputs or goes on beyond them, in words.

@@ -299,7 +299,7 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     let name = args.scene.as_deref().unwrap_or_default();
     let motion = args.motion();
     let _waiting = (!args.quiet).then(super::waiting::Waiting::for_start);
-    let (settings, scene, warnings) = match args.settings.as_deref().cloned() {
+    let (mut settings, mut scene, warnings) = match args.settings.as_deref().cloned() {
         Some(settings) => {
             let (scene, warnings) = settings.build_for(motion.nozzle_follows(&settings))?;
             (settings, scene, warnings)
@@ -313,12 +313,12 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
             .iter()
             .for_each(|warning| eprintln!("warning: {warning}"));
     }
-    let start_failure = |reason| Failure::Start {
-        scene: args.scene.as_ref().unwrap_or(&settings.name).clone(),
-        reason,
-    };
     let follows = motion.nozzle_follows(&settings);
     let drive = Drive::new(&motion, &scene, follows)?;
+    if let Some(axis) = drive.winds_otherwise(&settings.spindle) {
+        settings.set_text("spindle.direction", axis)?;
+        (scene, _) = settings.build_for(follows)?;
+    }
     if !args.quiet {
         drive
             .warnings()
@@ -334,8 +334,11 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
             Simulation::starting_with(&scene, *held)
         }
     };
-    let mut simulation = simulation.map_err(start_failure)?;
-    simulation.step_beyond(reaches_beyond(&motion, &scene));
+    let mut simulation = simulation.map_err(|reason| Failure::Start {
+        scene: args.scene.as_ref().unwrap_or(&settings.name).clone(),
+        reason,
+    })?;
+    simulation.step_beyond(motion.reaches_beyond(&scene));
     let directory = args.directory(&settings);
     let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
     folder::prepare(&directory, args.force, args.scene.as_deref())?;
@@ -353,15 +356,6 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     })
 }
 
-/// Whether steps may reach beyond the points or rows of this motion.
-fn reaches_beyond(motion: &Motion, scene: &Scene) -> bool {
-    let features = scene.solver.features;
-    match motion.inputs {
-        Some(_) => features.steps_beyond,
-        None => features.rows_between,
-    }
-}
-
 /// The run of a folder, where its last checkpoint was written.
 fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let begin_again = |why: &str| Failure::Resume {
@@ -377,7 +371,7 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let (scene, _): (Scene, _) = plan.settings.build_for(follows)?;
     let mut simulation = Simulation::from_bytes(&scene, &checkpoint.state)
         .map_err(|error| begin_again(&error.to_string()))?;
-    simulation.step_beyond(reaches_beyond(&plan.motion, &scene));
+    simulation.step_beyond(plan.motion.reaches_beyond(&scene));
     let mut drive = Drive::new(&plan.motion, &scene, follows)?;
     if !drive.go_on(checkpoint.place) {
         return Err(begin_again("the checkpoint contradicts itself"));

@@ -172,6 +172,23 @@ impl Signals {
         inputs
     }
 
+    /// The way round on which the core winds, 1 or -1: on which it is first turned beyond its start by `least`, rad, or else at the
+    /// end; 0 if it does not turn.
+    pub(super) fn winding_sense(&self, least: f64) -> f64 {
+        let mut times: Vec<f64> = self.time.iter().map(|time| time.max(0.0)).collect();
+        times.insert(0, 0.0);
+        let mut turned: f64 = 0.0;
+        for pair in times.windows(2) {
+            let from = self.after(pair[0], Inputs::HELD).spindle_speed;
+            let to = self.before(pair[1], Inputs::HELD).spindle_speed;
+            turned += 0.5 * (from + to) * (pair[1] - pair[0]);
+            if turned.abs() > least {
+                break;
+            }
+        }
+        if turned == 0.0 { 0.0 } else { turned.signum() }
+    }
+
     /// The samples up to `end`, s, that a run in steps of `step`, s, does not see, in words.
     pub(super) fn missed(&self, step: f64, end: f64) -> Option<String> {
         let mut worst = (0.0, String::new());
@@ -418,6 +435,19 @@ mod tests {
 
     fn error(text: &str) -> String {
         Signals::parse(text, "in.csv").unwrap_err().to_string()
+    }
+
+    /// A table that begins at rest says by its further rows which way round the core winds.
+    #[test]
+    fn a_core_winds_the_way_it_first_goes_beyond_jitter() {
+        let sense = |rows: &str| parse(&format!("time,spindle_speed\n{rows}")).winding_sense(0.3);
+        assert_eq!(sense("0,0\n1,0\n"), 0.0);
+        assert_eq!(sense("0,0\n1,-10\n"), -1.0);
+        assert_eq!(sense("0,0.1\n1,0.1\n2,-10\n9,30\n"), -1.0);
+        assert_eq!(sense("0,-0.1\n1,0\n2,10\n9,-30\n"), 1.0);
+        // (the first row holds before it, and what is before the run counts for nothing)
+        assert_eq!(sense("1,-10\n1,30\n"), -1.0);
+        assert_eq!(sense("-5,-10\n-1,-10\n0,0\n1,3\n"), 1.0);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::coil::{Coil, Record, STEP_UP};
 use super::defect::{Defect, DefectFlags, DefectKind, DefectPlace, MEASURED};
 use super::marks::CountedRun;
+use super::runs::{Run, stations_for};
 use super::station::Station;
 use super::{STATION_STEP, STATIONS_PER_TURN, Verdict};
 use serde::Serialize;
@@ -44,6 +45,29 @@ impl Coil {
             loose_turn,
             overstretch,
         }
+    }
+
+    /// The gap of a turn that lasts for as long as a gap has to that counts, m: the largest limit at which it would be one. None where
+    /// nothing is that long.
+    pub fn lasting_gap(&self, turn: usize) -> Option<f64> {
+        let first = (turn - 1) * STATIONS_PER_TURN;
+        let stations = self.stations().skip(first).take(STATIONS_PER_TURN);
+        let gaps: Vec<Option<f64>> = stations
+            .map(|s| s.neighbour.filter(|_| s.measured && !s.crosses))
+            .map(|neighbour| neighbour.map(|n| n.gap))
+            .collect();
+        let least = stations_for(self.spec.limits.gap_fraction);
+        let counts = |limit: f64| {
+            let mut run = Run::default();
+            gaps.iter().any(|&gap| {
+                run = run.next(gap, limit);
+                run.counts(least)
+            })
+        };
+        let mut limits: Vec<f64> = gaps.iter().flatten().copied().collect();
+        limits.sort_by(f64::total_cmp);
+        let within = limits.partition_point(|&limit| counts(limit));
+        limits.get(within.checked_sub(1)?).copied()
     }
 
     /// Number of defects in the settled wire, of all kinds.

@@ -84,6 +84,7 @@ impl Coil {
                 || row.sense == pass.sense
                     && has_no_room
                     && !squeezed
+                    && self.may_climb(self.layer_of(row), angle)
                     && leaves()
                     && self.stands_on_own(row, at));
         let rises = squeezed && leaves();

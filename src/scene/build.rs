@@ -180,7 +180,7 @@ impl SceneSettings {
             ),
             start: self.start,
             spindle: Spindle {
-                speed: self.spindle.speed * self.spindle.sense(),
+                speed: self.spindle.speed * self.spindle.sense_from(0.0),
                 turns: match self.spindle.turns {
                     0.0 => nozzle_law.turns(),
                     turns => turns,

@@ -366,7 +366,7 @@ impl Default for SceneSettings {
             start: Start { clamp_y: 0.0 },
             spindle: Spindle {
                 speed: 500.0,
-                direction: "+y".to_owned(),
+                direction: "auto".to_owned(),
                 ramp_turns: 0.25,
                 turns: 0.0,
                 file: String::new(),

@@ -102,7 +102,7 @@ impl Start {
 pub struct Spindle {
     /// final speed, rad/s; in a [`Scene`](crate::scene::Scene) about +y, with its sign
     pub speed: f64,
-    /// axis about which it winds: `+y` or `-y`
+    /// axis about which it winds: `+y`, `-y`, or `auto`: by the speed at the start, +y where that is 0
     pub direction: String,
     /// revolutions over which the speed rises with constant acceleration
     pub ramp_turns: f64,
@@ -119,10 +119,12 @@ pub struct Spindle {
 }
 
 impl Spindle {
-    /// 1 where it winds about +y, -1 where it winds about -y.
-    pub fn sense(&self) -> f64 {
+    /// 1 where it winds about +y, -1 where it winds about -y, from this speed at the start, rad/s.
+    pub fn sense_from(&self, speed: f64) -> f64 {
         match self.direction.as_str() {
+            "+y" => 1.0,
             "-y" => -1.0,
+            _ if speed < 0.0 => -1.0,
             _ => 1.0,
         }
     }

@@ -72,6 +72,7 @@ pub use summary::{EnergySummary, PenetrationSummary, Summary};
 #[cfg(feature = "lab")]
 #[doc(hidden)]
 pub use trail::StepTrail;
+pub use traverse::OTHER_WAY;
 pub use winding::Winding;
 
 /// Speed below which wire on a standing core counts as quiet, m/s.

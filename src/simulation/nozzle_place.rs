@@ -18,6 +18,20 @@ pub(super) fn nozzle_of(scene: &Scene, inputs: &Inputs) -> V3 {
     )
 }
 
+/// What is told of a nozzle that begins farther from the clamp than the scene has it, at this place along the core axis, m.
+pub(super) fn beside_clamp(scene: &Scene, nozzle: f64) -> Option<String> {
+    let clamp = scene.start.clamp_y;
+    let planned = (scene.nozzle_law.start() - clamp).abs();
+    let beside = (nozzle - clamp).abs() > planned + scene.wire.diameter;
+    beside.then(|| {
+        format!(
+            "the nozzle begins at y = {} m, and the wire is clamped at {} m, from where its first turns run aslant; set start.clamp_y to where the nozzle begins",
+            si(nozzle),
+            si(clamp)
+        )
+    })
+}
+
 impl Winding {
     /// Where the nozzle has to be at the end of a step whose inputs end as `end`, m: along the core axis as its law says,
     /// where it follows one.
@@ -154,6 +168,27 @@ mod tests {
         let past = settings.build_for(settings.nozzle_follows());
         let past = past.expect_err("the first turn lies in the flange");
         assert!(past.to_string().contains("nozzle.y_start"), "{past}");
+    }
+
+    /// A programme from the other flange wound forty defects, and nothing was said.
+    #[test]
+    fn a_nozzle_that_begins_beside_the_clamp_is_told() {
+        let scene = SceneSettings::load("fig8").and_then(|s| s.build());
+        let scene = scene.expect("a scene");
+        for (nozzle_position, told) in [(0.0, 0), (0.6e-3, 0), (3e-3, 1), (-3e-3, 1)] {
+            let inputs = Inputs {
+                nozzle_position,
+                ..scene.start_inputs()
+            };
+            let mut sim = Simulation::starting_with(&scene, inputs).expect("starts");
+            let events = sim.drain_events();
+            let aslant = |e: &&crate::signals::Event| e.text.contains("set start.clamp_y");
+            assert_eq!(
+                events.iter().filter(aslant).count(),
+                told,
+                "{nozzle_position}"
+            );
+        }
     }
 
     /// 6 instead of 6e-3 m was wound with, and nothing was said.

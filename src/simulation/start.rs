@@ -5,7 +5,7 @@ use super::core_model::{core_flanges, core_shape, core_surface};
 use super::door::check_finite;
 use super::doubt::Throughput;
 use super::freezing::{FreezePolicy, Watch};
-use super::nozzle_place::nozzle_of;
+use super::nozzle_place::{beside_clamp, nozzle_of};
 use super::nozzle_way::Traverse;
 use super::older_wire::OlderWire;
 use super::refining::shortest_edge;
@@ -72,10 +72,7 @@ impl FirstSpan {
         let aside = libm::atan2(-nozzle.z, nozzle.x);
         let turned = crate::settings::Start::core_angle(half, radius, distance);
         let clamp = V3::new(half + radius, scene.start.clamp_y, 0.0);
-        let direction = match inputs.spindle_speed {
-            0.0 => scene.spindle.speed.signum(),
-            speed => speed.signum(),
-        };
+        let direction = scene.spindle.sense_from(inputs.spindle_speed);
         let angle = match &scene.core {
             Core::Mesh { .. } => clear_angle(scene, surface, (clamp, nozzle), |back| {
                 aside + direction * (turned - back)
@@ -351,7 +348,8 @@ impl Winding {
         sim.sys.place_supports();
         sim.reset_extremes();
         sim.update_outputs();
-        if let Some(text) = span.told {
+        let beside = beside_clamp(scene, span.nozzle.y);
+        for text in span.told.into_iter().chain(beside) {
             sim.report(EventKind::Judgement, text);
         }
         if let Some((kind, text)) = sim.doubt_about_bulge() {

@@ -12,7 +12,7 @@ const TURNED: f64 = 0.5;
 
 /// Turn of the core the other way round beyond its start from which on it winds that way, rad. Chosen: a
 /// twentieth of a turn, less than a corner of any core takes.
-const OTHER_WAY: f64 = 0.05 * TAU;
+pub const OTHER_WAY: f64 = 0.05 * TAU;
 
 impl Winding {
     /// Follows core and nozzle after a step: which way wire is wound, and where the nozzle turned.

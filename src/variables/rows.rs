@@ -403,7 +403,7 @@ table! {
     native(1504, "spindle.repeat_turns", spindle.repeat_turns, "1", "", 0.0, 1e5, 1.0, "revolutions after which the table of spindle.file begins again; 0: it does not");
     native(1505, "spindle.flange_share", spindle.flange_share, "1", "", 0.01, 1.0, 1.0, "share of the speed that is allowed while wire climbs to the next planned layer");
     native(1506, "spindle.flange_turns", spindle.flange_turns, "1", "", 1e-3, 1e3, 1.0, "revolutions over which the speed falls before a climb with spindle.flange_share below 1, and rises after it");
-    text(1507, "spindle.direction", (spindle.direction), ["+y", "-y"], "axis about which the core winds, right-handed: of a run without inputs, and of one whose spindle_speed is 0 at the start");
+    text(1507, "spindle.direction", (spindle.direction), ["auto", "+y", "-y"], "axis about which the core winds, right-handed, and for which the wire is strung at the start; auto: by the sign of spindle_speed at the start, +y where that is 0");
 
     fixed(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per revolution; the sign is its direction along y");
     fixed(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
@@ -488,5 +488,5 @@ table! {
     number_of(3013, "solver.steps_beyond_number", "solver.steps_beyond", 3.0, "number of solver.steps_beyond; 0: as solver.steps_beyond says, 1 auto, 2 on, 3 off");
     number_of(3014, "preset_number", "preset", 2.0, "number of preset; 0: as preset says, 1 default, 2 paper");
     number_of(3015, "traverse.trail_number", "traverse.trail", 2.0, "number of traverse.trail; 0: as traverse.trail says, 1 free, 2 led");
-    number_of(3016, "spindle.direction_number", "spindle.direction", 2.0, "number of spindle.direction; 0: as spindle.direction says, 1 +y, 2 -y");
+    number_of(3016, "spindle.direction_number", "spindle.direction", 3.0, "number of spindle.direction; 0: as spindle.direction says, 1 auto, 2 +y, 3 -y");
 }

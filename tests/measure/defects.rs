@@ -40,6 +40,17 @@ fn a_made_gap_is_found_where_it_is() {
     );
     assert_eq!(coil.defect_count(), 1);
     assert!((coil.worst().gap_width - 0.4 * D).abs() < 2e-3 * D);
+    // and its lasting gap is the limit between a gap and none
+    let lasting = coil.lasting_gap(2).unwrap();
+    assert!((lasting - 0.4 * D).abs() < 2e-3 * D, "{lasting}");
+    for share in [0.9999, 1.0001] {
+        let mut coil = coil.clone();
+        coil.set_limits(DefectLimits {
+            gap: share * lasting / D,
+            ..limits()
+        });
+        assert_eq!(coil.flags().gap, share < 1.0);
+    }
 }
 
 /// A run over the border of two turns raised the flag, and neither turn had the verdict.
@@ -85,6 +96,8 @@ fn a_gap_shorter_than_its_fraction_is_no_defect() {
     let coil = wound(spec(), &on_cylinder(2.0, 1.0, |angle| (aside(angle), 0.0)));
     assert_eq!(coil.turns()[1].verdict, Verdict::Marginal);
     assert!(!coil.flags().gap);
+    assert!(coil.lasting_gap(2).unwrap() < 1e-2 * D);
+    assert_eq!(coil.lasting_gap(3), None);
 }
 
 #[test]
