@@ -1,6 +1,7 @@
 //! Wire that climbs to the next layer before or after the turn that the scene plans.
 
-use super::coil::{Coil, STEP_UP};
+use super::coil::{Coil, Record, STEP_UP};
+use super::row::Row;
 use super::station::{Signs, Station};
 use super::support::{NEXT_LAYER, Support};
 use std::f64::consts::TAU;
@@ -25,30 +26,31 @@ impl Coil {
         !is_last || self.spec.full.is_none_or(|full| angle > full)
     }
 
-    /// Winding angle since which wire of the next station has lain above the layer planned there, rad. Wire on its own row has
-    /// climbed to no layer.
+    /// Winding angle since which wire of the next station has lain above the layer planned there, rad. Wire that came to stand on its own
+    /// row has climbed to no layer, for as long as it stays up in that row.
     pub(super) fn above_since(
         &self,
         station: &Station,
-        support: &Support,
+        (row, support): (Row, &Support),
         before: &Signs,
         layer_since: f64,
     ) -> Option<f64> {
         let planned = self.planned_layer(station.angle);
+        if station.layer as usize <= planned {
+            return None;
+        }
+        let same_plan = |last: &&Record| self.planned_layer(last.station.angle) == planned;
+        let last = self.records.last();
+        if let (Some(since), Some(_)) = (before.above_since, last.filter(same_plan)) {
+            return Some(since);
+        }
         let stands = support
             .own_row
             .is_some_and(|rise| rise >= NEXT_LAYER * self.spec.diameter);
-        if station.layer as usize <= planned || (stands && before.above_since.is_none()) {
-            return None;
-        }
-        let last = self.records.last().map(|last| last.station.angle);
-        let same_plan = last.is_some_and(|last| self.planned_layer(last) == planned);
-        Some(
-            before
-                .above_since
-                .filter(|_| same_plan)
-                .unwrap_or(layer_since),
-        )
+        let stood = last.filter(same_plan).is_some_and(|last| {
+            last.row.number == row.number && last.station.layer as usize > planned
+        });
+        (!stands && !stood).then_some(layer_since)
     }
 
     /// Turns by which wire that has lain above its layer since then, rad, climbed before it was meant to.

@@ -23,7 +23,7 @@ impl Coil {
             Some(last) if last.station.layer != station.layer => station.angle,
             _ => before.layer_since,
         };
-        let above_since = self.above_since(station, support, &before, layer_since);
+        let above_since = self.above_since(station, (row, support), &before, layer_since);
         let signs = Signs {
             rise: support.own_row,
             empty_groove: self.empty_groove(station, row, support, bucket),
@@ -87,12 +87,11 @@ impl Coil {
     /// tension has fallen to the least share of what was meant. None before a turn beyond the clamp.
     fn looseness(&self, index: usize, now: &Signs) -> Option<f64> {
         let limits = &self.spec.limits;
-        let first = index.checked_sub(STATIONS_PER_TURN)?;
+        let back = index.checked_sub(STATIONS_PER_TURN)?;
+        let is_free = |first: &usize| self.is_free_of_clamp(self.records[*first].station.angle);
+        let first = (back..index).find(is_free)?;
         let start = &self.records[first].signs;
-        if !self.is_free_of_clamp(self.records[first].station.angle) {
-            return None;
-        }
-        let tension = (now.tension_sum - start.tension_sum) / STATIONS_PER_TURN as f64;
+        let tension = (now.tension_sum - start.tension_sum) / (index - first) as f64;
         let least = limits.loose_tension * self.spec.tension;
         let by_place = self.looseness_by_place(start, now);
         let by_tension = match least {

@@ -198,7 +198,7 @@ impl Coil {
                 let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
                 let climbing = of.number > 1 && station.angle < of.from + STEP_UP;
                 // what lies along the climb of its own row, and not across it, has ridden up
-                let crossed = climbing && (at.crosses || aside >= CLIMBED);
+                let crossed = climbing && (at.crosses || aside >= ON_WIRE);
                 let carries = earlier || (one_turn_back && crossed);
                 let wedge = wedged(&lower);
                 // pressed up between a flange and the turn before, it is in its place there as long as that is a place and it lies in it

@@ -443,6 +443,20 @@ fn every_turn_that_lies_without_tension_is_loose() {
     assert_eq!(verdicts(&slack)[1..], [Verdict::LooseTurn; 3]);
 }
 
+/// Of a coil that is loose throughout turn 2 was aligned, and its row of loose turns was cut in two there: a turn back its wire lies
+/// beside the clamp.
+#[test]
+fn a_coil_that_is_loose_from_its_clamp_on_is_one_defect() {
+    for alter in [
+        (|node: &mut SettledNode| node.tension = 0.3 * PULL) as fn(&mut SettledNode),
+        |node| node.height += 0.2 * D,
+    ] {
+        let slack = altered(|_| true, alter);
+        only(DefectKind::LooseTurn, &slack);
+        assert_eq!(slack.turns()[1].verdict, Verdict::LooseTurn);
+    }
+}
+
 /// A nozzle that goes beyond each place and comes back to it seemed to hang back for ever: its coil had one pass, and all wire
 /// after the first jump was a bulge.
 #[test]

@@ -120,6 +120,32 @@ fn a_slow_climb_is_as_late_as_where_it_begins() {
     assert!(!coil.flags().late_jump, "{:?}", coil.defects());
 }
 
+/// Wire between a flange and the turn before, with less than its place there, was taken for a next layer where the plan has none, and
+/// the coil was aligned.
+#[test]
+fn the_last_turn_of_the_last_layer_rides_up_on_its_neighbour() {
+    let leans = |turns: f64| match (0.3..0.9).contains(&turns.fract()) {
+        true => 0.4,
+        false => 0.0,
+    };
+    let one_layer = CoilSpec {
+        full: Some(TURNS * TAU),
+        jumps: [].into(),
+        ..spec()
+    };
+    let nodes = leaning(leans);
+    let one: Vec<SettledNode> = nodes
+        .iter()
+        .copied()
+        .take((nodes.len() as f64 * (TURNS - 0.25) / (2.0 * TURNS - 2.2)) as usize)
+        .collect();
+    let last = wound(one_layer, &one);
+    let told: Vec<_> = last.defects().iter().map(|d| (d.kind, d.turn)).collect();
+    // (the turn before leans away from its own neighbour)
+    let (gap, overlap) = (DefectKind::Gap, DefectKind::Overlap);
+    assert_eq!(told, [(gap, TURNS as u32 - 1), (overlap, TURNS as u32)]);
+}
+
 #[test]
 fn a_climb_that_is_taken_back_was_never_known() {
     taken_back_is_never_known(&slow_climb());
