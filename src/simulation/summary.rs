@@ -7,10 +7,18 @@ use crate::measure::{
 };
 use crate::scene::{Core, Decision, Integrator, Preset};
 use serde::Serialize;
+use std::f64::consts::TAU;
 
 /// How much larger the mean gap of turn 2, and of a turn after it, may be at the default tolerance than at a sixteenth of it, diameters:
 /// the most that was found on cores with corners (`docs/validation/tables/coils.md`).
 const GAP_OF_TOLERANCE: [f64; 2] = [0.08, 0.01];
+
+/// How much larger the largest gap may be there than at a sixteenth, on any core, where the nozzle presses each turn on the one before:
+/// the most that was found (`docs/validation/convergence.md`).
+const GAP_OF_PRESSED: f64 = 0.5;
+
+/// Travel of the nozzle a turn below which it does so, diameters. Chosen: halfway between half a wire, where it was found, and a wire.
+const PRESSES: f64 = 0.75;
 
 /// How much smaller the gap of turn 2 that a verdict hangs on may be at the default tolerance than at a quarter of it, diameters: the most
 /// that was found (`fig8_gap` at 500 rad/s, `docs/guide/tolerance.md`).
@@ -198,7 +206,11 @@ impl Winding {
 
     /// That the gaps, if nothing graver is wrong, lie so near their limit that a finer tolerance may show none.
     fn gap_of_tolerance(&self, defects: &[Defect]) -> Option<String> {
-        let beyond = |d: &Defect| GAP_OF_TOLERANCE[usize::from(d.turn > 2)];
+        let presses = self.presses_turns();
+        let beyond = |d: &Defect| match presses {
+            true => GAP_OF_PRESSED,
+            false => GAP_OF_TOLERANCE[usize::from(d.turn > 2)],
+        };
         let farthest = |d: &Defect| self.scene.defects.gap + beyond(d);
         let of_gaps = defects.iter().filter(|d| d.kind == DefectKind::Gap);
         let near = of_gaps
@@ -206,12 +218,22 @@ impl Winding {
             .all(|d| d.size_d.is_some_and(|size| size < farthest(d)));
         let most = of_gaps.map(beyond).reduce(f64::max);
         let most = most.filter(|_| self.verdict() == Verdict::Gap);
-        most.filter(|_| self.shakes_unseen() && near).map(|most| {
+        let hangs = self.shakes_unseen() || presses && self.steps_by_tolerance();
+        // (pressed turns take a sixteenth)
+        let share = if presses { 1.0 / 16.0 } else { 0.25 };
+        most.filter(|_| hangs && near).map(|most| {
             format!(
                 "Gaps within {most} d of their limit may come of the tolerance: see whether they stay with solver.tolerance = {:.2e}",
-                0.25 * self.scene.solver.tolerance
+                share * self.scene.solver.tolerance
             )
         })
+    }
+
+    /// Whether the nozzle travels by so little that each turn lands on the one before and slides off it.
+    fn presses_turns(&self) -> bool {
+        let law = &self.scene.nozzle_law;
+        let [from, to] = [1.0, 2.0].map(|turn| law.position(turn * TAU));
+        law.jumps().is_empty() && (to - from).abs() < PRESSES * self.scene.wire.diameter
     }
 
     /// That the gap of turn 2, though no defect, lies so near its limit that a finer tolerance may show one.
@@ -229,10 +251,15 @@ impl Winding {
 
     /// Whether the free span shakes faster than the tolerance lets the steps follow, so that gaps hang on it: on a core with corners.
     fn shakes_unseen(&self) -> bool {
+        let round = matches!(self.scene.core, Core::Cylinder { .. });
+        self.steps_by_tolerance() && !round
+    }
+
+    /// Whether the tolerance decides on the steps, and is above that at which gaps have settled.
+    fn steps_by_tolerance(&self) -> bool {
         let solver = &self.scene.solver;
         let steps = solver.integrator == Integrator::Implicit && solver.features.inertia;
-        let round = matches!(self.scene.core, Core::Cylinder { .. });
-        steps && !round && solver.tolerance > FINE * self.scene.wire.diameter
+        steps && solver.tolerance > FINE * self.scene.wire.diameter
     }
 
     /// The run in numbers.

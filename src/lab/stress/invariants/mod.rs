@@ -54,7 +54,7 @@ fn wind(case: &Case, measures: &mut Measures) -> Outcome {
         let start = end;
         end = (k + 1) as f64 * case.step;
         let turned = (inputs.spindle_speed * (end - start)).abs() / TAU;
-        work.begin(&sim, end - start);
+        work.begin(&sim, inputs.tension_setpoint, end - start);
         sim.limit_work(work.allowed());
         let advanced = sim.advance(*inputs, end - start);
         measures.turns += turned;

@@ -46,8 +46,15 @@ function charts(run) {
       { label: "largest", values: plain(history.tension_max), band: true },
     ], [marks, layers], go, told(note, alone), over(1, "tension", "tension_min", "tension_max")),
     chart("Torque of the wire on the core", axis, x, "mN.m", [{ label: "torque", values: torque, width: 1.4 }], [marks, layers], go,
-      told("Negative where the wire resists the spindle.", alone), over(1e3, "torque")),
+      told(resists(history.angle), alone), over(1e3, "torque")),
   ];
+}
+
+/** Which sign the torque has where the wire resists a spindle that has turned through these angles. */
+function resists(angles) {
+  const turnsBack = angles.some((angle, k) => k > 0 && Math.abs(angle) < Math.abs(angles[k - 1]));
+  if (turnsBack) return "Its sign is not that of the speed where the wire resists the spindle.";
+  return `${angles[angles.length - 1] < 0 ? "Positive" : "Negative"} where the wire resists the spindle.`;
 }
 
 /** Where each layer but the first begins, with its number. */
