@@ -89,6 +89,26 @@ fn the_end_sums_up_what_the_solver_did() {
     assert!(told[0].1.starts_with(&expected), "{told:?} {expected}");
 }
 
+/// A master that only asked for results found a core that stood, and no line said why.
+#[test]
+fn a_folder_of_results_alone_ends_the_demonstration_with_a_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let place = folder.path().join("out").display().to_string();
+    let (_, messages) = started(|i| {
+        i.set(&[reference("output.directory")], [place.clone()])
+            .expect("set");
+    });
+    let told = |text: &str| messages.iter().filter(|m| m.text.contains(text)).count();
+    let line = "output.directory is set, so the FMU does not demonstrate";
+    assert_eq!(
+        (told(line), told("so the FMU demonstrates")),
+        (1, 0),
+        "{messages:?}"
+    );
+    let (_, messages) = started(|i| set(i, "spindle_speed", 30.0));
+    assert!(!messages.iter().any(|m| m.text.contains("demonstrate")));
+}
+
 /// The warning named another mode than `fmi2GetString` did.
 #[test]
 fn a_key_without_effect_is_told_with_the_mode_that_is_in_use() {

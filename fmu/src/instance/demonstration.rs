@@ -27,21 +27,36 @@ impl Instance {
                 == Some(given)
         };
         let inputs = self.start_inputs.iter();
-        self.demonstrates = self.start_rates.is_empty()
+        let is_left = self.start_rates.is_empty()
             && self.parameters.names_no_scene()
             && inputs
                 .map(|(r, x)| (*r, Value::Real(*x)))
-                .all(|(r, x)| starts_so(r, &x))
-            && self.parameters.explicit().all(|(r, x)| starts_so(r, x));
-        if self.demonstrates {
-            let text = "inputs and parameters are as in modelDescription.xml, so the FMU demonstrates: spindle and nozzle \
-                        follow a programme of its own until any input is set";
-            self.messages.push(Message {
-                status: Status::Ok,
-                category: Category::Events,
-                text: text.to_owned(),
-            });
-        }
+                .all(|(r, x)| starts_so(r, &x));
+        let set = self
+            .parameters
+            .explicit()
+            .filter(|(r, x)| !starts_so(*r, x));
+        let set: Vec<&str> = set
+            .filter_map(|(r, _)| by_reference(r).map(|row| row.name))
+            .collect();
+        self.demonstrates = is_left && set.is_empty();
+        let text = if self.demonstrates {
+            "inputs and parameters are as in modelDescription.xml, so the FMU demonstrates: spindle and nozzle \
+             follow a programme of its own until any input is set"
+                .to_owned()
+        } else if is_left && set.iter().all(|name| name.starts_with("output.")) {
+            format!(
+                "{} is set, so the FMU does not demonstrate: the core stands until spindle_speed is set",
+                set.join(", ")
+            )
+        } else {
+            return;
+        };
+        self.messages.push(Message {
+            status: Status::Ok,
+            category: Category::Events,
+            text,
+        });
     }
 }
 
