@@ -50,6 +50,7 @@ impl Winding {
         self.take_course(course, first);
         self.reset_extremes();
         let most = course.ahead_of(self.run.time).min(self.longest_return());
+        let most = most.min(self.clear_of_circle(course));
         self.step(most)?;
         (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
         // (the step has taken along what shorter ones before it left)
@@ -79,9 +80,21 @@ impl Winding {
         if first {
             self.begin_drive(&drive);
         } else {
-            self.sys
-                .continue_drive(&drive, course.at(self.run.time).nozzle_position);
+            let now = course.at(self.run.time);
+            self.sys.continue_drive(&drive, now.nozzle_position);
+            self.put_aside(&now);
         }
+    }
+
+    /// How long the nozzle may go along `course` in one step, s, until it would meet the core or wire on it.
+    fn clear_of_circle(&self, course: &Course) -> f64 {
+        let reach = self.stepper.next();
+        if course.drive(self.run.time, reach).aside == [0.0; 2] {
+            return f64::INFINITY;
+        }
+        let end = course.at(self.run.time + reach);
+        self.meets_circle(&end)
+            .map_or(f64::INFINITY, |share| share * reach)
     }
 }
 

@@ -91,8 +91,8 @@ impl Simulation {
         }
         check_finite(&inputs, self.time())?;
         check_finite(&inputs.after(&rates, dt), self.time())?;
-        let nozzle = self.inputs().nozzle_position;
-        let given = Given::new(self.time(), inputs, rates, dt, nozzle);
+        let place = (&self.inputs(), self.scene().nozzle.distance);
+        let given = Given::new(self.time(), inputs, rates, dt, place);
         let goes_on = self.goes_on_as(&given, self.talk.newest(), ALIKE);
         if dt < WORTH_A_STEP && !goes_on {
             // what moves in a step that is too short to solve for moves in the next one
@@ -229,15 +229,11 @@ impl Simulation {
 
     /// Whether a step may reach beyond the communication point at all, when the inputs of a step of `dt`, s, change at `rates`.
     fn may_step_beyond(&self, inputs: &Inputs, rates: &Inputs, dt: f64) -> bool {
-        let (now, end) = (self.inputs(), inputs.after(rates, dt));
-        let aside = libm::hypot(
-            end.nozzle_offset_x - now.nozzle_offset_x,
-            end.nozzle_offset_z - now.nozzle_offset_z,
-        );
-        let damped =
-            inputs.tensioner_damping == now.tensioner_damping && rates.tensioner_damping == 0.0;
-        // (courses know of no way aside, and of one damper)
-        self.finds_its_own_steps() && damped && aside <= NOZZLE * self.now.scene.solver.tolerance
+        let damped = inputs.tensioner_damping == self.inputs().tensioner_damping
+            && rates.tensioner_damping == 0.0;
+        let end = inputs.after(rates, dt);
+        // (courses know of one damper, and of no core in their way)
+        self.finds_its_own_steps() && damped && self.now.meets_circle(&end).is_none()
     }
 
     /// Whether a communication step goes on as `taken`, with a set tension that moves the wire by no more than a `share` of the
@@ -452,6 +448,7 @@ impl Winding {
         self.sys.state.spindle.speed = point.inputs.spindle_speed;
         self.sys.state.set_tension = point.inputs.tension_setpoint;
         self.sys.state.support[1].point.y = point.inputs.nozzle_position;
+        self.put_aside(&point.inputs);
         self.finish();
         let mut told = *point;
         told.outputs.meet_tension(self.run.outputs.wire_tension);

@@ -6,18 +6,22 @@ use crate::signals::Inputs;
 use crate::system::{Drive, NozzleDrive};
 use serde::{Deserialize, Serialize};
 
-/// Even acceleration of the spindle and, along the core's axis, of the nozzle, and an even change of the set tension, from `start` on.
+/// Share of a nozzle's distance from the axis by which its offsets may differ for rounding.
+pub(super) const OFFSET_ROUNDING: f64 = 1e-15;
+
+/// Even acceleration of the spindle and, along the core's axis, of the nozzle, an even way of the nozzle aside, and an even change of the
+/// set tension, from `start` on.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Course {
     /// time of the run at which a master began it, s
     pub(super) begun: f64,
     /// time of the run at which its inputs are as said here, s
     start: f64,
-    /// speed, nozzle position and set tension then
+    /// speed, nozzle position and offsets, and set tension then
     inputs: Inputs,
     /// their rates then, per s
     rates: Inputs,
-    /// of the nozzle, m/s2
+    /// of the nozzle along the axis, m/s2
     acceleration: f64,
     source: Source,
     /// when the nozzle's way has its next corner, or a stretch of the scene's own motion ends, s; none for what a master gives, and
@@ -47,7 +51,7 @@ pub(super) struct Given {
     pub(super) dt: f64,
     /// speed and set tension at its start, and where the nozzle is then
     pub(super) inputs: Inputs,
-    /// rates of speed and set tension, and the mean velocity of the nozzle, per s
+    /// rates of speed and set tension, and the mean velocities of the nozzle, per s
     pub(super) rates: Inputs,
 }
 
@@ -65,19 +69,33 @@ pub(super) struct Likeness {
 }
 
 impl Given {
-    /// A step of `dt`, s, from `start` with `inputs` and their `rates`, by which the nozzle goes evenly from `nozzle`, m, to
-    /// where its input is at the end.
-    pub(super) fn new(start: f64, inputs: Inputs, rates: Inputs, dt: f64, nozzle: f64) -> Self {
-        let end = inputs.after(&rates, dt).nozzle_position;
+    /// A step of `dt`, s, from `start` with `inputs` and their `rates`, by which the nozzle goes evenly from where it is by the inputs
+    /// `now` to where its inputs are at the end. It is `distance`, m, from the axis without offsets.
+    pub(super) fn new(
+        start: f64,
+        inputs: Inputs,
+        rates: Inputs,
+        dt: f64,
+        (now, distance): (&Inputs, f64),
+    ) -> Self {
+        let end = inputs.after(&rates, dt);
+        let aside = |from: f64, to: f64| match (to - from).abs() <= OFFSET_ROUNDING * distance {
+            true => 0.0,
+            false => (to - from) / dt,
+        };
         Self {
             start,
             dt,
             inputs: Inputs {
-                nozzle_position: nozzle,
+                nozzle_position: now.nozzle_position,
+                nozzle_offset_x: now.nozzle_offset_x,
+                nozzle_offset_z: now.nozzle_offset_z,
                 ..inputs
             },
             rates: Inputs {
-                nozzle_position: (end - nozzle) / dt,
+                nozzle_position: (end.nozzle_position - now.nozzle_position) / dt,
+                nozzle_offset_x: aside(now.nozzle_offset_x, end.nozzle_offset_x),
+                nozzle_offset_z: aside(now.nozzle_offset_z, end.nozzle_offset_z),
                 ..rates
             },
         }
@@ -201,7 +219,7 @@ impl Course {
         self.left(time).min(change.unwrap_or(f64::INFINITY))
     }
 
-    /// Speed, nozzle position and set tension at `time`, s.
+    /// Speed, nozzle position and offsets, and set tension at `time`, s.
     pub(super) fn at(&self, time: f64) -> Inputs {
         let gone = time - self.start;
         let mut inputs = self.inputs.after(&self.rates, gone);
@@ -218,7 +236,7 @@ impl Course {
             speed: inputs.spindle_speed,
             acceleration: self.rates.spindle_speed,
             nozzle: NozzleDrive::Even(self.rates.nozzle_position + self.acceleration * middle),
-            aside: [0.0; 2],
+            aside: [self.rates.nozzle_offset_x, self.rates.nozzle_offset_z],
             tension: inputs.tension_setpoint,
             tension_rate: self.rates.tension_setpoint,
         }
@@ -259,8 +277,13 @@ impl Course {
         }
         let (start, end) = (given.start, given.start + given.dt);
         let nozzle = [start, end].map(|time| {
-            let apart = self.at(time).nozzle_position - given.at(time).nozzle_position;
-            self.is_by_law() || apart.abs() <= alike.nozzle
+            let (here, there) = (self.at(time), given.at(time));
+            let along = here.nozzle_position - there.nozzle_position;
+            let aside = libm::hypot(
+                here.nozzle_offset_x - there.nozzle_offset_x,
+                here.nozzle_offset_z - there.nozzle_offset_z,
+            );
+            (self.is_by_law() || along.abs() <= alike.nozzle) && aside <= alike.nozzle
         });
         let [slow, fast] = [start, until].map(|time| {
             let apart = self.at(time).spindle_speed - given.at(time).spindle_speed;
@@ -295,11 +318,20 @@ mod tests {
         }
     }
 
+    /// A step at whose start the nozzle is at `nozzle`, m, and has no offsets.
+    fn given(start: f64, inputs: Inputs, rates: Inputs, dt: f64, nozzle: f64) -> Given {
+        let now = Inputs {
+            nozzle_position: nozzle,
+            ..Inputs::HELD
+        };
+        Given::new(start, inputs, rates, dt, (&now, 0.06))
+    }
+
     #[test]
     fn even_motion_told_in_pieces_is_one_course() {
         let (dt, speed, travel) = (1e-4, 30.0, 0.7e-3 / 0.2);
         let y = |t: f64| 1e-3 + travel * (t - 0.1);
-        let step = |t: f64| Given::new(t, inputs(speed, y(t + dt)), Inputs::HELD, dt, y(t));
+        let step = |t: f64| given(t, inputs(speed, y(t + dt)), Inputs::HELD, dt, y(t));
         let first = Course::from(&step(0.1), None);
         for k in 1..1000 {
             let t = 0.1 + f64::from(k) * dt;
@@ -320,7 +352,7 @@ mod tests {
             let t = f64::from(k) * dt;
             let mut end = inputs(rate * t, y(t + dt));
             end.spindle_speed = rate * t;
-            Given::new(t, end, rates, dt, y(t))
+            given(t, end, rates, dt, y(t))
         };
         let before = (step(7).rates.nozzle_position, dt);
         let course = Course::from(&step(8), Some(before));
@@ -339,7 +371,7 @@ mod tests {
     #[test]
     fn another_speed_place_or_tension_is_another_course() {
         let dt = 1e-4;
-        let step = |t, inputs, rates| Given::new(t, inputs, rates, dt, 0.0);
+        let step = |t, inputs, rates| given(t, inputs, rates, dt, 0.0);
         let first = Course::from(&step(0.0, inputs(30.0, 0.0), Inputs::HELD), None);
         let differs = |other: Inputs, rates: Inputs| {
             !first.goes_on_as(&step(dt, other, rates), 3.0 * dt, &ALIKE)
@@ -371,7 +403,7 @@ mod tests {
             spindle_speed: 1000.0,
             ..Inputs::HELD
         };
-        let ramp = Course::from(&Given::new(0.0, inputs(10.0, 0.0), rates, 1e-3, 0.0), None);
+        let ramp = Course::from(&given(0.0, inputs(10.0, 0.0), rates, 1e-3, 0.0), None);
         assert!((ramp.turned(0.0, 0.1) - (1.0 + 5.0)).abs() < 1e-12);
         assert_eq!(ramp.drive(0.01, 1.0).speed, 20.0);
     }

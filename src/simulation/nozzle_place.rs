@@ -1,6 +1,7 @@
 //! Where the nozzle stands in a run that is driven by inputs.
 
 use super::Winding;
+use super::course::OFFSET_ROUNDING;
 use crate::math::V3;
 use crate::scene::{Scene, si};
 use crate::signals::{EventKind, Inputs};
@@ -41,6 +42,19 @@ impl Winding {
             place.y = self.nozzle_by_law();
         }
         place
+    }
+
+    /// Puts the nozzle where its offsets have it, if that is not where it is but for rounding.
+    pub(super) fn put_aside(&mut self, inputs: &Inputs) {
+        let (is, there) = (self.inputs(), nozzle_of(&self.scene, inputs));
+        let near = OFFSET_ROUNDING * self.scene.nozzle.distance;
+        let nozzle = &mut self.sys.state.support[1].point;
+        if (is.nozzle_offset_x - inputs.nozzle_offset_x).abs() > near {
+            nozzle.x = there.x;
+        }
+        if (is.nozzle_offset_z - inputs.nozzle_offset_z).abs() > near {
+            nozzle.z = there.z;
+        }
     }
 
     /// Tells where the nozzle has come farther beside the winding than it stands in front of it; it was at `before` along the core
