@@ -2,12 +2,10 @@
 
 use super::door::check_finite;
 use super::motion_profile::ROUNDING;
+use super::nozzle_place::OFFSET_ROUNDING;
 use crate::signals::Inputs;
 use crate::system::{Drive, NozzleDrive};
 use serde::{Deserialize, Serialize};
-
-/// Share of a nozzle's distance from the axis by which its offsets may differ for rounding.
-pub(super) const OFFSET_ROUNDING: f64 = 1e-15;
 
 /// Even acceleration of the spindle and, along the core's axis, of the nozzle, an even way of the nozzle aside, and an even change of the
 /// set tension, from `start` on.

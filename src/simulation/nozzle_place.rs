@@ -1,7 +1,6 @@
 //! Where the nozzle stands in a run that is driven by inputs.
 
 use super::Winding;
-use super::course::OFFSET_ROUNDING;
 use crate::math::V3;
 use crate::scene::{Scene, si};
 use crate::signals::{EventKind, Inputs};
@@ -9,6 +8,9 @@ use std::f64::consts::TAU;
 
 /// Share of a turn's way that rounding may add up to. Chosen: too little to be seen.
 const NEAR: f64 = 1e-9;
+
+/// Share of a nozzle's distance from the axis by which its offsets may differ for rounding.
+pub(super) const OFFSET_ROUNDING: f64 = 1e-15;
 
 /// Place of the nozzle by its inputs, in the frame at rest, m.
 pub(super) fn nozzle_of(scene: &Scene, inputs: &Inputs) -> V3 {
