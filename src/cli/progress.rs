@@ -52,7 +52,7 @@ impl Progress {
         let wall = self.began.elapsed().as_secs_f64();
         let factor = (time - self.from) / wall.max(1e-9);
         let outputs = simulation.outputs();
-        let turns = outputs.spindle_angle / std::f64::consts::TAU;
+        let turns = outputs.spindle_angle.abs() / std::f64::consts::TAU;
         let left = match factor > 0.0 && wall > 0.5 {
             true => HumanDuration(Duration::from_secs_f64((self.end - time).max(0.0) / factor))
                 .to_string(),

@@ -21,8 +21,9 @@ pub(super) fn allowed_for(key: &str, variable: &Variable, scale: Scale) -> Strin
     }
 }
 
-/// A question that names the unit with which a number without a unit would be in range, or nothing.
-pub(super) fn unit_meant(key: &str, variable: &Variable, value: &Value) -> String {
+/// What was meant by a number that is out of range: the other way round, or, as a question, the unit with which one without a unit would be
+/// in range; or nothing.
+pub(super) fn meant(key: &str, variable: &Variable, value: &Value) -> String {
     let Value::Real(x) = *value else {
         return String::new();
     };
@@ -31,6 +32,9 @@ pub(super) fn unit_meant(key: &str, variable: &Variable, value: &Value) -> Strin
     match meant {
         Some((unit, _)) if variable.kind == Kind::Real && key == variable.name => {
             format!("; did you mean {key}_{unit}?")
+        }
+        _ if variable.name == "spindle.speed" && x < 0.0 => {
+            "; spindle.direction = -y turns it the other way round".to_owned()
         }
         _ => String::new(),
     }

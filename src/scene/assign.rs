@@ -1,6 +1,6 @@
 //! How a leaf of the settings is set: by name, with a unit, checked against its row.
 
-use super::allowed::{allowed_for, unit_meant};
+use super::allowed::{allowed_for, meant};
 use super::error::Warning;
 use super::follow_on::refuses;
 use super::key::{Key, resolve};
@@ -129,7 +129,7 @@ impl SceneSettings {
         };
         if !variable.admits(&value) {
             let meant = match given {
-                Given::Number(_) | Given::Text(_) => unit_meant(name, variable, &value),
+                Given::Number(_) | Given::Text(_) => meant(name, variable, &value),
                 _ => String::new(),
             };
             return Err(SceneError::OutOfRange {

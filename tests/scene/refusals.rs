@@ -116,7 +116,7 @@ fn a_range_is_told_in_the_unit_of_the_key() {
         ),
         (
             "[spindle]\nspeed_rpm = -500",
-            "allowed: 0.1 to 2000 rad/s, which is 0.95493 to 19098.6 rpm",
+            "rad/s, which is 0.95493 to 19098.6 rpm; spindle.direction = -y turns it the other way round",
         ),
         (
             "[wire]\ndiameter = 0.7",
