@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// the most that was found on cores with corners (`docs/validation/tables/coils.md`).
 const GAP_OF_TOLERANCE: [f64; 2] = [0.08, 0.01];
 
-/// How much larger the largest gap may be there than at a sixteenth, on any core, where the nozzle presses each turn on the one before:
+/// How much larger the largest gap may be there than at a sixty-fourth, on any core, where the nozzle presses each turn on the one before:
 /// the most that was found (`docs/validation/convergence.md`).
 const GAP_OF_PRESSED: f64 = 0.5;
 
@@ -21,7 +21,7 @@ const GAP_OF_PRESSED: f64 = 0.5;
 const PRESSES: f64 = 0.75;
 
 /// How much smaller the gap of turn 2 that a verdict hangs on may be at the default tolerance than at a quarter of it, diameters: the most
-/// that was found (`fig8_gap` at 500 rad/s, `docs/guide/tolerance.md`).
+/// that was found (`fig8_gap` at 500 rad/s, `docs/validation/convergence.md`).
 const GAP_HIDDEN: f64 = 0.03;
 
 /// Tolerance over the wire's diameter up to which gaps have settled: that of a quarter of the default, and a little more.
