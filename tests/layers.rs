@@ -372,3 +372,26 @@ fn messages_of_a_turn_that_comes_to_rest_at_once_name_the_turn_that_is_wound() {
     let settled = sim.outputs().turns_settled;
     assert!(settled > 9.0 && at_once > 0.8, "{settled} {at_once}");
 }
+
+/// Each turn crosses before the clamp's angle, and the last one has no place from where the turn before has: it overlapped without a word of why.
+#[test]
+fn a_last_turn_without_a_place_says_where_the_coil_should_end() {
+    let text = "[wire]\ndiameter_mm = 0.5\n[core]\nshape = \"cylinder\"\nradius_mm = 6\n\
+        [core.flange]\ninner_distance_mm = 2.275\nheight_mm = 3\n[nozzle]\ndistance_mm = 16\n\
+        [tensioner]\ntension = 8\n[spindle]\nspeed = 200\nturns = 4.9\n[traverse]\nmode = \"orthocyclic\"\n\
+        crossover_deg = 60\nadvance_deg = 90\n[winding]\nlayers = 1\ndirection = \"-y\"\n";
+    let mut sim = started(text);
+    let said = |sim: &Simulation| {
+        let told = sim.reasons().into_iter();
+        told.filter(|reason| reason.starts_with("The last turn has no place"))
+            .collect::<Vec<_>>()
+    };
+    wound(&mut sim, 4.25);
+    assert!(said(&sim).is_empty(), "{:?}", said(&sim));
+    wound(&mut sim, 4.9);
+    let [reason] = &said(&sim)[..] else {
+        panic!("{:?}", sim.reasons());
+    };
+    assert!(reason.contains("from turn 4 at 337 deg on"), "{reason}");
+    assert!(reason.contains("spindle.turns = 3.90"), "{reason}");
+}

@@ -51,6 +51,8 @@ pub(crate) struct Instance {
     ///
     /// Boxed, because a simulation is large and every move of the instance would copy it.
     run: Option<Box<Run>>,
+    /// What the scene of `run` warns of, which is told once, where the start ends. None where a restored state brought the run.
+    of_scene: Option<Vec<Message>>,
     /// Strings that the last call handed out.
     strings: Vec<CString>,
     filter: Filter,
@@ -105,6 +107,7 @@ impl Instance {
             start_rates: InputValues::new(),
             demonstrates: false,
             run: None,
+            of_scene: None,
             strings: Vec::new(),
             filter: Filter::new(identity.logging_on),
             messages: Vec::new(),
@@ -202,7 +205,7 @@ impl Instance {
                     &self.start_inputs,
                     &self.start_rates,
                 )?;
-                self.messages.extend(warnings.iter().map(Message::warning));
+                self.of_scene = Some(warnings.iter().map(Message::warning).collect());
                 Box::new(run)
             }
         };

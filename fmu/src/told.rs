@@ -129,6 +129,47 @@ fn a_key_without_effect_is_told_with_the_mode_that_is_in_use() {
     );
 }
 
+/// Each read of an output before the start ended told the warnings of the scene again, also of what later values mended.
+#[test]
+fn a_scene_warns_once_and_of_what_it_is_in_the_end() {
+    let told_with = |layers: f64, restores: bool| {
+        let mut instance = Instance::for_tests();
+        instance.enter_initialization_mode().expect("entered");
+        let mut told = Vec::new();
+        let mut read = |instance: &mut Instance| {
+            instance.begin_call();
+            instance
+                .get::<f64>(&[reference("wire_tension")])
+                .expect("a tension");
+            told.extend(instance.end_call());
+        };
+        for value in [2.0, 3.0, layers] {
+            set(&mut instance, "winding.layers", value);
+            read(&mut instance);
+            read(&mut instance);
+        }
+        if restores {
+            let state = instance.snapshot();
+            set(&mut instance, "winding.layers", 7.0);
+            read(&mut instance);
+            instance.restore(&state);
+        }
+        instance.begin_call();
+        instance.exit_initialization_mode().expect("starts");
+        told.extend(instance.end_call());
+        let texts = told.into_iter().map(|m| m.text);
+        texts
+            .filter(|text| text.contains("winding.layers"))
+            .collect::<Vec<_>>()
+    };
+    for restores in [false, true] {
+        let [text] = &told_with(4.0, restores)[..] else {
+            panic!("{:?}", told_with(4.0, restores));
+        };
+        assert!(text.contains("winding.layers = 4"), "{text}");
+    }
+}
+
 /// After the step in which the wire parts, the speeds of before it were its slopes: 4 m/s of wire that moves no more.
 #[test]
 fn wire_that_has_parted_has_no_slopes() {

@@ -25,7 +25,7 @@ const ON_WIRE: f64 = 0.25;
 
 /// Room between a turn and a flange from which on another turn has its place there, diameters. Chosen: halfway between the whole place
 /// of a last turn that has to squeeze in and the half place that every second layer in grooves leaves.
-const PLACE: f64 = 0.75;
+pub(super) const PLACE: f64 = 0.75;
 
 /// What lies below a wire at one polar angle.
 #[derive(Clone, Copy, Debug, PartialEq)]

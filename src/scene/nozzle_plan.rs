@@ -6,7 +6,7 @@
 use super::SceneError;
 use super::angle_table::Form;
 use super::extent::{Extent, ROUNDING, between_turns};
-use super::impossible::si;
+use super::impossible::{si, si_down};
 use super::nozzle_law::NozzleLaw;
 use super::nozzle_trail::Trail;
 use super::problems::Problems;
@@ -525,22 +525,33 @@ impl SceneSettings {
             }
             // a layer that fills the window leaves one place
             true if places[0] == places[1] => match pitch.filter(|pitch| spread(*pitch)) {
-                Some(pitch) => format!(
-                    "{} m, since winding.pitch = 0 spreads the turns over the whole window; or a winding.pitch from {} to below {} m",
-                    places[0],
-                    si(d),
-                    si(pitch)
-                ),
+                Some(pitch) => {
+                    // (the way shrinks with the pitch, and the start goes with the end of it that stays)
+                    let spare = (largest - least) * (1.0 - d / pitch);
+                    let low = ends[0] + (start - least) * d / pitch;
+                    format!(
+                        "{} m, since winding.pitch = 0 spreads the turns over the whole window; or {} to {} m with winding.pitch = {} m",
+                        places[0],
+                        si(low),
+                        si(low + spare),
+                        si(d)
+                    )
+                }
                 None => format!("{} m", places[0]),
             },
             true => format!("{} to {} m", places[0], places[1]),
             false if by_angle => {
                 let way = high - low - d + 2.0 * lead;
                 let turns = (largest - least) / t.per_turn.abs();
+                let first = match t.per_turn > 0.0 {
+                    true => low + 0.5 * d - lead,
+                    false => high - 0.5 * d + lead,
+                };
                 format!(
-                    "at most {} m for {} turns, or fewer turns",
-                    si(way / (turns - 1.0)),
-                    si(turns)
+                    "at most {} m for {} turns from nozzle.y_start = {} m on, or fewer turns",
+                    si_down(way / (turns - 1.0)),
+                    si(turns),
+                    si(first)
                 )
             }
             false => format!("a way of {} m at most", si(ends[1] - ends[0])),

@@ -3,7 +3,8 @@
 use super::Winding;
 use super::product::Product;
 use crate::measure::{
-    BulgeLimit, Defect, DefectKind, OnTurn, TurnMeasures, Verdict, left_out, reasons, unfinished,
+    BulgeLimit, Defect, DefectKind, OnTurn, STATIONS_PER_TURN, TurnMeasures, Verdict, left_out,
+    reasons, unfinished,
 };
 use crate::scene::{Core, Decision, Integrator, Preset};
 use serde::Serialize;
@@ -171,6 +172,7 @@ impl Winding {
         }
         reasons.extend(self.gap_of_tolerance(&defects));
         reasons.extend(self.gap_hidden_by_tolerance());
+        reasons.extend(self.last_turn_without_place());
         reasons.extend(self.slipped_off());
         reasons.extend(self.wire_on_a_rim());
         reasons.extend(self.thinned_wire());
@@ -227,6 +229,18 @@ impl Winding {
                 share * self.scene.solver.tolerance
             )
         })
+    }
+
+    /// From where on the last planned turn has to lie on the turn before, and how to end the coil there.
+    fn last_turn_without_place(&self) -> Option<String> {
+        let planned = self.scene.nozzle_law.held()?;
+        let at = self.coil.without_place_from(planned.round() as usize)?;
+        // (down, and to half a tenth: wire that is not laid there need not be judged there)
+        let ends = (20.0 * at as f64 / STATIONS_PER_TURN as f64).floor() / 20.0;
+        Some(format!(
+            "The last turn has no place from {} on, since the turn before has crossed into it: end with spindle.turns = {ends:.2}, or cross later by less traverse.advance",
+            OnTurn::of_station(at)
+        ))
     }
 
     /// Whether the nozzle travels by so little that each turn lands on the one before and slides off it.

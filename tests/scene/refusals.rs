@@ -446,7 +446,7 @@ fn an_even_way_past_a_flange_is_refused() {
         parse(&text).unwrap().build()
     };
     let said = |y_start_mm, per_turn_mm| built(y_start_mm, per_turn_mm).unwrap_err().to_string();
-    let far = "at most 0.000742778 m for 10 turns";
+    let far = "at most 0.000742777 m for 10 turns from nozzle.y_start = -0.0033425 m on";
     assert_says(
         &said(0.0, 0.8),
         &["traverse.per_turn", "past a flange", far],

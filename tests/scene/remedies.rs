@@ -102,7 +102,7 @@ fn a_pitch_of_0_leaves_one_start_and_its_refusal_says_why() {
         &[
             "nozzle.y_start = 0 m",
             "allowed: -0.0019 m, since winding.pitch = 0 spreads the turns over the whole window; \
-             or a winding.pitch from 0.0005 to below 0.000506667 m",
+             or -0.0019 to -0.00185 m with winding.pitch = 0.0005 m",
         ],
     );
     assert_says(
@@ -111,4 +111,28 @@ fn a_pitch_of_0_leaves_one_start_and_its_refusal_says_why() {
     );
     let place = "pitch_mm = 0.5\n[nozzle]\ny_start_mm = -1.87\n[start]\nclamp_y_mm = -1.87\n";
     assert!(parse(&text(place)).is_ok_and(|settings| settings.build().is_ok()));
+}
+
+/// A travel was refused with one that was refused in turn: the whole window holds it only from the flange on.
+#[test]
+fn a_travel_that_fits_is_named_with_where_it_begins() {
+    let text = |per_turn: f64, start: f64| {
+        format!(
+            "[core]\nshape = 'cylinder'\n[core.flange]\ninner_distance_mm = 4.3\n[wire]\ndiameter_mm = 0.5\n\
+             [spindle]\nturns = 12\n[traverse]\nper_turn = {per_turn}\n\
+             [nozzle]\ny_start = {start}\n[start]\nclamp_y = {start}\n"
+        )
+    };
+    for (per_turn, first, fits) in [
+        (0.7e-3, "-0.0019", 0.345_454e-3),
+        (-0.7e-3, "0.0019", -0.345_454e-3),
+    ] {
+        let way = format!("at most 0.000345454 m for 12 turns from nozzle.y_start = {first} m on");
+        assert_says(&refused(&text(per_turn, 0.0)), &["traverse.per_turn", &way]);
+        let fits = text(fits, first.parse().expect("a number"));
+        assert!(
+            parse(&fits).is_ok_and(|settings| settings.build().is_ok()),
+            "{fits}"
+        );
+    }
 }

@@ -44,6 +44,15 @@ impl Instance {
     /// If the scene is not valid or has no valid start.
     pub(crate) fn exit_initialization_mode(&mut self) -> Result<(), Error> {
         let started = self.start().map(|_| ());
+        let of_scene = match (&started, self.of_scene.take()) {
+            (Ok(()), Some(told)) => told,
+            (Ok(()), None) => {
+                let (_, warnings) = self.parameters.scene()?;
+                warnings.iter().map(Message::warning).collect()
+            }
+            (Err(_), _) => Vec::new(),
+        };
+        self.messages.extend(of_scene);
         // (a scene that has no valid start may have lost values of its file)
         self.warn_of_contradictions();
         started?;

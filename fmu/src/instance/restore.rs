@@ -63,6 +63,7 @@ impl Instance {
         self.start_inputs = saved.start_inputs;
         self.start_rates = saved.start_rates;
         self.demonstrates = saved.demonstrates;
+        self.of_scene = None;
         self.run = saved.run.map(|run| {
             let settings = self.parameters.settings();
             let mut recording = run.mark.and_then(|mark| {
