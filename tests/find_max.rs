@@ -172,26 +172,38 @@ fn free_values_above_a_defect_are_told_to_be_a_band() {
 fn a_bracket_that_is_free_or_defective_from_end_to_end_is_no_answer() {
     let folder = tempfile::tempdir().unwrap();
     let all = ["--set", "spindle.speed=300", "--set", "spindle.turns=2.6"];
-    for (over, outcome, said) in [
+    for (over, outcome, said, assumes) in [
         (
             "tensioner.tension=30:33:2",
             "all_free",
             "30 and 33, the ends of the bracket, are free of defects; try a higher bracket",
+            false,
+        ),
+        // the one between was taken to be free without a word
+        (
+            "tensioner.tension=30:33:7",
+            "all_free",
+            "30 and 33, the ends of the bracket, are free of defects; try a higher bracket",
+            true,
         ),
         (
             "tensioner.tension=65:68:2",
             "none_free",
             "65, the lowest, is not; try a lower bracket",
+            false,
         ),
     ] {
-        let out = folder.path().join(outcome);
+        let out = folder.path().join(over);
         let search = ["--over", over, "--find-max", "tensioner.tension"];
         let sweep = || coilwind("sweep", &out, &[&all[..], &search].concat());
         let output = finished(sweep(), 4);
         assert_eq!(output.stdout, b"");
         let told = String::from_utf8(output.stderr).unwrap();
         assert!(told.contains(said), "{told}");
+        let trust = "values between the ends were not wound and are taken to be free";
+        assert_eq!(told.contains(trust), assumes, "{told}");
         let kept = answer(&out);
+        assert_eq!(kept["assumes"].is_null(), !assumes);
         assert_eq!(kept["outcome"], outcome);
         assert!(kept["value"].is_null(), "{kept}");
         assert!(kept["words"].as_str().unwrap().contains(said), "{kept}");
@@ -199,6 +211,9 @@ fn a_bracket_that_is_free_or_defective_from_end_to_end_is_no_answer() {
         std::fs::write(out.join("find_max.json"), "{}").unwrap();
         finished(sweep(), 4);
         assert_eq!(answer(&out), kept);
+        let mut resume = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+        resume.args(["run", "--resume"]).arg(&out);
+        assert!(complaint(resume, 2).contains("holds a sweep; it goes on by the command"));
         // A sweep in its place leaves none of it.
         let plain = ["--over", "tensioner.tension=30:30:1", "--force"];
         finished(coilwind("sweep", &out, &plain), 0);

@@ -369,6 +369,11 @@ fn a_folder_without_a_whole_run_says_what_to_do() {
         );
     }
     std::fs::write(&checkpoint, &whole).unwrap();
+    // (it went on as before, beside a scene that said otherwise)
+    let scene = std::fs::read_to_string(out.join("scene.toml")).unwrap();
+    std::fs::write(out.join("scene.toml"), format!("{scene}\n")).unwrap();
+    refused(&mut resume(&out), "scene.toml is not the one that the run");
+    std::fs::write(out.join("scene.toml"), &scene).unwrap();
     std::fs::write(out.join("history.csv"), "time\n0\n").unwrap();
     refused(&mut resume(&out), "history.csv is not the one");
 }

@@ -6,8 +6,9 @@
 use super::drive::{Motion, Place};
 use super::failure::Failure;
 use super::read_files;
-use super::shell::{begin_again, quoted};
-use coilwind::output::{Mark, write_whole_bytes};
+use super::shell::{SCENE, begin_again, quoted};
+use super::sweep_files;
+use coilwind::output::{Mark, READ, WOUND_WITH, write_whole_bytes};
 use coilwind::settings::SceneSettings;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -80,6 +81,25 @@ impl Plan {
         })
     }
 
+    /// An error where the scene in the folder is not the one that the run wrote there: what goes on is the run's own.
+    pub(super) fn check_scene(&self, directory: &Path) -> Result<(), Failure> {
+        let Ok(text) = fs::read_to_string(directory.join(SCENE)) else {
+            return Ok(());
+        };
+        let head = |line: &&str| line.starts_with(WOUND_WITH) || line.starts_with(READ);
+        let lines = text.split_inclusive('\n').skip_while(head);
+        if lines.eq(self.settings.to_toml_for_elsewhere().split_inclusive('\n')) {
+            return Ok(());
+        }
+        Err(Failure::Resume {
+            directory: directory.display().to_string(),
+            reason: format!(
+                "{SCENE} is not the one that the run wrote; put it back to go on, or {}",
+                begin_again(directory)
+            ),
+        })
+    }
+
     /// An error where the inputs are not those that the run began with.
     pub(super) fn check_inputs(&self) -> Result<(), Failure> {
         let Some((path, _)) = &self.motion.inputs else {
@@ -135,8 +155,12 @@ impl Checkpoint {
         }
         let bytes = fs::read(&path).map_err(|_| {
             let has = |name: &str| directory.join(name).exists();
-            resume(match (has_ended(directory), has("scene.toml")) {
+            resume(match (has_ended(directory), has(SCENE)) {
                 (true, _) => "the run has ended; wind it again with --force, or look at it with coilwind report".to_owned(),
+                _ if has(sweep_files::PLAN) => format!(
+                    "holds a sweep; it goes on by the command that began it, coilwind sweep SCENE ... --out {}",
+                    quoted(&place)
+                ),
                 _ if has("1/summary.json") => "the ensemble has ended; wind it again with --force, or look at a member with coilwind report".to_owned(),
                 (_, true) => format!("{FILE} is missing; {}", begin_again(directory)),
                 _ => format!(

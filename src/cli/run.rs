@@ -367,6 +367,7 @@ fn resume(directory: &Path, args: &RunArgs) -> Result<Start, Failure> {
     let checkpoint = Checkpoint::read(directory)?;
     let plan = checkpoint.plan;
     plan.check_inputs()?;
+    plan.check_scene(directory)?;
     let follows = plan.motion.nozzle_follows(&plan.settings);
     let (scene, _): (Scene, _) = plan.settings.build_for(follows)?;
     let mut simulation = Simulation::from_bytes(&scene, &checkpoint.state)

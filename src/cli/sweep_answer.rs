@@ -11,6 +11,9 @@ use std::path::Path;
 /// What `--find-max` does not know.
 pub(super) const ON_TRUST: &str = "values that were not wound are taken to be free below and not above; a sweep without --find-max shows whether they are";
 
+/// The same where the ends of the bracket are free of defects.
+const FREE_ON_TRUST: &str = "values between the ends were not wound and are taken to be free; a sweep without --find-max shows whether they are";
+
 /// What the search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -116,11 +119,16 @@ impl Answer {
                 ),
             ),
         };
+        let assumed = match outcome {
+            Outcome::Found => Some(ON_TRUST),
+            Outcome::AllFree if looks.len() < range.count as usize => Some(FREE_ON_TRUST),
+            _ => None,
+        };
         Self {
             variable: name.clone(),
             unit: range.unit(),
             value: free.filter(|_| outcome == Outcome::Found),
-            assumes: (outcome == Outcome::Found).then_some(ON_TRUST),
+            assumes: assumed,
             outcome,
             words,
             bracket: [range.from, range.to],
@@ -145,7 +153,10 @@ impl Answer {
         match self.outcome {
             Outcome::Found => Ok(&self.words),
             outcome => Err(Failure::NoMaximum {
-                reason: self.words.clone(),
+                reason: match self.assumes {
+                    Some(trust) => format!("{}; {trust}", self.words),
+                    None => self.words.clone(),
+                },
                 failed: outcome == Outcome::Failed,
             }),
         }
