@@ -124,3 +124,59 @@ fn verdicts_are_the_same_in_fast_winding() {
     }
     assert!(apart.abs() < SAME_GAP, "{apart} m");
 }
+
+/// Winds a packed scene with other settings to its end.
+fn wound_as(scene: &str, settings: &[(&str, &str)]) -> Simulation {
+    let mut all = SceneSettings::load(scene).expect("packed");
+    for (name, value) in settings {
+        all.set_text(name, value).expect("a valid setting");
+    }
+    let mut simulation = Simulation::new(&all.build().expect("valid")).expect("starts");
+    let end = simulation.motion_profile().end();
+    simulation.advance_profile(end).expect("the run goes on");
+    simulation
+}
+
+/// A bow that stood off by more than `freeze.margin` never came to rest, nor did what was wound after it: it had no verdict, and each turn
+/// cost more than the one before.
+#[test]
+fn wire_farther_off_than_the_margin_comes_to_rest_where_nothing_draws_at_it() {
+    let tall = [
+        ("core.height_z_mm", "100"),
+        ("core.length_y_mm", "60"),
+        ("tensioner.tension", "1.2"),
+        ("nozzle.distance_mm", "100"),
+        ("spindle.speed", "30"),
+        ("spindle.turns", "3"),
+    ];
+    let simulation = wound_as("fig8", &tall);
+    let highest = simulation.coil().stations().map(|s| s.height);
+    let highest = highest.fold(0.0, f64::max);
+    assert!(highest > 5e-3, "{highest} m: within the margin");
+    let settled = simulation.outputs().turns_settled;
+    assert!(settled > 2.0, "{settled} turns");
+}
+
+/// Wire that lay on live wire only was part of the free span to the outputs: of five turns, 2.87 were wound.
+#[test]
+fn wire_laid_on_wire_that_is_not_at_rest_is_wound() {
+    let layers = |freeze: &'static str| {
+        [
+            ("traverse.trail", "free"),
+            ("winding.turns_per_layer", "3"),
+            ("winding.layers", "2"),
+            ("core.flange.inner_distance_mm", "2.47"),
+            ("nozzle.y_start_mm", "-0.885"),
+            ("start.clamp_y_mm", "-0.885"),
+            ("spindle.turns", "5"),
+            ("freeze.enabled", freeze),
+        ]
+    };
+    let [at_rest, live] =
+        ["true", "false"].map(|freeze| *wound_as("bobbin", &layers(freeze)).outputs());
+    assert!(live.turns_wound > 4.9, "{} turns", live.turns_wound);
+    let off = (live.turns_wound - at_rest.turns_wound).abs();
+    assert!(off < 0.05, "{off} turns");
+    let (free, expected) = (live.free_length, at_rest.free_length);
+    assert!((free - expected).abs() < 1e-3, "{free} m, {expected} m");
+}

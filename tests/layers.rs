@@ -383,7 +383,7 @@ fn a_last_turn_without_a_place_says_where_the_coil_should_end() {
     let mut sim = started(text);
     let said = |sim: &Simulation| {
         let told = sim.reasons().into_iter();
-        told.filter(|reason| reason.starts_with("The last turn has no place"))
+        told.filter(|reason| reason.contains("the last turn lies on the turn before"))
             .collect::<Vec<_>>()
     };
     wound(&mut sim, 4.25);
@@ -392,6 +392,6 @@ fn a_last_turn_without_a_place_says_where_the_coil_should_end() {
     let [reason] = &said(&sim)[..] else {
         panic!("{:?}", sim.reasons());
     };
-    assert!(reason.contains("from turn 4 at 337 deg on"), "{reason}");
+    assert!(reason.starts_with("From turn 4 at 337 deg on"), "{reason}");
     assert!(reason.contains("spindle.turns = 3.90"), "{reason}");
 }

@@ -46,6 +46,8 @@ pub struct CoilSpec {
     pub jumps: Arc<[[f64; 2]]>,
     /// winding angle at which the last layer is meant to be full, rad; none: not known, and no wire climbs out of it early
     pub full: Option<f64>,
+    /// winding angle at which the planned turns end, rad; none: not known
+    pub planned: Option<f64>,
     /// crossover of each turn; none: wire is not meant to cross in steps, or it is not known where
     pub crossover: Option<Crossover>,
     /// polar angle of the clamp, rad
@@ -456,7 +458,7 @@ impl Coil {
             pass: number,
             crosses,
             out_of_groove: support.stands_on_wire && self.has_grooves_below(number) && !crosses,
-            measured: self.is_free_of_clamp(angle) && !steps_up,
+            measured: self.is_free_of_clamp(angle) && !steps_up && !self.has_no_place(angle, row),
         };
         station.overlap_depth = self.overlap_depth(&station, stands_off);
         let support = match lifts {

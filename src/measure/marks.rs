@@ -1,10 +1,8 @@
 //! Which stations a defect covers: for lists of defects, for what is told of them, and for pictures of the coil.
 
-use super::STATIONS_PER_TURN;
 use super::coil::Coil;
 use super::defect::DefectKind;
 use super::runs::Run;
-use super::support::PLACE;
 
 /// Stations in a row of which a defect is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,18 +58,6 @@ impl Coil {
         let runs = self.counted_runs(kind, at);
         let there = |run: &CountedRun| (run.first..=run.last).contains(&at);
         at < self.records.len() && !runs.iter().any(there)
-    }
-
-    /// Where a defect begins in the last of so many turns since that turn has no place: the turn before has crossed into it, and no room is
-    /// left beside a flange. None where it has no such defect.
-    pub(crate) fn without_place_from(&self, turns: usize) -> Option<usize> {
-        let kinds = [DefectKind::Overlap, DefectKind::DoubleTurn];
-        let from = turns.checked_sub(1)? * STATIONS_PER_TURN;
-        let runs = kinds.map(|kind| self.counted_runs(kind, from));
-        let begins = runs.iter().flatten().map(|run| run.first).min()?;
-        let before = &self.records[begins.checked_sub(STATIONS_PER_TURN)?];
-        let room = before.station.flange_gap?;
-        (begins >= from && room < PLACE * self.spec.diameter).then_some(begins)
     }
 
     /// Runs of a kind that are long enough to count and reach the station `from` or beyond, along the wire.

@@ -17,6 +17,7 @@ mod coil;
 mod contour;
 mod crossover;
 mod defect;
+mod end;
 mod judge;
 mod jumps;
 mod layer_start;

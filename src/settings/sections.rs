@@ -216,8 +216,8 @@ pub struct Freeze {
     pub patience: f64,
     /// settled wire kept live behind lift-off, m; 0: 1.75 sqrt(EI/T)
     pub keep_length: f64,
-    /// region: largest distance of the wire's surface from the core or the layer below, m; 0: in proportion to the outer
-    /// diameter, 5 mm for 0.7 mm
+    /// region: largest distance of the wire's surface from the core or the layer below up to the patience, m; 0: in proportion to
+    /// the outer diameter, 5 mm for 0.7 mm
     pub margin: f64,
 }
 

@@ -4,7 +4,7 @@
 //! it. A threshold on the instantaneous speed passes at every turning point of a vibration.
 //! Rest is therefore judged by the displacement in the core frame over a window of core angle, or
 //! of time while the spindle stands. The region is every place whose wire surface is within
-//! `margin` of the core. Nodes freeze in order from the clamp, and not before they are a bending
+//! `margin` of the core, and every place at all beyond the patience behind lift-off. Nodes freeze in order from the clamp, and not before they are a bending
 //! length behind lift-off.
 
 use crate::math::{V3, scaled};
@@ -26,7 +26,7 @@ pub struct FreezePolicy {
     pub most: f64,
     /// length behind lift-off that stays live, m
     pub keep_length: f64,
-    /// largest height of the wire's surface over the core, m
+    /// largest height of the wire's surface over the core up to the patience behind lift-off, m
     pub margin: f64,
 }
 

@@ -26,7 +26,7 @@ pub(super) struct LayOn {
 }
 
 impl Winding {
-    /// Finds the last wire that touches something or lies on the core, between nodes by its clearance.
+    /// Finds the last wire that touches something, live wire on the coil too, or lies on the core, between nodes by its clearance.
     pub(super) fn layon(&self) -> LayOn {
         let spin = Spin::new(self.sys.state.spindle.angle);
         let x = &self.sys.state.rod.x;
@@ -60,6 +60,7 @@ impl Winding {
         while node > 0 && !lies_at(node) {
             node -= 1;
         }
+        let node = self.sys.carried_by(node);
         let clearance = |i: usize| {
             if i >= last {
                 f64::INFINITY

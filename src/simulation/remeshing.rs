@@ -194,7 +194,9 @@ impl Winding {
         (0..count)
             .find(|&i| {
                 let place = spin.to_core(self.sys.state.rod.x[i + 1]);
-                !self.sys.is_near_core(place, reach)
+                // (what the free span draws at no more stays where it is, however far off)
+                self.behind[i + 1] <= self.run.policy.patience
+                    && !self.sys.is_near_core(place, reach)
             })
             .unwrap_or(count)
     }

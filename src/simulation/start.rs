@@ -27,6 +27,7 @@ use crate::rod::{Rod, Scalar, Section};
 use crate::scene::{Core, Integrator, Scene, si};
 use crate::signals::{EventKind, Inputs, Outputs};
 use crate::system::{Spindle, Support, System};
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
@@ -110,6 +111,7 @@ fn wound_from(
         tension,
         jumps: scene.nozzle_law.jumps().into(),
         full: scene.nozzle_law.full(),
+        planned: scene.nozzle_law.held().map(|turns| turns * TAU),
         crossover: (scene.nozzle_law.crossover()).map(|[step, angle]| Crossover { step, angle }),
         start_angle: polar_angle(span.clamp),
         direction: span.direction,

@@ -3,8 +3,8 @@
 use super::Winding;
 use super::product::Product;
 use crate::measure::{
-    BulgeLimit, Defect, DefectKind, OnTurn, STATIONS_PER_TURN, TurnMeasures, Verdict, left_out,
-    reasons, unfinished,
+    BulgeLimit, Defect, DefectKind, OnTurn, STATIONS_PER_TURN, Station, TurnMeasures, Verdict,
+    left_out, reasons, unfinished,
 };
 use crate::scene::{Core, Decision, Integrator, Preset};
 use serde::Serialize;
@@ -27,6 +27,10 @@ const GAP_HIDDEN: f64 = 0.03;
 
 /// Tolerance over the wire's diameter up to which gaps have settled: that of a quarter of the default, and a little more.
 const FINE: f64 = 1e-3;
+
+/// How far beyond its place beside a flange's face wire lies that leans on the edge of the rim, diameters. Chosen: wire is pressed into
+/// other wire or a face by less than a fifth of that.
+const RIM: f64 = 0.1;
 
 /// What `summary.json` holds about the run itself.
 #[derive(Clone, Debug, Serialize)]
@@ -174,7 +178,7 @@ impl Winding {
         reasons.extend(self.gap_hidden_by_tolerance());
         reasons.extend(self.last_turn_without_place());
         reasons.extend(self.slipped_off());
-        reasons.extend(self.wire_on_a_rim());
+        reasons.extend(self.wire_on_a_rim().or_else(|| self.wire_against_a_rim()));
         reasons.extend(self.thinned_wire());
         reasons.extend(self.sharply_bent());
         let outputs = &self.run.outputs;
@@ -206,6 +210,18 @@ impl Winding {
         ))
     }
 
+    /// Where wire first leans on the edge of a rim, in words: beside the flange, and deeper in it than wire of that width lies beside its face.
+    fn wire_against_a_rim(&self) -> Option<String> {
+        let d = self.scene.wire.diameter;
+        let face = 0.5 * (self.scene.core.flange()?.inner_distance - d) + RIM * d;
+        let leans = |s: &Station| s.flange_gap.is_none() && s.position.y.abs() > face;
+        let at = self.coil.stations().position(leans)?;
+        Some(format!(
+            "Wire lies on the edge of a flange's rim from {} on, which is lower than the coil: raise core.flange.height",
+            OnTurn::of_station(at)
+        ))
+    }
+
     /// That the gaps, if nothing graver is wrong, lie so near their limit that a finer tolerance may show none.
     fn gap_of_tolerance(&self, defects: &[Defect]) -> Option<String> {
         let presses = self.presses_turns();
@@ -231,14 +247,13 @@ impl Winding {
         })
     }
 
-    /// From where on the last planned turn has to lie on the turn before, and how to end the coil there.
+    /// From where on the last planned turn lies on the turn before, and how to end the coil there.
     fn last_turn_without_place(&self) -> Option<String> {
-        let planned = self.scene.nozzle_law.held()?;
-        let at = self.coil.without_place_from(planned.round() as usize)?;
+        let at = self.coil.without_place_from()?;
         // (down, and to half a tenth: wire that is not laid there need not be judged there)
         let ends = (20.0 * at as f64 / STATIONS_PER_TURN as f64).floor() / 20.0;
         Some(format!(
-            "The last turn has no place from {} on, since the turn before has crossed into it: end with spindle.turns = {ends:.2}, or cross later by less traverse.advance",
+            "From {} on the last turn lies on the turn before, which has crossed into its place; no defect within half a turn of the end. With spindle.turns = {ends:.2} the coil ends before",
             OnTurn::of_station(at)
         ))
     }

@@ -107,6 +107,17 @@ impl System {
         }
     }
 
+    /// The last node that lies on live wire up to this node, or on what lies on that; this node where none does.
+    pub fn carried_by(&self, node: usize) -> usize {
+        match &self.state.contact {
+            ContactState::Line(line) => {
+                let pairs = line.self_contact.as_ref();
+                pairs.map_or(node, |pairs| pairs.carried_by(node))
+            }
+            ContactState::Nodal(_) | ContactState::None => node,
+        }
+    }
+
     /// Whether wire may meet flanges beside what it is wound on: plates by key, or walls of a concave mesh.
     pub(crate) fn may_meet_flange(&self) -> bool {
         match &self.model.contact {

@@ -447,7 +447,7 @@ table! {
     fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");
     fixed(2002, "freeze.creep", freeze.creep, "m/rad", "um/rad", 0.0, 1.0, 1e-6, "largest motion of wire at rest per core angle; 0: in proportion to the outer diameter, 2 um/rad for 0.7 mm");
     fixed(2003, "freeze.keep_length", freeze.keep_length, "m", "mm", 0.0, 100.0, 1e-2, "settled wire kept live behind lift-off; 0: 1.75 sqrt(EI/T)");
-    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core or the layer below; 0: in proportion to the outer diameter, 5 mm for 0.7 mm");
+    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core or the layer below up to freeze.patience turns behind lift-off; 0: in proportion to the outer diameter, 5 mm for 0.7 mm");
     fixed(2005, "freeze.time", freeze.time, "s", "ms", 0.0, 1e6, 1e-2, "time over which motion is judged while the spindle stands; 0: ten periods of the free span's slowest ringing at the start");
     fixed(2006, "freeze.patience", freeze.patience, "1", "", 0.0, 1000.0, 1.0, "turns behind lift-off from which on creep may double each quarter of a turn, up to a twentieth of the diameter in all");
 

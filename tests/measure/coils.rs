@@ -22,6 +22,7 @@ pub(crate) fn spec() -> CoilSpec {
         tension: PULL,
         jumps: [].into(),
         full: None,
+        planned: None,
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,

@@ -146,6 +146,35 @@ fn the_last_turn_of_the_last_layer_rides_up_on_its_neighbour() {
     assert_eq!(told, [(gap, TURNS as u32 - 1), (overlap, TURNS as u32)]);
 }
 
+/// Where every turn crosses before the angle of the clamp the end of the last turn has no place, and an even coil was condemned for it.
+#[test]
+fn the_end_of_a_coil_whose_place_is_taken_is_no_overlap() {
+    let found = |from: f64| {
+        let leans = |turns: f64| match (from..0.9).contains(&turns.fract()) {
+            true => 0.4,
+            false => 0.0,
+        };
+        let spec = CoilSpec {
+            full: Some(TURNS * TAU),
+            planned: Some(TURNS * TAU),
+            ..spec()
+        };
+        let nodes = leaning(leans);
+        let count = nodes.len() as f64 * (TURNS - 0.12) / (2.0 * TURNS - 2.2);
+        let coil = wound(spec, &nodes[..count as usize]);
+        let begins = coil.without_place_from().map(|at| at as f64 / 360.0);
+        (coil.flags().overlap, begins)
+    };
+    for (from, overlaps) in [(0.3, true), (0.45, true), (0.55, false), (0.7, false)] {
+        let (overlap, begins) = found(from);
+        assert_eq!(overlap, overlaps, "{from}");
+        // (nodes lie two to three stations apart)
+        let off = begins.map(|turns| (turns - (TURNS - 1.0) - from).abs());
+        assert!(off.is_some_and(|off| off < 0.02), "{from}: {begins:?}");
+    }
+    assert_eq!(found(0.9), (false, None));
+}
+
 #[test]
 fn a_climb_that_is_taken_back_was_never_known() {
     taken_back_is_never_known(&slow_climb());

@@ -296,6 +296,15 @@ async function look(scheme) {
   check(`${scheme}: no section or curve is blank`, (await compare(page, cut, cut)).colours > 3);
   const curves = await page.locator(".chart canvas").count();
   check(`${scheme}: curves are drawn, or missed`, curves >= 2 || (await page.getByText("history.csv is missing").count()) > 0, `${curves}`);
+  // The curves are over turns of the spindle, which is ahead of the wire; places on the wire were taken for turns of the spindle.
+  const wound = await page.evaluate(() => {
+    const { wound, angle, time } = runs[0].history ?? {};
+    if (!wound) return null;
+    const turns = Array.from(angle, (one) => Math.abs(one) / (2 * Math.PI));
+    const k = wound.findIndex((one, j) => j > wound.length / 2 && one > wound[j - 1]);
+    return k < 0 ? null : [between(wound, turns, wound[k]) - turns[k], runs[0].timeOf(wound[k]) - time[k]];
+  });
+  check(`${scheme}: curves know where the spindle was when wire was wound`, wound === null || wound.every((off) => Math.abs(off) < 1e-6), `${wound}`);
   const begun = await page.getByText(/the nozzle begins layer/).allInnerTexts();
   check(`${scheme}: layers are marked where there are some`, begun.length === (given.layers ? 1 : 0) && begun.every((told) => told.includes(`begins layer ${given.layers}.`)), begun.join(" | "));
   check(`${scheme}: the console is quiet`, complaints.length === 0, complaints.join(" | "));

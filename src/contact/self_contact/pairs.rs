@@ -112,6 +112,21 @@ impl SelfContact {
         self.pairs.is_empty()
     }
 
+    /// The last node that wire up to a node carries: by a touch of its own, or of wire between that is carried too. That node where
+    /// none does.
+    pub fn carried_by(&self, node: usize) -> usize {
+        let mut last = node;
+        loop {
+            let carried = |pair: &&Pair| pair.depth > 0.0 && pair.segment as usize <= last;
+            let points = self.pairs.iter().filter(carried);
+            let next = points.map(|pair| pair.point as usize / 2).max();
+            match next.filter(|next| *next > last) {
+                Some(next) => last = next,
+                None => return last,
+            }
+        }
+    }
+
     /// Depth of the deepest touch, m; 0: none.
     pub fn deepest(&self) -> f64 {
         self.pairs.iter().map(|p| p.depth).fold(0.0, f64::max)

@@ -25,6 +25,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         tension: 0.0,
         jumps: [].into(),
         full: None,
+        planned: None,
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,

@@ -285,7 +285,8 @@ fn table<const N: usize>(
     Ok(Some(columns))
 }
 
-/// Curves over time, thinned in pieces: mean, least and largest tension, the torque that is largest either way, and the layer.
+/// Curves over time, thinned in pieces: mean, least and largest tension, the torque that is largest either way, the layer, and the turns
+/// of wire that were wound by then.
 fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
     let names = [
         "time",
@@ -296,6 +297,7 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
         "wire_tension_max",
         "spindle_torque",
         "layer",
+        "turns_wound",
     ];
     let Some(mut columns) = table(path, names)? else {
         return Ok(None);
@@ -303,6 +305,11 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
     // A history of the FMU is in time of the experiment; defects are in time of the run.
     let start = columns[0].first().copied().unwrap_or(0.0);
     columns[0].iter_mut().for_each(|time| *time -= start);
+    // (wire that came off again was wound before)
+    columns[8].iter_mut().fold(0.0, |most: f64, turns| {
+        *turns = turns.max(most);
+        *turns
+    });
     let rows = columns[0].len();
     let piece = rows.div_ceil(CURVE).max(1);
     let thin = |column: usize, choose: fn(&[f64]) -> f64| {
@@ -325,6 +332,7 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
         ("tension_max", thin(5, most)),
         ("torque", thin(6, farthest)),
         ("layer", thin(7, most)),
+        ("wound", thin(8, last)),
     ])))
 }
 

@@ -13,12 +13,13 @@ function charts(run) {
   const x = forward ? turns : Array.from(history.time, (time) => 1e3 * time);
   const axis = forward ? "Turns of the spindle" : "Time, ms";
   const when = (d) => (forward ? run.turnsAt(d.time_s) : 1e3 * d.time_s);
-  const laid = (d) => (forward ? d.turn - 1 + d.angle_deg / STATIONS : null);
+  // Where the spindle was when this wire was wound: it is ahead of the wire by the free span's part of a turn.
+  const laid = (d) => (forward ? between(history.wound, turns, d.turn - 1 + d.angle_deg / STATIONS) : null);
   const marks = run.defects.map((d) => [HAPPENS.has(d.kind) ? when(d) : laid(d), d.kind]).filter(([at]) => at != null);
   const plain = (array, scale = 1) => Array.from(array, (value) => scale * value);
-  const go = forward ? (turn) => run.goTo(turn) : () => {};
+  const go = forward ? (turn) => run.goTo(between(turns, history.wound, turn)) : () => {};
   const happened = [...HAPPENS].filter((kind) => marks.some(([, marked]) => marked === kind));
-  const lying = marks.some(([, kind]) => !HAPPENS.has(kind)) ? "defects, where they lie on the wire" : null;
+  const lying = marks.some(([, kind]) => !HAPPENS.has(kind)) ? "defects, where their wire was wound" : null;
   const words = [lying, happened.length ? `${happened.join(", ")}, at the instant of it` : null].filter(Boolean);
   const layers = begun(history.layer, x);
   const numbers = layers.map(([, number]) => number).join(", ");
@@ -41,13 +42,21 @@ function charts(run) {
   const told = (...parts) => parts.filter(Boolean).join(" ") || null;
   return [
     chart("Tension at the nozzle", axis, x, "N", [
-      { label: "mean", values: plain(history.tension), width: 1.4 },
+      { label: "tension", values: plain(history.tension), width: 1.4 },
       { label: "least", values: plain(history.tension_min), band: true },
       { label: "largest", values: plain(history.tension_max), band: true },
     ], [marks, layers], go, told(note, alone), over(1, "tension", "tension_min", "tension_max")),
     chart("Torque of the wire on the core", axis, x, "mN.m", [{ label: "torque", values: torque, width: 1.4 }], [marks, layers], go,
       told(resists(history.angle), alone), over(1e3, "torque")),
   ];
+}
+
+/** Value of a curve over places that never fall, linear between them. */
+function between(places, values, at) {
+  const k = Math.min(lowerBound(places, at), places.length - 1);
+  const [low, high] = [places[Math.max(k - 1, 0)], places[k]];
+  const share = high > low ? Math.min(Math.max((at - low) / (high - low), 0), 1) : 1;
+  return values[Math.max(k - 1, 0)] * (1 - share) + values[k] * share;
 }
 
 /** Which sign the torque has where the wire resists a spindle that has turned through these angles. */

@@ -74,9 +74,9 @@ class Run {
     return Math.abs(this.history.angle[k]) / TURN;
   }
 
-  /** The first time, s, by which the spindle has made so many turns; Infinity where it never has. */
+  /** The first time, s, by which so many turns of wire were wound; Infinity where they never were. */
   timeOf(turns) {
-    const k = this.history ? this.history.angle.findIndex((angle) => Math.abs(angle) / TURN >= turns) : -1;
+    const k = this.history ? this.history.wound.findIndex((wound) => wound >= turns) : -1;
     return k < 0 ? Infinity : this.history.time[k];
   }
 

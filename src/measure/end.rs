@@ -1,0 +1,52 @@
+//! The end of a coil: where each turn crosses before the angle of the clamp, the last one has no place of its own from there on.
+
+use super::STATIONS_PER_TURN;
+use super::coil::Coil;
+use super::row::Row;
+use super::runs::{SHORT_RUN, stations_for};
+use super::support::{NEXT_LAYER, PLACE};
+use std::f64::consts::TAU;
+
+/// Last part of the planned turns in which wire without a place is the end of the coil, rad. Chosen: half a turn, as for a double turn.
+const END: f64 = 0.5 * TAU;
+
+impl Coil {
+    /// Whether the next station, of this row, lies at the end of the coil, where the turn before it has crossed into its place beside a flange.
+    pub(super) fn has_no_place(&self, angle: f64, row: Row) -> bool {
+        let is_end = |end: f64| (end - END..=end).contains(&angle);
+        let index = self.records.len();
+        let before = index.checked_sub(STATIONS_PER_TURN);
+        self.spec.planned.is_some_and(is_end)
+            && before.is_some_and(|before| {
+                self.records[before].row.number == row.number && self.leaves_no_place(before)
+            })
+    }
+
+    /// Whether a turn leaves none beside it at a flange.
+    fn leaves_no_place(&self, station: usize) -> bool {
+        let room = self.records[station].station.flange_gap;
+        room.is_some_and(|room| room < PLACE * self.spec.diameter)
+    }
+
+    /// Station from which on the last planned turn lies on the turn before, which has left it no place. None where it has one.
+    pub fn without_place_from(&self) -> Option<usize> {
+        let end = (self.spec.planned? / TAU).round() as usize * STATIONS_PER_TURN;
+        let from = end.checked_sub(STATIONS_PER_TURN)?;
+        let stands = |index: &usize| {
+            index.checked_sub(STATIONS_PER_TURN).is_some_and(|before| {
+                let height = |index: usize| self.records[index].station.height;
+                let rise = height(*index) - height(before);
+                self.leaves_no_place(before) && rise >= NEXT_LAYER * self.spec.diameter
+            })
+        };
+        let least = stations_for(SHORT_RUN) as usize;
+        let mut so_far = 0;
+        for index in from..end.min(self.records.len()) {
+            so_far = if stands(&index) { so_far + 1 } else { 0 };
+            if so_far == least {
+                return Some(index + 1 - least);
+            }
+        }
+        None
+    }
+}
