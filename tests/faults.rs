@@ -305,3 +305,27 @@ fn too_little_memory_is_named() {
         }
     }
 }
+
+/// A run that was killed and gone on with forgot that defects were to fail it, and that no page was wanted.
+#[test]
+fn a_run_that_goes_on_keeps_what_was_asked_for_at_its_end() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut first = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    first.args(["run", "fig8", "--quiet", "--fail-on-defect", "--no-report"]);
+    first.args(["--set", "spindle.speed=100", "--set", "spindle.turns=2.5"]);
+    first.args(["--set", "traverse.per_turn_mm=1.2", "--checkpoint-every"]);
+    first.arg("0.02").arg("--out").arg(&out);
+    let mut child = first.spawn().unwrap();
+    while !out.join("checkpoint.bin").is_file() {
+        assert!(child.try_wait().unwrap().is_none(), "ended too soon");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let mut on = Command::new(env!("CARGO_BIN_EXE_coilwind"));
+    let output = on.args(["run", "--quiet", "--resume"]).arg(&out).output();
+    let output = output.unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(out.join("turns.csv").is_file() && !out.join("report.html").exists());
+}

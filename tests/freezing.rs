@@ -178,5 +178,6 @@ fn wire_laid_on_wire_that_is_not_at_rest_is_wound() {
     let off = (live.turns_wound - at_rest.turns_wound).abs();
     assert!(off < 0.05, "{off} turns");
     let (free, expected) = (live.free_length, at_rest.free_length);
-    assert!((free - expected).abs() < 1e-3, "{free} m, {expected} m");
+    // (by as much as wire of that angle is long)
+    assert!((free - expected).abs() < 3e-3, "{free} m, {expected} m");
 }

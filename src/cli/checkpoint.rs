@@ -4,6 +4,7 @@
 //! file or the new one, whole.
 
 use super::drive::{Motion, Place};
+use super::ends::Ends;
 use super::failure::Failure;
 use super::read_files;
 use super::shell::{SCENE, begin_again, quoted};
@@ -18,7 +19,7 @@ use std::path::{Path, PathBuf};
 /// Name of the file in the folder of a run.
 pub(super) const FILE: &str = "checkpoint.bin";
 /// Changes whenever the layout does; the state has a version of its own.
-const MAGIC: &[u8; 8] = b"coilwck2";
+const MAGIC: &[u8; 8] = b"coilwck3";
 /// Bytes before the state: [`MAGIC`] and a checksum of what follows.
 const HEAD: usize = MAGIC.len() + size_of::<u32>();
 
@@ -31,6 +32,7 @@ pub(super) struct Plan {
     pub(super) inputs_checksum: u32,
     pub(super) frames: u32,
     pub(super) geometry: bool,
+    pub(super) ends: Ends,
 }
 
 /// A run between two communication steps.
@@ -56,8 +58,8 @@ impl Plan {
     pub(super) fn new(
         settings: &SceneSettings,
         motion: &Motion,
-        frames: u32,
-        geometry: bool,
+        (frames, geometry): (u32, bool),
+        ends: Ends,
     ) -> Result<Self, Failure> {
         let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         let mut settings = settings.clone();
@@ -78,6 +80,7 @@ impl Plan {
             inputs_checksum,
             frames,
             geometry,
+            ends,
         })
     }
 

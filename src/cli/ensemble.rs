@@ -23,7 +23,7 @@ use std::path::Path;
 use std::sync::atomic::Ordering;
 
 /// Changes whenever the layout does.
-const MAGIC: &[u8; 8] = b"coilwen1";
+const MAGIC: &[u8; 8] = b"coilwen2";
 
 /// What the members of an ensemble have in common.
 #[derive(Serialize, Deserialize)]
@@ -31,7 +31,6 @@ struct Ensemble {
     /// scene of the middle, motion and options
     plan: Plan,
     members: u32,
-    no_report: bool,
 }
 
 /// A member as it stands.
@@ -75,9 +74,8 @@ pub(super) fn run(args: &RunArgs, count: u32) -> Result<(), Failure> {
     }
     let geometry = !args.no_geometry;
     let ensemble = Ensemble {
-        plan: Plan::new(&settings, &motion, args.frames, geometry)?,
+        plan: Plan::new(&settings, &motion, (args.frames, geometry), args.ends)?,
         members: count,
-        no_report: args.no_report,
     };
     folder::prepare(&directory, args.force, None)?;
     folder::clear_all(&directory)?;
@@ -113,7 +111,9 @@ pub(super) fn resume(args: &RunArgs, directory: &Path) -> Result<(), Failure> {
     let all: Result<Vec<Member>, Failure> = (1..=ensemble.members)
         .map(|member| ensemble.member(args, directory, member))
         .collect();
-    wind(args, directory, held, all?)
+    let mut args = args.clone();
+    args.ends = args.ends.or(ensemble.plan.ends);
+    wind(&args, directory, held, all?)
 }
 
 impl Ensemble {
@@ -121,7 +121,7 @@ impl Ensemble {
     fn member(&self, args: &RunArgs, directory: &Path, member: u32) -> Result<Member, Failure> {
         let out = directory.join(member.to_string());
         let mut one = quiet(args);
-        one.no_report |= self.no_report;
+        one.ends.no_report |= self.plan.ends.no_report;
         one.resume = None;
         if out.join(checkpoint::FILE).is_file() {
             one.resume = Some(out);
@@ -146,7 +146,7 @@ impl Ensemble {
 /// The same run without words: what a member has to say stands in its folder.
 fn quiet(args: &RunArgs) -> RunArgs {
     let mut one = args.clone();
-    (one.quiet, one.verbose, one.fail_on_defect) = (true, false, false);
+    (one.quiet, one.verbose, one.ends.fail_on_defect) = (true, false, false);
     one
 }
 
@@ -252,7 +252,7 @@ fn wind(args: &RunArgs, directory: &Path, held: Locked, all: Vec<Member>) -> Res
         },
         other => other,
     })?;
-    match args.fail_on_defect && defective {
+    match args.ends.fail_on_defect && defective {
         true => Err(Failure::Defect { what: words }),
         false => Ok(()),
     }

@@ -5,6 +5,7 @@ mod check;
 mod checkpoint;
 mod choice;
 mod drive;
+mod ends;
 mod ensemble;
 mod ensemble_files;
 mod failure;

@@ -2,6 +2,7 @@
 
 use super::checkpoint::{self, Checkpoint, Plan};
 use super::drive::{Drive, Motion};
+use super::ends::Ends;
 use super::failure::Failure;
 use super::folder;
 use super::frames::Frames;
@@ -68,9 +69,8 @@ pub(super) struct RunArgs {
     /// Leave coil.vtp, core.vtp, coil.png and report.html out: many short runs spend most of their time on them
     #[arg(long, conflicts_with = "frames")]
     pub(super) no_geometry: bool,
-    /// Leave report.html out
-    #[arg(long)]
-    pub(super) no_report: bool,
+    #[command(flatten)]
+    pub(super) ends: Ends,
     /// Sampled inputs (CSV with time, spindle_speed, nozzle_position, tension_setpoint) instead of
     /// the scene's spindle and traverse, as the FMU would see them
     #[arg(long, value_name = "FILE", requires = "step")]
@@ -81,9 +81,6 @@ pub(super) struct RunArgs {
     /// Simulated time at which to stop, s; default: end of the programme or of the inputs
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     pub(super) stop_time: Option<f64>,
-    /// Exit with 1 if a defect was found
-    #[arg(long)]
-    pub(super) fail_on_defect: bool,
     /// No progress, no events, no verdict; errors only
     #[arg(long)]
     pub(super) quiet: bool,
@@ -123,8 +120,8 @@ impl RunArgs {
             words += &format!(" --checkpoint-every {}", self.checkpoint_every);
         }
         for (given, word) in [
-            (self.no_report, " --no-report"),
-            (self.fail_on_defect, " --fail-on-defect"),
+            (self.ends.no_report, " --no-report"),
+            (self.ends.fail_on_defect, " --fail-on-defect"),
             (self.quiet, " --quiet"),
             (self.verbose, " --verbose"),
         ] {
@@ -189,6 +186,9 @@ pub(super) fn wind_one(args: &RunArgs, stop: &StopFlags) -> Result<Judged, Failu
         frames,
         wall_s,
     } = start;
+    let mut args = args.clone();
+    args.ends = args.ends.or(plan.ends);
+    let args = &args;
     let snapshot = Snapshot::new(&simulation).map_err(|reason| Failure::Start {
         scene: plan.settings.name.clone(),
         reason,
@@ -240,7 +240,7 @@ pub(super) fn wind_one(args: &RunArgs, stop: &StopFlags) -> Result<Judged, Failu
         wall_s + clock.elapsed().as_secs_f64(),
     );
     let written = flushed.and(written).map_err(Failure::from);
-    let page = (geometry && !args.no_report).then(|| directory.join("report.html"));
+    let page = (geometry && !args.ends.no_report).then(|| directory.join("report.html"));
     let written = written.and_then(|()| match &page {
         Some(page) => Ok(write_report(&[&directory], page)?),
         None => Ok(()),
@@ -340,7 +340,12 @@ fn begin(args: &RunArgs) -> Result<Start, Failure> {
     })?;
     simulation.step_beyond(motion.reaches_beyond(&scene));
     let directory = args.directory(&settings);
-    let plan = Plan::new(&settings, &motion, args.frames, !args.no_geometry)?;
+    let plan = Plan::new(
+        &settings,
+        &motion,
+        (args.frames, !args.no_geometry),
+        args.ends,
+    )?;
     folder::prepare(&directory, args.force, args.scene.as_deref())?;
     let history = History::create(&directory.join("history.csv"))?;
     let read = read_files::note(&settings, args.inputs.as_deref());
@@ -424,7 +429,7 @@ fn conclude(
         });
     }
     let defect = !defects.is_empty() || verdict.is_defect();
-    if args.fail_on_defect && defect {
+    if args.ends.fail_on_defect && defect {
         return Err(Failure::Defect {
             what: counted(verdict, &defects),
         });

@@ -338,14 +338,23 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
 
 /// Measures at every degree of every turn.
 fn stations(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
-    let names = ["arc", "gap", "bulge", "layer", "measured", "crosses"];
-    let Some([arc, gap, bulge, layer, measured, crosses]) = table(path, names)? else {
+    let names = [
+        "arc",
+        "gap",
+        "bulge",
+        "bulge_excess",
+        "layer",
+        "measured",
+        "crosses",
+    ];
+    let Some([arc, gap, bulge, excess, layer, measured, crosses]) = table(path, names)? else {
         return Ok(None);
     };
     Ok(Some(BTreeMap::from([
         ("arc", Array::reals(arc)),
         ("gap", Array::reals(gap)),
         ("bulge", Array::reals(bulge)),
+        ("bulge_excess", Array::reals(excess)),
         ("layer", Array::bytes(layer)),
         ("measured", Array::bytes(measured)),
         ("crosses", Array::bytes(crosses)),

@@ -36,6 +36,7 @@ const QUANTITIES = {
   plastic_strain: { label: "Plastic strain", unit: "%", scale: 100 },
   gap: { label: "Gap to the neighbour", unit: "mm", scale: 1e3 },
   bulge: { label: "Bulge", unit: "mm", scale: 1e3 },
+  bulge_excess: { label: "Bulge beyond that at rest", unit: "mm", scale: 1e3 },
   layer: { label: "Layer", kinds: true },
   defect: { label: "Defect", kinds: true },
 };
@@ -65,6 +66,9 @@ function kindsOf(runs) {
 /** Share of the diameter that gaps span at least on the scale: the limit of a gap where the scene sets no other. */
 const GAP_LIMIT = 0.15;
 
+/** Whether a run judges bulges by what they stand higher than drawn wire at rest. */
+const overRest = (run) => run.summary.bulge_judged?.by === "over_rest";
+
 /** What a scale spans at least, m, so that it does not make structure of noise, and what that is; null for others. */
 function floorOf(key, runs) {
   const most = (of) => Math.max(...runs.map(of));
@@ -72,7 +76,10 @@ function floorOf(key, runs) {
     const least = GAP_LIMIT * most((run) => run.diameter);
     return { least, words: `${mm(least)} (${GAP_LIMIT} d)` };
   }
-  if (key === "bulge") {
+  if (key === "bulge" && runs.every(overRest)) {
+    return { least: 0.5 * most((run) => run.diameter), words: "half a diameter" };
+  }
+  if (key === "bulge" || key === "bulge_excess") {
     const least = most((run) => run.summary.bulge_judged?.limit_m ?? 0.5 * run.diameter);
     const alike = runs.every((run) => run.summary.bulge_judged?.limit_m === runs[0].summary.bulge_judged?.limit_m);
     return { least, words: `${mm(least)}, the ${alike ? "" : "larger "}limit of a bulge` };

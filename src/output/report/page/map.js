@@ -14,6 +14,8 @@ function defectMap(run) {
     // (a gap in a crossover is none)
     return of[key].map((value, k) => (of.measured[k] && !(key === "gap" && of.crosses[k]) ? value : NaN));
   };
+  // (bulges as they are judged)
+  const bulge = run.all.every(overRest) ? "bulge_excess" : "bulge";
   let key = "gap";
   let values, colours, picture;
   const kinds = [...new Set(run.defects.map((defect) => defect.kind))];
@@ -97,7 +99,7 @@ function defectMap(run) {
     board.paint();
   };
   const bar = el("div", { class: "bar" }, el("h2", {}, "Defect map"),
-    choice({ gap: "Gap", bulge: "Bulge", layer: "Layer" }, key, pick));
+    choice({ gap: "Gap", [bulge]: "Bulge", layer: "Layer" }, key, pick));
   const note = [run.defects.length ? "Rings mark defects." : "No defects.", ...(run.view?.renderer ? ["A click moves the view there."] : [])].join(" ");
   return el("section", { class: "card map" }, bar, el("div", { class: "plot" }, board, tip),
     el("div", { class: "legend", style: "position: static; display: inline-block; margin-top: 8px" }, legendBox),
