@@ -123,6 +123,7 @@ fn coil(wire: &Centreline) -> Coil {
         tension: 15.0,
         jumps: [].into(),
         full: None,
+        planned: None,
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,

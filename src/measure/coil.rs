@@ -458,7 +458,7 @@ impl Coil {
             pass: number,
             crosses,
             out_of_groove: support.stands_on_wire && self.has_grooves_below(number) && !crosses,
-            measured: self.is_free_of_clamp(angle) && !steps_up && !self.has_no_place(angle, row),
+            measured: self.is_free_of_clamp(angle) && !steps_up && !self.has_no_place(angle),
         };
         station.overlap_depth = self.overlap_depth(&station, stands_off);
         let support = match lifts {

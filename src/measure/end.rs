@@ -2,7 +2,6 @@
 
 use super::STATIONS_PER_TURN;
 use super::coil::Coil;
-use super::row::Row;
 use super::runs::{SHORT_RUN, stations_for};
 use super::support::{NEXT_LAYER, PLACE};
 use std::f64::consts::TAU;
@@ -11,15 +10,14 @@ use std::f64::consts::TAU;
 const END: f64 = 0.5 * TAU;
 
 impl Coil {
-    /// Whether the next station, of this row, lies at the end of the coil, where the turn before it has crossed into its place beside a flange.
-    pub(super) fn has_no_place(&self, angle: f64, row: Row) -> bool {
+    /// Whether the next station lies at the end of the coil, where the turn before it has crossed into its place beside a flange. In a window
+    /// of one turn each lies on the one before by plan.
+    pub(super) fn has_no_place(&self, angle: f64) -> bool {
         let is_end = |end: f64| (end - END..=end).contains(&angle);
-        let index = self.records.len();
-        let before = index.checked_sub(STATIONS_PER_TURN);
+        let before = self.records.len().checked_sub(STATIONS_PER_TURN);
         self.spec.planned.is_some_and(is_end)
-            && before.is_some_and(|before| {
-                self.records[before].row.number == row.number && self.leaves_no_place(before)
-            })
+            && !self.has_planned_passes()
+            && before.is_some_and(|before| self.leaves_no_place(before))
     }
 
     /// Whether a turn leaves none beside it at a flange.
@@ -30,6 +28,9 @@ impl Coil {
 
     /// Station from which on the last planned turn lies on the turn before, which has left it no place. None where it has one.
     pub fn without_place_from(&self) -> Option<usize> {
+        if self.has_planned_passes() {
+            return None;
+        }
         let end = (self.spec.planned? / TAU).round() as usize * STATIONS_PER_TURN;
         let from = end.checked_sub(STATIONS_PER_TURN)?;
         let stands = |index: &usize| {

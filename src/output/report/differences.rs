@@ -108,13 +108,14 @@ fn shown(row: &Variable, value: &Value) -> String {
     let display = unit.and_then(|unit| unit.display.iter().find(|it| it.0 == row.display_unit));
     let (name, factor, offset) = display.copied().unwrap_or((row.unit, 1.0, 0.0));
     // Seven digits: the product with a factor has no more to say.
-    let rounded: f64 = format!("{:.6e}", factor * x + offset).parse().unwrap_or(*x);
+    let seven = |x: f64| format!("{x:.6e}").parse().unwrap_or(x);
+    let rounded = seven(factor * x + offset);
     let name = if name == "1" { "" } else { name };
     if row.unit == SPEED {
         // (scenes have either)
         return format!(
             "{} {SPEED} ({} {name})",
-            Value::Real(*x),
+            Value::Real(seven(*x)),
             Value::Real(rounded)
         );
     }
@@ -152,10 +153,7 @@ mod tests {
             (
                 "spindle.speed",
                 // (speeds stood there in rpm alone)
-                &values(
-                    "150 rad/s (1432.394 rpm)",
-                    "125.66370614359172 rad/s (1200 rpm)",
-                ),
+                &values("150 rad/s (1432.394 rpm)", "125.6637 rad/s (1200 rpm)"),
             ),
         ];
         assert_eq!(told, expected);
