@@ -371,8 +371,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let curves = |start: f64| {
             let path = folder.path().join("history.csv");
-            let head = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque,layer";
-            let row = |t: f64| format!("{},{t},1,15,14,16,0.1,1\n", start + t);
+            let head = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque,layer,turns_wound";
+            let row = |t: f64| format!("{},{t},1,15,14,16,0.1,1,0.1\n", start + t);
             std::fs::write(&path, format!("{head}\n{}{}", row(0.0), row(0.5))).unwrap();
             serde_json::to_string(&history(&path).unwrap()).unwrap()
         };
@@ -384,7 +384,7 @@ mod tests {
     fn a_table_whose_last_line_is_torn_is_not_whole() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
-        let text = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque,layer\n0,0,1,15,14,16,0.125,12\n";
+        let text = "time,spindle_angle,spindle_speed,wire_tension,wire_tension_min,wire_tension_max,spindle_torque,layer,turns_wound\n0,0,1,15,14,16,0.125,1,12\n";
         for (end, whole) in [(0, true), (1, false), (3, false)] {
             std::fs::write(&path, &text[..text.len() - end]).unwrap();
             assert_eq!(history(&path).is_ok(), whole, "{end} bytes less");
