@@ -395,3 +395,26 @@ fn a_last_turn_without_a_place_says_where_the_coil_should_end() {
     assert!(reason.starts_with("From turn 4 at 337 deg on"), "{reason}");
     assert!(reason.contains("spindle.turns = 3.90"), "{reason}");
 }
+
+/// Wire beside a flange that is lower than the coil leaned on its edge, less than half a wire beyond its face: a double turn without a reason.
+#[test]
+fn wire_that_leans_on_the_edge_of_a_rim_is_told() {
+    let text = |height_mm: f64| {
+        format!(
+            "[wire]\ndiameter_mm = 0.5\n[core]\nshape = \"cylinder\"\nradius_mm = 6\n\
+             [core.flange]\ninner_distance_mm = 2.275\nheight_mm = {height_mm}\n[nozzle]\ndistance_mm = 16\n\
+             [tensioner]\ntension = 8\n[spindle]\nspeed = 200\n[traverse]\nmode = \"orthocyclic\"\n\
+             crossover_deg = 60\nadvance_deg = 90\n[winding]\nlayers = 2\ndirection = \"-y\"\n"
+        )
+    };
+    for (height_mm, leans) in [(0.4, true), (3.0, false)] {
+        let mut sim = started(&text(height_mm));
+        wound(&mut sim, 5.6);
+        let told = sim.reasons();
+        let rim = told.iter().any(|reason| {
+            reason.starts_with("Wire lies on the edge of a flange's rim from turn 4 at 3")
+                && reason.ends_with("raise core.flange.height")
+        });
+        assert_eq!(rim, leans, "{told:?}");
+    }
+}
