@@ -2,6 +2,7 @@
 
 use super::STATIONS_PER_TURN;
 use super::coil::Coil;
+use super::defect::DefectKind;
 use super::runs::{SHORT_RUN, stations_for};
 use super::support::{NEXT_LAYER, PLACE};
 use std::f64::consts::TAU;
@@ -49,5 +50,13 @@ impl Coil {
             }
         }
         None
+    }
+
+    /// Whether wire has ridden up on its own row, and come down again, before a station: a coil that ends there is none the better for it.
+    pub fn rides_up_before(&self, station: usize) -> bool {
+        [DefectKind::Overlap, DefectKind::DoubleTurn]
+            .into_iter()
+            .flat_map(|kind| self.counted_runs(kind, 0))
+            .any(|run| run.last < station)
     }
 }

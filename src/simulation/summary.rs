@@ -247,13 +247,17 @@ impl Winding {
         })
     }
 
-    /// From where on the last planned turn lies on the turn before, and how to end the coil there.
+    /// From where on the last planned turn lies on the turn before, and how to end the coil there, unless wire rides up sooner.
     fn last_turn_without_place(&self) -> Option<String> {
         let at = self.coil.without_place_from()?;
         // (down, and to half a tenth: wire that is not laid there need not be judged there)
         let ends = (20.0 * at as f64 / STATIONS_PER_TURN as f64).floor() / 20.0;
+        let remedy = match self.coil.rides_up_before(at) {
+            true => String::new(),
+            false => format!(". With spindle.turns = {ends:.2} the coil ends before"),
+        };
         Some(format!(
-            "From {} on the last turn lies on the turn before, which has crossed into its place; no defect within half a turn of the end. With spindle.turns = {ends:.2} the coil ends before",
+            "From {} on the last turn lies on the turn before, which has crossed into its place; no defect within half a turn of the end{remedy}",
             OnTurn::of_station(at)
         ))
     }

@@ -175,6 +175,38 @@ fn the_end_of_a_coil_whose_place_is_taken_is_no_overlap() {
     assert_eq!(found(0.9), (false, None));
 }
 
+/// Of a coil that rode up turns before its end too, the turns to end with were told, and did not mend it.
+#[test]
+fn a_coil_that_rides_up_sooner_does_not_end_better() {
+    let spec = CoilSpec {
+        full: Some(TURNS * TAU),
+        planned: Some(TURNS * TAU),
+        ..spec()
+    };
+    let leans = |turns: f64| match (0.55..0.9).contains(&turns.fract()) {
+        true => 0.4,
+        false => 0.0,
+    };
+    let mut nodes = leaning(leans);
+    let per_turn = nodes.len() as f64 / (2.0 * TURNS - 2.2);
+    nodes.truncate((per_turn * (TURNS - 0.12)) as usize);
+    for rides in [false, true] {
+        if rides {
+            // a part of turn 3, on turn 2
+            for node in &mut nodes[(2.3 * per_turn) as usize..(2.5 * per_turn) as usize] {
+                let out = 1.0 + D / node.position.x.hypot(node.position.z);
+                node.position.x *= out;
+                node.position.z *= out;
+                node.position.y -= D;
+                node.height += D;
+            }
+        }
+        let coil = wound(spec.clone(), &nodes);
+        let at = coil.without_place_from().expect("no place at the end");
+        assert_eq!(coil.rides_up_before(at), rides, "{:?}", coil.defects());
+    }
+}
+
 #[test]
 fn a_climb_that_is_taken_back_was_never_known() {
     taken_back_is_never_known(&slow_climb());
