@@ -210,7 +210,7 @@ impl Winding {
         ))
     }
 
-    /// Where wire first leans on the edge of a rim, in words: beside the flange, and deeper in it than wire of that width lies beside its face.
+    /// Where wire first leans on the edge of a rim, in words: higher than the flange, and farther out than wire that lies beside it.
     fn wire_against_a_rim(&self) -> Option<String> {
         let d = self.scene.wire.diameter;
         let face = 0.5 * (self.scene.core.flange()?.inner_distance - d) + RIM * d;
