@@ -80,7 +80,7 @@ def read_curves(path):
     for column, values in numbers.items():
         quantity, _, unit = column.rpartition("_")
         if quantity not in UNITS:
-            known = ", ".join(f"{name}_{next(iter(units))}" for name, units in UNITS.items())
+            known = ", ".join(f"{name}_{'|'.join(units)}" for name, units in UNITS.items())
             raise Mistake(f"{path}: column {column} is none of {known}")
         if unit not in UNITS[quantity]:
             raise Mistake(f"{path}: column {column} has the unit {unit}; {quantity} takes {', '.join(UNITS[quantity])}")

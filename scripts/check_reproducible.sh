@@ -9,7 +9,8 @@ cd "$(dirname "$0")/.."
 target=$(cd "${CARGO_TARGET_DIR:-target}" && pwd)
 first=$target/fmu/CoilWinding.fmu
 
-copy=$(mktemp -d "${TMPDIR:-/tmp}/coilwind-elsewhere.XXXXXX")
+# (a folder for passing files may be small)
+copy=$(mktemp -d "$target/elsewhere.XXXXXX")
 trap 'rm -rf "$copy"' EXIT
 # What is tracked, as it lies here, changes that are not committed included.
 git ls-files -z | xargs -0 cp --parents --target-directory="$copy"

@@ -40,7 +40,7 @@ from failure import Interrupted, Mistake, Stuck, same_command, told
 from progress import Progress
 from sweep_ledger import ROWS, TIMES, Ledger
 
-# Spread of the members' nozzle distance about the scene's, wire diameters, as in `coilwind sweep`.
+# Spread of the members' nozzle distance about the scene's, outer diameters of the wire, as in `coilwind sweep`.
 SPREAD = 0.5
 # Deaths of its worker that a run survives.
 DEATHS = 10
@@ -137,7 +137,8 @@ def wind(fmu, task):
             slave.setReal(inputs, motion[0][1:])
             slave.enterInitializationMode()
             if task["offset"]:
-                slave.setReal([reference["nozzle.distance"]], [get("nozzle.distance") + task["offset"] * get("wire.diameter")])
+                outer = max(get("wire.diameter"), get("wire.enamelled_diameter"))
+                slave.setReal([reference["nozzle.distance"]], [get("nozzle.distance") + task["offset"] * outer])
             slave.exitInitializationMode()
             started = True
             for row, after in zip(motion, motion[1:]):

@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
 # Every check, or the stages that are named.
 #
-#     scripts/test.sh [STAGE...]
+#     scripts/test.sh [--lean] [STAGE...]
 #
 #     lint    format, lints of every target and set of features, layout of the sources, documentation of the code
 #     lab     exact answers, random scenes, benchmarks at their coarsest, results as recorded
 #     docs    generated pages, the site, reports in a browser, scripts around runs, what pages tell a reader to type
 #     rust    tests of the library, of the command and of the packages beside it
 #     fmu     the FMU, the portable FMU, its validation, tests that drive it
+#
+# --lean deletes what no later stage needs as it goes, 4 GB in all, for machines with little room on their disk.
 #
 # Without a stage all run, in this order. Needs Rust, a C linker and Python 3.10 or later (the benchmarks 3.11). Parts
 # that need more say SKIPPED, with what is missing, where it is not there; scripts/install_tools.sh installs it. Stops at
@@ -33,6 +35,11 @@ case ${1-} in
         exit
         ;;
 esac
+lean=false
+if [ "${1-}" = --lean ]; then
+    lean=true
+    shift
+fi
 for word in "$@"; do
     if [ -z "$(minutes_of "$word")" ]; then
         echo "test.sh: unknown stage $word (there are ${stages[*]})" >&2
@@ -93,6 +100,20 @@ build_fmu() {
     step FMU
     scripts/build_fmu.sh
     fmu_built=true
+}
+
+# Files in target/ that a stage leaves and no later one needs.
+free_after() {
+    if ! $lean; then return; fi
+    local left=
+    case $1 in
+        lint) left="doc" ;;
+        lab) left="venv-bench labelled stress endurance" ;;
+        docs) left="venv-docs venv-render venv-study node-docs node-report site report pages" ;;
+        rust) left="debug" ;;
+    esac
+    local name
+    for name in $left; do rm -rf "${target:?}/$name"; done
 }
 
 lint() {
@@ -256,4 +277,5 @@ printf '  %-5s %2d min\n' sum $all
 for stage in "${chosen[@]}"; do
     printf '\n==== %s\n' "$stage"
     $stage
+    free_after "$stage"
 done

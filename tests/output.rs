@@ -124,6 +124,7 @@ fn coil(wire: &Centreline) -> Coil {
         jumps: [].into(),
         full: None,
         planned: None,
+        layer_starts: [].into(),
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,

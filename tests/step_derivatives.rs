@@ -133,6 +133,29 @@ fn derivatives_are_not_those_of_the_solvers_next_step() {
     assert!(2 * extremes > all, "{extremes} of {all}");
 }
 
+/// From the third small change of the set tension on the solver keeps its step. So did the steps of a difference, and a controller's gain
+/// was 0.
+#[test]
+fn a_set_tension_that_is_shaken_little_has_a_gain() {
+    let (speed, step) = (100.0, 1e-4);
+    let mut sim = fig8();
+    let mut inputs = sim.inputs();
+    let mut asked = 0;
+    while sim.time() < 0.04 {
+        inputs.spindle_speed = speed * (sim.time() / 0.01).min(1.0);
+        inputs.nozzle_position += PITCH * inputs.spindle_speed * step;
+        inputs.tension_setpoint = 15.0 + 0.3 * (400.0 * sim.time()).sin();
+        if sim.time() > 0.02 {
+            let got = sim.step_derivative(inputs, Inputs::HELD, step, along(2, 1.0));
+            let gain = got.unwrap().slopes.wire_tension;
+            assert!(gain > 0.05, "{gain} at {} s", sim.time());
+            asked += 1;
+        }
+        sim.advance(inputs, step).unwrap();
+    }
+    assert!(asked > 100, "{asked}");
+}
+
 /// What follows from the inputs of the start at once has the derivative of that.
 #[test]
 fn derivatives_at_the_start_are_those_of_the_start() {

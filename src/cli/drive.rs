@@ -10,6 +10,9 @@ use coilwind::simulation::{MotionProfile, OTHER_WAY, SimError, Simulation};
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
+/// Most communication steps of a run. Chosen: a computer takes a day for as many at the least, and their table is half a terabyte.
+const MOST_STEPS: f64 = 1e9;
+
 /// Where the motion of a run comes from, as it was asked for.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Motion {
@@ -114,6 +117,9 @@ impl Drive {
         // (a step that is as long but for rounding is none longer)
         if *step > end * (1.0 + 1e-9) {
             return Err(too_long(*step, end));
+        }
+        if end / step > MOST_STEPS {
+            return Err(too_short(*step, end));
         }
         let held = signals.before(0.0, scene.start_inputs());
         Ok(Self::Signals {
@@ -264,6 +270,17 @@ fn too_long(step: f64, end: f64) -> Failure {
     Failure::Signals {
         file: format!("--step {step}"),
         reason: format!("longer than the run; allowed: up to its length, {end} s"),
+    }
+}
+
+fn too_short(step: f64, end: f64) -> Failure {
+    Failure::Signals {
+        file: format!("--step {step}"),
+        reason: format!(
+            "{:.1e} steps, more than a run can have; allowed: {:.1e} s and more",
+            end / step,
+            end / MOST_STEPS
+        ),
     }
 }
 

@@ -22,9 +22,10 @@ pub struct Flanges {
 }
 
 impl Flanges {
-    /// Way along y from `p` (m) to the inner face beside it, m, negative towards -y; none above the rim.
-    pub fn beside(&self, p: V3) -> Option<f64> {
-        let below = self.core.outline(p).distance < self.height;
+    /// Way along y from the middle `p` of wire of this `radius` to the inner face beside it, all in m, negative towards -y; none where all
+    /// of the wire lies above the rim.
+    pub fn beside(&self, p: V3, radius: f64) -> Option<f64> {
+        let below = self.core.outline(p).distance - radius < self.height;
         below.then(|| (self.half_inner - p.y.abs()).copysign(p.y))
     }
 

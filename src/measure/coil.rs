@@ -6,6 +6,7 @@ use super::defect::{BulgeLimit, DefectLimits, FALLBACK_BULGE, MEASURED};
 use super::node::{Node, SettledNode};
 use super::onset::Onset;
 use super::passes::Passes;
+use super::planned_start::LayerStart;
 use super::plumb::Plumb;
 use super::profile::Profile;
 use super::row::{Row, RowPlace};
@@ -48,6 +49,8 @@ pub struct CoilSpec {
     pub full: Option<f64>,
     /// winding angle at which the planned turns end, rad; none: not known
     pub planned: Option<f64>,
+    /// where each planned layer begins between flanges; none where that is not known
+    pub layer_starts: Arc<[LayerStart]>,
     /// crossover of each turn; none: wire is not meant to cross in steps, or it is not known where
     pub crossover: Option<Crossover>,
     /// polar angle of the clamp, rad
@@ -87,6 +90,12 @@ pub(crate) struct Record {
     pub(crate) other_layer: u32,
     /// last station up to here at which wire crosses to its next place
     pub(crate) last_crossing: Option<usize>,
+    /// +1 where the flange beside it lies towards +y, -1 towards -y, 0 without one
+    pub(super) flange_side: f64,
+    /// it lies on the climb of its own row, which it crosses
+    pub(super) on_climb: bool,
+    /// a place left empty beside the flange where its layer begins: stations on end, and the least room there beyond the plan, m
+    pub(super) left_empty: (u32, f64),
     /// it is on its way to the next row, or is pressed up beside a flange
     pub(super) rises: bool,
 }
@@ -415,6 +424,7 @@ impl Coil {
         let (number, pass) = self.passes.at(angle);
         let last_crossing = self.last_crossing(position.y);
         let in_crossover = self.is_in_crossover(last_crossing);
+        let flange = segment.flange_face().map(|face| face - position.y);
         let at = RowPlace {
             angle,
             bucket,
@@ -451,14 +461,12 @@ impl Coil {
             bulge_excess: self.over_rest(bulge, (angle, position.y), &support, wire.tension),
             neighbour,
             overlap_depth: 0.0,
-            flange_gap: segment
-                .flange_face()
-                .map(|face| (face - position.y).abs() - 0.5 * self.spec.diameter),
+            flange_gap: flange.map(|way| way.abs() - 0.5 * self.spec.diameter),
             layer,
             pass: number,
             crosses,
             out_of_groove: support.stands_on_wire && self.has_grooves_below(number) && !crosses,
-            measured: self.is_free_of_clamp(angle) && !steps_up && !self.has_no_place(angle),
+            measured: self.is_free_of_clamp(angle) && !steps_up && !self.has_no_place(angle, pass),
         };
         station.overlap_depth = self.overlap_depth(&station, stands_off);
         let support = match lifts {
@@ -466,6 +474,7 @@ impl Coil {
             false => support,
         };
         let (strain, tension) = (wire.plastic_strain, wire.tension);
+        let left_empty = self.left_empty(&station, row);
         let signs = self.signs(&station, row, &support, bucket, strain, tension);
         let beneath = self.buckets.insert(bucket, index);
         self.records.push(self.judge(Record {
@@ -482,6 +491,9 @@ impl Coil {
             beneath,
             other_layer,
             last_crossing,
+            flange_side: flange.map_or(0.0, f64::signum),
+            on_climb: support.on_climb,
+            left_empty,
             rises: rises && self.may_climb(layer, angle),
         }));
     }

@@ -3,28 +3,31 @@
 use super::STATIONS_PER_TURN;
 use super::coil::Coil;
 use super::defect::DefectKind;
+use super::passes::Pass;
 use super::runs::{SHORT_RUN, stations_for};
-use super::support::{NEXT_LAYER, PLACE};
+use super::support::{BELOW, NEXT_LAYER, PLACE};
 use std::f64::consts::TAU;
 
 /// Last part of the planned turns in which wire without a place is the end of the coil, rad. Chosen: half a turn, as for a double turn.
 const END: f64 = 0.5 * TAU;
 
 impl Coil {
-    /// Whether the next station lies at the end of the coil, where the turn before it has crossed into its place beside a flange. In a window
-    /// of one turn each lies on the one before by plan.
-    pub(super) fn has_no_place(&self, angle: f64) -> bool {
+    /// Whether the next station, of this pass, lies at the end of the coil, where the turn before it has crossed into its place beside a
+    /// flange. In a window of one turn each lies on the one before by plan.
+    pub(super) fn has_no_place(&self, angle: f64, pass: Pass) -> bool {
         let is_end = |end: f64| (end - END..=end).contains(&angle);
         let before = self.records.len().checked_sub(STATIONS_PER_TURN);
         self.spec.planned.is_some_and(is_end)
             && !self.has_planned_passes()
-            && before.is_some_and(|before| self.leaves_no_place(before))
+            && before.is_some_and(|before| self.leaves_no_place(before, pass))
     }
 
-    /// Whether a turn leaves none beside it at a flange.
-    fn leaves_no_place(&self, station: usize) -> bool {
-        let room = self.records[station].station.flange_gap;
-        room.is_some_and(|room| room < PLACE * self.spec.diameter)
+    /// Whether a turn leaves none to the next one of a pass, between it and the flange that the pass goes to.
+    fn leaves_no_place(&self, station: usize, pass: Pass) -> bool {
+        let record = &self.records[station];
+        let room = record.station.flange_gap;
+        record.flange_side == pass.sense
+            && room.is_some_and(|room| room < PLACE * self.spec.diameter)
     }
 
     /// Station from which on the last planned turn lies on the turn before, which has left it no place. None where it has one.
@@ -36,9 +39,12 @@ impl Coil {
         let from = end.checked_sub(STATIONS_PER_TURN)?;
         let stands = |index: &usize| {
             index.checked_sub(STATIONS_PER_TURN).is_some_and(|before| {
-                let height = |index: usize| self.records[index].station.height;
-                let rise = height(*index) - height(before);
-                self.leaves_no_place(before) && rise >= NEXT_LAYER * self.spec.diameter
+                let [last, under] = [*index, before].map(|at| &self.records[at].station);
+                let (_, pass) = self.passes.at(last.angle);
+                let d = self.spec.diameter;
+                self.leaves_no_place(before, pass)
+                    && last.height - under.height >= NEXT_LAYER * d
+                    && (last.position.y - under.position.y).abs() <= BELOW * d
             })
         };
         let least = stations_for(SHORT_RUN) as usize;

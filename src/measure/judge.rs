@@ -137,12 +137,7 @@ impl Coil {
                 SHORT_RUN,
             ),
             DefectKind::Gap => (
-                measured(
-                    station
-                        .neighbour
-                        .filter(|_| !station.crosses)
-                        .map(|n| n.gap),
-                ),
+                measured(self.gap_at(record).filter(|_| !station.crosses)),
                 limits.gap * d,
                 limits.gap_fraction,
             ),

@@ -164,9 +164,10 @@ impl Coil {
 
     /// How large a defect is that shows at `index`, m.
     fn size_at(&self, kind: DefectKind, index: usize) -> Option<f64> {
-        let Record { station, signs, .. } = &self.records[index];
+        let record = &self.records[index];
+        let Record { station, signs, .. } = record;
         match kind {
-            DefectKind::Gap => station.neighbour.map(|n| n.gap),
+            DefectKind::Gap => self.gap_at(record),
             DefectKind::Overlap => Some(station.overlap_depth),
             DefectKind::DoubleTurn => signs.rise,
             DefectKind::SkippedGroove => signs.empty_groove,

@@ -9,7 +9,7 @@ use super::row::{Row, RowPlace};
 
 /// Axial distance up to which wire of an earlier row lies below a wire, diameters: cos 30 degrees, the largest at
 /// which wire that rests on it stands half a diameter above it.
-const BELOW: f64 = 0.866_025_403_784_438_6;
+pub(super) const BELOW: f64 = 0.866_025_403_784_438_6;
 
 /// The same for wire of the same row, which a wire can only have climbed on, diameters. In a groove of its own row, between two
 /// turns of it, a wire is as far from them as that is wide.
@@ -42,6 +42,8 @@ pub(crate) struct Support {
     pub(crate) row: Option<u32>,
     /// station of that wire
     pub(crate) below: Option<usize>,
+    /// it would rest on the climb of its own row, which it crosses
+    pub(super) on_climb: bool,
     /// rise over wire of its own row that it has climbed on, m
     pub(crate) own_row: Option<f64>,
     /// the same as `level` where wire of its own row and a flange hold it between them as well, m
@@ -179,12 +181,19 @@ impl Coil {
             layer: 1,
             row: None,
             below: None,
+            on_climb: false,
             own_row: None,
             held: 0.0,
             highest: 0.0,
         };
         // layers of the highest wire of its own row below it, towards -y and +y
         let mut groove = [0; 2];
+        // wire that has crossed the climb of its own row comes down from it, on a long face for longer than that counts as one
+        let last = self.records.last();
+        let comes_down = last.is_some_and(|last| last.on_climb && height < last.station.height);
+        let climb = if comes_down { 2.0 } else { 1.0 } * STEP_UP;
+        // height at which wire of earlier rows alone carries it, m
+        let mut on_earlier = f64::NEG_INFINITY;
         for bin in bucket.1 - 1..=bucket.1 + 1 {
             let mut next = self.buckets.get((bucket.0, bin));
             while let Some(index) = next {
@@ -196,7 +205,7 @@ impl Coil {
                 let (aside, rise) = ((y - lower.y).abs() / d, height - lower.height);
                 let earlier = of.number < row;
                 let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
-                let climbing = of.number > 1 && station.angle < of.from + STEP_UP;
+                let climbing = of.number > 1 && station.angle < of.from + climb;
                 // what lies along the climb of its own row, and not across it, has ridden up
                 let crossed = climbing && (at.crosses || aside >= ON_WIRE);
                 let carries = earlier || (one_turn_back && crossed);
@@ -223,7 +232,13 @@ impl Coil {
                     let side = &mut groove[usize::from(lower.y > y)];
                     *side = station.layer.max(*side);
                 }
-                let on = (aside <= BELOW).then(|| lower.height + d * (1.0 - aside * aside).sqrt());
+                // it leans on the climb from the side as long as it touches it
+                let leans = comes_down && !earlier && carries;
+                let reach = if leans { 1.0 } else { BELOW };
+                let on = (aside <= reach).then(|| lower.height + d * (1.0 - aside * aside).sqrt());
+                if let (true, Some(level)) = (earlier, on) {
+                    on_earlier = on_earlier.max(level);
+                }
                 let carried = on.filter(|_| carries);
                 // what a flange and another wire hold between them cannot drop, whichever row that is of
                 let held = carried.or(wedge.map(|(level, _)| level));
@@ -242,6 +257,7 @@ impl Coil {
                     support.level = level;
                     support.is_wire = true;
                     support.stands_on_wire = aside < ON_WIRE;
+                    support.on_climb = !earlier && carries;
                     support.below = Some(index);
                     support.row = (of.number < row || climbing).then_some(of.number);
                 }
@@ -249,6 +265,10 @@ impl Coil {
         }
         if groove[0].min(groove[1]) > 0 {
             support.layer = support.layer.max(groove[0].min(groove[1]) + 1);
+        }
+        // beside a turn that has sunk into a hole, wire in its own groove stands high over that turn, and not on it
+        if height - on_earlier < self.spec.limits.overlap_height * d {
+            support.own_row = None;
         }
         support
     }

@@ -20,6 +20,7 @@ mod follow_on;
 mod foreign_table;
 mod impossible;
 mod key;
+mod layer_starts;
 mod material;
 mod nozzle_body;
 mod nozzle_law;

@@ -1,5 +1,6 @@
 //! Where the nozzle stands along the core axis at every angle of the spindle, as straight pieces over the angle.
 
+use crate::measure::LayerStart;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -31,6 +32,8 @@ pub struct NozzleLaw {
     pitch: Option<f64>,
     /// angle in which each turn steps to its next place, rad, where it does so in steps
     crossover: Option<f64>,
+    /// where each layer begins between flanges, where it is known
+    layer_starts: Arc<[LayerStart]>,
 }
 
 impl NozzleLaw {
@@ -49,6 +52,7 @@ impl NozzleLaw {
             held: None,
             pitch: None,
             crossover: None,
+            layer_starts: Arc::new([]),
         }
     }
 
@@ -78,6 +82,7 @@ impl NozzleLaw {
             held: None,
             pitch: None,
             crossover: None,
+            layer_starts: Arc::new([]),
         }
     }
 
@@ -104,6 +109,7 @@ impl NozzleLaw {
             held: self.held,
             pitch: self.pitch,
             crossover: self.crossover,
+            layer_starts: self.layer_starts,
         }
     }
 
@@ -136,6 +142,19 @@ impl NozzleLaw {
             crossover: Some(angle),
             ..self.with_pitch(pitch)
         }
+    }
+
+    /// The same law, with where each layer begins between flanges.
+    pub(super) fn with_layer_starts(self, starts: Vec<LayerStart>) -> Self {
+        Self {
+            layer_starts: starts.into(),
+            ..self
+        }
+    }
+
+    /// Where each layer begins between flanges; none where it is not known.
+    pub fn layer_starts(&self) -> &[LayerStart] {
+        &self.layer_starts
     }
 
     /// Way from turn to turn of a layer, m; none where layers are not planned, or by the points of a table.

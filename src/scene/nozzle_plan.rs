@@ -22,24 +22,24 @@ const MOST_TURNS: f64 = 1e5;
 
 /// A layer as the nozzle winds it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Layer {
+pub(super) struct Layer {
     /// place of its first turn, m
-    first: f64,
+    pub(super) first: f64,
     /// place of its last turn, m
-    last: f64,
+    pub(super) last: f64,
     /// its turns
-    turns: u32,
+    pub(super) turns: u32,
     /// direction along y
-    sense: f64,
+    pub(super) sense: f64,
 }
 
 /// Turns side by side in layers.
 #[derive(Clone, Debug, PartialEq)]
-struct Layers {
+pub(super) struct Layers {
     /// from the core outwards, one at least
-    layers: Vec<Layer>,
+    pub(super) layers: Vec<Layer>,
     /// distance of neighbouring turns, m
-    pitch: f64,
+    pub(super) pitch: f64,
 }
 
 impl Layers {
@@ -165,6 +165,7 @@ impl SceneSettings {
                     _ => {
                         let stacked = self.layers(diameter, extent, problems)?;
                         law.with_layers(&stacked.jumps(0.0, 0.0), stacked.turns(), stacked.turns())
+                            .with_layer_starts(stacked.starts(diameter, extent, true))
                     }
                 }
             }
@@ -176,12 +177,14 @@ impl SceneSettings {
                     true => problems.note(self.led(&layers, wire?, extent))?,
                     false => self.orthocyclic(&layers),
                 };
-                return Some(self.for_run(law));
+                let starts = layers.starts(diameter, extent, false);
+                return Some(self.for_run(law.with_layer_starts(starts)));
             }
             "helical" => {
                 let layers = self.layers(diameter, extent, problems)?;
                 self.check_way(layers.range(), Some(layers.pitch), extent, of_way);
-                return Some(self.for_run(self.helical(&layers)));
+                let starts = layers.starts(diameter, extent, false);
+                return Some(self.for_run(self.helical(&layers).with_layer_starts(starts)));
             }
             // without inputs the nozzle goes with the core's angle
             _ => {
@@ -224,7 +227,12 @@ impl SceneSettings {
     }
 
     /// The layers that the nozzle winds, from the window between the flanges.
-    fn layers(&self, d: f64, extent: &Extent, problems: &mut Problems) -> Option<Layers> {
+    pub(super) fn layers(
+        &self,
+        d: f64,
+        extent: &Extent,
+        problems: &mut Problems,
+    ) -> Option<Layers> {
         let w = &self.winding;
         let distance = |[low, high]: [f64; 2]| high - low;
         // A table says itself where the nozzle goes; the plan then only says where wire is meant to climb.
@@ -437,7 +445,8 @@ impl SceneSettings {
                         false => dwell,
                     };
                     begun = go_to(next.first - lead, stands);
-                    jumps.push([from, begun]);
+                    // (a single turn climbs when it has come round)
+                    jumps.push([if layer.turns == 1 { begun } else { from }, begun]);
                 }
                 // the last turn has to be laid as well
                 None => drop(go_to(layer.last + lead, 1.0)),

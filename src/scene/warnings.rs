@@ -2,7 +2,7 @@
 
 use super::error::Warning;
 use super::extent::{Extent, ROUNDING};
-use super::impossible::si;
+use super::impossible::{si, si_down};
 use super::without_effect::Reader;
 use super::{Core, Integrator, NozzleLaw, Solver, Window};
 use crate::geometry::{Crossing, Place};
@@ -225,6 +225,13 @@ impl SceneSettings {
             );
             warn(key, message);
         }
+        if let Some((room, turns)) = self.place_left(wire.diameter, extent) {
+            let message = format!(
+                "the last turn of layer 1 leaves {} m to its flange, and the first of layer 2 falls in there; plan as many turns as fit, {turns}, or bring the flanges nearer",
+                si(room)
+            );
+            warn("winding.turns_per_layer", message);
+        }
         // what the nozzle takes for its way through the layers
         let planned = (law.travel_ends() + self.traverse.advance) / TAU;
         if by_law && self.winds_layers() {
@@ -309,6 +316,19 @@ impl SceneSettings {
                 let message = format!(
                     "coarser than the tightest bend of the wire, radius {} m",
                     si(bend)
+                );
+                warn("solver.spacing_near", message);
+            }
+            let (sag, least) = (
+                near * near / (8.0 * bend),
+                self.defects.loose_height * wire.diameter,
+            );
+            if near <= bend && sag > least {
+                let message = format!(
+                    "wire between nodes so far apart cuts its tightest bend, radius {} m, by {} m, which is judged as wire that stands off; at most {} m",
+                    si(bend),
+                    si(sag),
+                    si_down((8.0 * bend * least).sqrt())
                 );
                 warn("solver.spacing_near", message);
             }

@@ -1,6 +1,7 @@
 //! Faults of the wire itself: slack and break, kept as defects with their place, and the verdict on the run.
 
 use super::Winding;
+use super::run_state::SlackSince;
 use crate::feed::FeedSpec;
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
 use crate::measure::{
@@ -27,14 +28,13 @@ impl Winding {
         let t = self.wire_tension();
         self.run.outputs.meet_tension(t);
         self.run.outputs.meet_depth(self.sys.state.depth);
-        let now = (self.sys.state.spindle.angle, self.sys.state.time);
         self.run.slack_since = match t < self.slack_tension() {
-            true => self.run.slack_since.or(Some(now)),
+            true => self.run.slack_since.or_else(|| Some(self.goes_slack())),
             false => None,
         };
-        let slack = self.run.slack_since.filter(|since| self.lasts(*since));
-        if let Some((_, since)) = slack {
-            self.note_slack(since);
+        let slack = self.run.slack_since.filter(|since| self.lasts(since));
+        if let Some(since) = slack {
+            self.note_slack(&since);
         } else if self.run.slack_at.is_some_and(|at| !self.is_same_slack(at)) {
             // the core may come back to where it was
             self.run.slack_at = None;
@@ -49,15 +49,26 @@ impl Winding {
         weight * 0.5 * self.scene.nozzle.distance
     }
 
-    /// Whether wire that lost its tension at this angle of the core, rad, and time, s, is slack by now.
+    /// The wire as it loses its tension. What has been laid may spring off before that counts, and is not where it was then.
+    fn goes_slack(&self) -> SlackSince {
+        let (wound, place) = self.place_of(self.lift_off());
+        SlackSince {
+            core: self.sys.state.spindle.angle,
+            time: self.sys.state.time,
+            wound,
+            place: place.into(),
+        }
+    }
+
+    /// Whether wire that lost its tension then is slack by now.
     ///
     /// It is once the tensioner on its line could have followed, after a radian of its swing, or once as much wire is laid so as any
     /// defect takes. A turn that snaps into its groove takes the tension away for less.
-    fn lasts(&self, (core, since): (f64, f64)) -> bool {
+    fn lasts(&self, since: &SlackSince) -> bool {
         let radian = |feed: FeedSpec| (feed.mass / feed.line_stiffness).sqrt();
         let state = &self.sys.state;
-        (state.spindle.angle - core).abs() >= SLACK_RUN
-            || state.time - since >= self.sys.model.feed.map_or(0.0, radian)
+        (state.spindle.angle - since.core).abs() >= SLACK_RUN
+            || state.time - since.time >= self.sys.model.feed.map_or(0.0, radian)
     }
 
     /// Whether wire that is slack now is so still where it was slack with the core at this angle, rad.
@@ -65,8 +76,8 @@ impl Winding {
         (self.sys.state.spindle.angle - core).abs() < SAME_SLACK
     }
 
-    /// Keeps slack that began at the time `since`, s.
-    fn note_slack(&mut self, since: f64) {
+    /// Keeps slack that began then.
+    fn note_slack(&mut self, since: &SlackSince) {
         let (core, now) = (self.sys.state.spindle.angle, self.sys.state.time);
         let last = self.run.slack_at.replace(core);
         let slack = |fault: &&mut Defect| fault.kind == DefectKind::Slack;
@@ -76,9 +87,9 @@ impl Winding {
             fault.until_s = Some(now);
             return;
         }
-        self.note_fault(DefectKind::Slack, self.lift_off());
+        self.keep_fault(DefectKind::Slack, since.wound, since.place.into());
         if let Some(fault) = self.run.faults.last_mut() {
-            fault.time_s = since;
+            fault.time_s = since.time;
         }
         self.report(
             EventKind::Slack,
@@ -145,12 +156,7 @@ impl Winding {
         (angle, spin.to_core(self.sys.state.rod.x[node]))
     }
 
-    /// Keeps a fault of the wire at a live node.
-    fn note_fault(&mut self, kind: DefectKind, node: usize) {
-        let (angle, place) = self.place_of(node);
-        self.keep_fault(kind, angle, place);
-    }
-
+    /// Keeps a fault of the wire at this angle along it, rad, and place, m.
     fn keep_fault(&mut self, kind: DefectKind, angle: f64, place: V3) {
         let angle = angle.max(0.0);
         let now = self.sys.state.time;

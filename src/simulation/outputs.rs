@@ -87,11 +87,11 @@ impl Winding {
         }
     }
 
-    /// Way along y from a place in the core frame, m, to the flange beside it, m, negative towards -y; none where there is none.
+    /// Way along y from wire at a place in the core frame, m, to the flange beside it, m, negative towards -y; none where there is none.
     pub(super) fn flange_beside(&self, place: V3) -> Option<f64> {
         let line = self.sys.model.contact.as_line();
         match line.and_then(|line| line.flanges.as_ref()) {
-            Some(flanges) => flanges.beside(place),
+            Some(flanges) => flanges.beside(place, self.scene.wire.radius()),
             None => {
                 let surface = self.sys.model.core.as_ref();
                 let surface = surface.filter(|_| self.scene.core.may_have_flanges());

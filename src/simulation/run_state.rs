@@ -7,6 +7,19 @@ use crate::measure::{Defect, DefectKind};
 use crate::signals::{Event, Outputs};
 use serde::{Deserialize, Serialize};
 
+/// Where the line lost its tension.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SlackSince {
+    /// angle of the core, rad
+    pub(super) core: f64,
+    /// s
+    pub(super) time: f64,
+    /// winding angle from the clamp up to which wire lay on the coil, rad, ...
+    pub(super) wound: f64,
+    /// ... and its place there, core frame, m
+    pub(super) place: [f64; 3],
+}
+
 /// State of a run but for that of wire, coil and method; a saved state holds it as it is.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct RunState {
@@ -46,8 +59,8 @@ pub(super) struct RunState {
     /// outputs have told so
     pub(super) told_over: bool,
     pub(super) was_slack: bool,
-    /// angle of the core, rad, and time, s, from which on the line has had no tension
-    pub(super) slack_since: Option<(f64, f64)>,
+    /// from where on the line has had no tension
+    pub(super) slack_since: Option<SlackSince>,
     /// slack and breaks, in the order of their times
     pub(super) faults: Vec<Defect>,
     /// turns at rest that have been told

@@ -38,6 +38,10 @@ const MASSLESS: f64 = 1e-6;
 /// takes.
 const STEPS: [f64; 3] = [1e-9, 1e-5, 0.1];
 
+/// Turns from which on a run goes on after its planned layers. Chosen: a turn. Wire has to be wound after the last one until that comes
+/// to rest, half a turn or more.
+const WOUND_AFTER: f64 = 1.0;
+
 /// Straight wire before the first step: where it is clamped, where it leaves the nozzle, and how the core is turned.
 struct FirstSpan {
     /// lab frame, m
@@ -111,7 +115,8 @@ fn wound_from(
         tension,
         jumps: scene.nozzle_law.jumps().into(),
         full: scene.nozzle_law.full(),
-        planned: scene.nozzle_law.held().map(|turns| turns * TAU),
+        planned: planned_end(scene),
+        layer_starts: scene.nozzle_law.layer_starts().into(),
         crossover: (scene.nozzle_law.crossover()).map(|[step, angle]| Crossover { step, angle }),
         start_angle: polar_angle(span.clamp),
         direction: span.direction,
@@ -229,6 +234,16 @@ fn yardstick_tension(scene: &Scene, inputs: &Inputs) -> f64 {
         start if start > 0.0 && !scene.tension_given => start,
         start => start.max(scene.tensioner.tension),
     }
+}
+
+/// Winding angle at which the planned layers end, rad, where the run ends with them: what is wound after them lies on the last one.
+fn planned_end(scene: &Scene) -> Option<f64> {
+    let ends_with = |turns: &f64| scene.spindle.turns < turns + WOUND_AFTER;
+    scene
+        .nozzle_law
+        .held()
+        .filter(ends_with)
+        .map(|turns| turns * TAU)
 }
 
 /// Polar angle of the corner between the faces on +x and +z, rad.

@@ -101,6 +101,8 @@ impl Simulation {
     ) -> Result<Derivative, SimError> {
         let outcome = |by: f64| {
             let mut run = self.clone();
+            // left to the next step of the method, a change would do nothing in this one
+            run.talk.heed_small_changes();
             run.advance_ramped(inputs.after(&along, by), rates, dt)?;
             Ok(Outcome::of(&run))
         };

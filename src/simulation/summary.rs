@@ -214,7 +214,7 @@ impl Winding {
     fn wire_against_a_rim(&self) -> Option<String> {
         let d = self.scene.wire.diameter;
         let face = 0.5 * (self.scene.core.flange()?.inner_distance - d) + RIM * d;
-        let leans = |s: &Station| s.flange_gap.is_none() && s.position.y.abs() > face;
+        let leans = |s: &Station| s.position.y.abs() > face;
         let at = self.coil.stations().position(leans)?;
         Some(format!(
             "Wire lies on the edge of a flange's rim from {} on, which is lower than the coil: raise core.flange.height",

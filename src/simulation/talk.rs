@@ -69,6 +69,11 @@ impl Talk {
         self.small >= AGAIN + self.doubt
     }
 
+    /// Forgets how often the set tension has changed by little: the next change acts at once.
+    pub(super) fn heed_small_changes(&mut self) {
+        self.small = 0;
+    }
+
     /// Takes notice of a change of the inputs that was small or not, while a step was `ahead` or none. Whether it may be left to the
     /// next step.
     pub(super) fn may_wait(&mut self, small: bool, ahead: bool) -> bool {

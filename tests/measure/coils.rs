@@ -23,6 +23,7 @@ pub(crate) fn spec() -> CoilSpec {
         jumps: [].into(),
         full: None,
         planned: None,
+        layer_starts: [].into(),
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,

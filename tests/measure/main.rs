@@ -4,6 +4,7 @@ mod changes;
 mod coils;
 mod crossovers;
 mod defects;
+mod empty_place;
 mod layers;
 mod on_flats;
 mod pitch;

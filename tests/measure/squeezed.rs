@@ -175,6 +175,31 @@ fn the_end_of_a_coil_whose_place_is_taken_is_no_overlap() {
     assert_eq!(found(0.9), (false, None));
 }
 
+/// In a window of two turns the first lies beside the flange that the layer goes away from, and leaves the second its place: all of that
+/// was taken for the end of a coil without a place, and a gap of it was not judged.
+#[test]
+fn a_turn_beside_the_other_flange_leaves_a_place() {
+    let [gap, turns] = [0.4 * D, 2.0];
+    let mut nodes = on_cylinder(turns, 1.0, |angle| match angle / TAU {
+        turned if turned < 0.9 => (0.0, 0.0),
+        turned if turned < 1.0 => ((turned - 0.9) / 0.1 * (D + gap), 0.0),
+        _ => (D + gap, 0.0),
+    });
+    for node in &mut nodes {
+        let ways = [-0.5 * D, 1.5 * D + gap].map(|face| face - node.position.y);
+        node.flange = Some(if ways[1] < -ways[0] { ways[1] } else { ways[0] });
+    }
+    let spec = CoilSpec {
+        full: Some(turns * TAU),
+        planned: Some(turns * TAU),
+        ..spec()
+    };
+    let coil = wound(spec, &nodes);
+    assert_eq!(coil.without_place_from(), None);
+    let told: Vec<_> = coil.defects().iter().map(|d| (d.kind, d.turn)).collect();
+    assert_eq!(told, [(DefectKind::Gap, 2)]);
+}
+
 /// Of a coil that rode up turns before its end too, the turns to end with were told, and did not mend it.
 #[test]
 fn a_coil_that_rides_up_sooner_does_not_end_better() {

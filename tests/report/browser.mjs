@@ -305,8 +305,8 @@ async function look(scheme) {
     return k < 0 ? null : [between(wound, turns, wound[k]) - turns[k], runs[0].timeOf(wound[k]) - time[k]];
   });
   check(`${scheme}: curves know where the spindle was when wire was wound`, wound === null || wound.every((off) => Math.abs(off) < 1e-6), `${wound}`);
-  const begun = await page.getByText(/the nozzle begins layer/).allInnerTexts();
-  check(`${scheme}: layers are marked where there are some`, begun.length === (given.layers ? 1 : 0) && begun.every((told) => told.includes(`begins layer ${given.layers}.`)), begun.join(" | "));
+  const begun = await page.getByText(/begin of layer/).allInnerTexts();
+  check(`${scheme}: layers are marked where there are some`, begun.length === (given.layers ? 1 : 0) && begun.every((told) => told.includes(`begin of layer ${given.layers}.`)), begun.join(" | "));
   check(`${scheme}: the console is quiet`, complaints.length === 0, complaints.join(" | "));
   const wide = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   check(`${scheme}: nothing sticks out sideways`, wide <= 0, `${wide} px`);

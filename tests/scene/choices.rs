@@ -139,7 +139,7 @@ fn preset_decides_the_integrator_unless_it_is_set() {
 /// A disc coil was warned of gaps between the turns of a layer, of which each layer has one.
 #[test]
 fn gaps_are_warned_of_only_where_turns_lie_side_by_side() {
-    let keys = |mode: &str, inner_mm: f64, turns: u32| -> Vec<&str> {
+    let told = |mode: &str, inner_mm: f64, turns: u32| -> Vec<String> {
         let text = format!(
             "[wire]\ndiameter_mm = 0.6\n[core.flange]\ninner_distance_mm = {inner_mm}\nheight_mm = 6\n\
              [nozzle]\ny_start_mm = {0}\n[start]\nclamp_y_mm = {0}\n[tensioner]\ntension = 9\n\
@@ -147,13 +147,24 @@ fn gaps_are_warned_of_only_where_turns_lie_side_by_side() {
             0.3 - 0.5 * inner_mm
         );
         let (_, warnings) = parse(&text).unwrap().build_with_warnings().unwrap();
-        warnings.iter().map(|w| w.key).collect()
+        warnings.iter().map(ToString::to_string).collect()
     };
     for mode in ["orthocyclic", "helical"] {
         for (inner_mm, turns, warned) in [(1.0, 1, false), (1.7, 1, false), (1.7, 2, true)] {
-            let keys = keys(mode, inner_mm, turns);
-            let told = keys.contains(&"winding.turns_per_layer");
-            assert_eq!(told, warned, "{mode}, {inner_mm} mm, {turns}: {keys:?}");
+            let told = told(mode, inner_mm, turns);
+            let has = |part: &str| told.iter().any(|warning| warning.contains(part));
+            assert_eq!(
+                has("leave gaps"),
+                warned,
+                "{mode}, {inner_mm} mm, {turns}: {told:?}"
+            );
+            // a second wire has room beside the first in 1.7 mm
+            let falls = inner_mm > 1.2 && turns == 1;
+            assert_eq!(
+                has("falls in there"),
+                falls,
+                "{mode}, {inner_mm} mm, {turns}: {told:?}"
+            );
         }
     }
 }

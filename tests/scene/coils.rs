@@ -419,7 +419,7 @@ fn turns_planned_apart_are_told() {
         );
         let text = format!("{text}mode = 'helical'\n");
         let (_, warnings) = parse(&text).unwrap().build_with_warnings().unwrap();
-        warnings.iter().any(|w| w.key.starts_with("winding."))
+        warnings.iter().any(|w| w.message.contains("leave gaps"))
     };
     assert!(told("pitch_mm = 1"));
     assert!(!told("pitch_mm = 0.75"));

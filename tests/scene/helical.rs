@@ -27,6 +27,30 @@ fn a_disc_coil_has_all_its_turns() {
         assert_eq!(disc.turns(), 6.0);
         let climbs: Vec<_> = disc.jumps().iter().map(|jump| jump[1] / TAU).collect();
         assert_eq!(climbs, [1.0, 2.0, 3.0, 4.0, 5.0]);
+        // planned from half a turn sooner on, the last of an odd number of layers was no layer
+        assert!(disc.jumps().iter().all(|[from, to]| from == to));
+    }
+}
+
+/// Where layers begin is what tells that a place beside their flange is empty.
+#[test]
+fn layers_begin_beside_their_flanges() {
+    let rooms = |keys: &str, inner: f64| -> Vec<f64> {
+        let law = law(inner, keys);
+        law.layer_starts().iter().map(|start| start.room).collect()
+    };
+    let near = |found: Vec<f64>, mm: [f64; 6]| {
+        let off = found
+            .iter()
+            .zip(mm)
+            .map(|(room, mm)| (room - 1e-3 * mm).abs());
+        found.len() == 6 && off.fold(0.0, f64::max) < 1e-9
+    };
+    for mode in ["helical", "orthocyclic"] {
+        let mode = format!("[traverse]\nmode = '{mode}'");
+        // with room for half a pitch more every layer begins at its flange, without it every other half a pitch from it
+        assert!(near(rooms(&mode, 4.5), [0.0; 6]));
+        assert!(near(rooms(&mode, 4.2), [0.0, 0.3, 0.0, 0.3, 0.0, 0.3]));
     }
 }
 

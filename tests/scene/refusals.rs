@@ -379,6 +379,11 @@ fn odd_scenes_build_with_a_warning() {
             "[core]\ncorner_radius = 0\n[solver]\nspacing_near_mm = 0.4\n",
             "coarser than the tightest bend",
         ),
+        // turns were told as loose, and gaps and bulges of chords as those of wire
+        (
+            "[core]\nshape = 'cylinder'\nradius_mm = 7\n[solver]\nspacing_near_mm = 2.5\nspacing_free_mm = 2.5",
+            "cuts its tightest bend, radius 0.00735 m, by 0.000106293 m",
+        ),
         ("[contact]\nstiffness = 1e8", "1 % of its diameter"),
         // it sprang off, and was called slack
         (

@@ -223,7 +223,7 @@ def test_a_fit_that_ends_at_an_end_of_its_range_is_none(calibrate, measured, tmp
     ("text", "words", "complaint"),
     [
         ("turns,tension_lb\n0.3,1\n0.4,1\n", [], "has the unit lb; tension takes N, mN, cN"),
-        ("turns,tension\n0.3,1\n0.4,1\n", [], "column tension is none of tension_N, coil_width_m, height_m, resistance_ohm"),
+        ("turns,tension\n0.3,1\n0.4,1\n", [], "column tension is none of tension_N|mN|cN, coil_width_m|mm|"),
         ("time,tension_N\n0.3,1\n0.4,1\n", [], "has 0 columns of the angle; give one, named angle_deg, angle_rad, turns"),
         ("turns,tension_N\n0.3,15\n0.4\n", [], ":3 has 1 cells, the header has 2"),
         ("turns,tension_N\n0.3,15\n0.4,much\n", [], ":3: tension_N is 'much', which is not a number"),

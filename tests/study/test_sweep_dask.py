@@ -81,6 +81,20 @@ def test_the_script_leaves_the_table_of_a_plain_loop(alone, scene, fmu, command,
     assert [int(row["run"]) for row in rows] == list(range(RUNS))
 
 
+def test_members_lie_apart_by_wire_with_its_enamel(sweep_dask, fmu, command, tmp_path):
+    """The nozzle of a member was moved by half a bare wire, and the member was another than that of `coilwind sweep`."""
+    enamelled = tmp_path / "enamelled.toml"
+    enamelled.write_text(SCENE + "[wire]\ndiameter_mm = 0.5\nenamelled_diameter_mm = 0.6\n[nozzle]\ndistance_mm = 50\n", encoding="utf-8")
+    words = Namespace(command=command, scene=str(enamelled), over=["spindle.speed=60:60:1"], set=[], ensemble=3, step=5e-4)
+    _, tasks = sweep_dask.tasks_of(words)
+    task = next(task for task in tasks if task["offset"])
+    with open(fmu, "rb") as file:
+        unpacked = sweep_dask.unpack(file.read(), tmp_path)
+    at = {**task["parameters"], "nozzle.distance": 0.05 + task["offset"] * 0.6e-3}
+    moved, nearer = (sweep_dask.wind(unpacked, one)["result"] for one in (task, {**task, "offset": 0.0, "parameters": at}))
+    assert moved == nearer
+
+
 def test_runs_that_judge_nothing_are_told(scene, fmu, command, script, tmp_path):
     """They counted as runs without a defect."""
     words = ["--over", "spindle.speed=100:100:1", "--command", command, "--fmu", fmu, "--workers", "1", "--out", tmp_path, "--force"]

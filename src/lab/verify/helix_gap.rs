@@ -26,6 +26,7 @@ pub fn run(ctx: &Context) -> Result<Answers, VerifyError> {
         jumps: [].into(),
         full: None,
         planned: None,
+        layer_starts: [].into(),
         crossover: None,
         start_angle: 0.0,
         direction: 1.0,

@@ -23,7 +23,7 @@ function charts(run) {
   const words = [lying, happened.length ? `${happened.join(", ")}, at the instant of it` : null].filter(Boolean);
   const layers = begun(history.layer, x);
   const numbers = layers.map(([, number]) => number).join(", ");
-  const begin = layers.length ? `Thin lines: the nozzle begins layer ${numbers}.` : null;
+  const begin = layers.length ? `Thin lines: begin of layer ${numbers}.` : null;
   const note = [words.length ? `Dashed: ${words.join("; ")}.` : null, begin].filter(Boolean).join(" ") || null;
   const torque = plain(history.torque, 1e3);
   // Runs of one wire side by side are compared by eye, which takes one scale.

@@ -20,9 +20,9 @@ class Run {
     this.wire = decodeAll(data.wire);
     this.core = decodeAll(data.core);
     this.frames = data.frames.map((frame) => ({ ...frame, wire: decodeAll(frame.wire) }));
-    // Faults of the wire itself have a place, but no stretch of wire is marked with them: the view shows balls there.
+    // Faults of the wire itself have a place, but no stretch of wire is marked with them: the view shows balls there, if there is one.
     this.marked = (this.wire?.defect ?? []).reduce((sum, bits) => sum | bits, 0);
-    this.balls = this.defects.filter((defect) => defect.place_m && !(defectOf(defect.kind).bit & this.marked));
+    this.balls = !this.wire ? [] : this.defects.filter((defect) => defect.place_m && !(defectOf(defect.kind).bit & this.marked));
     if (this.wire) this.measure();
   }
 
