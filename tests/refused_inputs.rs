@@ -41,6 +41,18 @@ fn a_step_longer_than_the_run_is_refused_with_the_longest() {
     }
 }
 
+/// Such a run stood at its start and filled the disk.
+#[test]
+fn a_step_that_never_ends_is_refused_with_the_shortest() {
+    let folder = tempfile::tempdir().unwrap();
+    let csv = folder.path().join("in.csv");
+    std::fs::write(&csv, "time,spindle_speed\n0,1\n0.002,1\n").unwrap();
+    let words = ["--inputs", csv.to_str().unwrap(), "--step", "1e-30"];
+    let said = complaint(run(folder.path(), &words), 2);
+    assert!(said.contains("allowed: 2.0e-12 s and more"), "{said}");
+    assert!(!folder.path().join("out").exists());
+}
+
 /// The reader's own words stood there: `CSV error: record 2 (line: 3, byte: 23)`.
 #[test]
 fn a_row_without_all_cells_is_told_with_its_columns() {
