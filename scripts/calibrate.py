@@ -86,6 +86,10 @@ def main():
         sys.exit(run(args))
 
 
+# Parameters that count.
+COUNTED = ("winding.layers", "winding.turns_per_layer")
+
+
 def starts_of(model, wanted):
     """Starting values: those given, else those of the scene with its settings."""
     names, starts, scene = [], [], None
@@ -95,6 +99,8 @@ def starts_of(model, wanted):
             raise Mistake(f"--fit {name} is given twice; leave one out")
         if name not in model.table:
             raise Mistake(f"--fit {name}: there is no such parameter; `coilwind variables` lists them, without units in their names")
+        if name in COUNTED:
+            raise Mistake(f"--fit {name}: it is a whole number, and no measured curve changes little with it; set it in the scene")
         if value and (twice := set_of(model, name)):
             raise Mistake(f"--fit {text} and --set {twice} both say where {name} starts; leave one out")
         if not value:

@@ -237,6 +237,7 @@ def test_a_fit_that_ends_at_an_end_of_its_range_is_none(calibrate, measured, tmp
         ("turns,tension_N\n0.3,15\n2.5,15\n", [], "from 0.30 to 2.50 turns, the run goes from 0.00 to 1.40; wind more with --set spindle.turns=N"),
         ("turns,height_mm\n0.3,0.1\n1.38,0.1\n2,0.1\n", [], "settled wire of the run goes from"),
         ("turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "tensioner.mas"], "--fit tensioner.mas: there is no such parameter"),
+        ("turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "winding.layers"], "--fit winding.layers: it is a whole number"),
         ("turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "tensioner.mass=2"], "--fit tensioner.mass is given twice; leave one out"),
         (
             "turns,tension_N\n0.3,15\n0.4,15\n0.5,15\n", ["--fit", "tensioner.radius=0.05", "--set", "tensioner.radius_mm=50"],
