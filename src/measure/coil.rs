@@ -94,7 +94,7 @@ pub(crate) struct Record {
     pub(super) flange_side: f64,
     /// it lies on the climb of its own row, which it crosses
     pub(super) on_climb: bool,
-    /// a place left empty beside the flange where its layer begins: stations on end, and the least room there beyond the plan, m
+    /// a place left empty beside the flange where its layer begins: stations on end, and the room there beyond the plan, m
     pub(super) left_empty: (u32, f64),
     /// it is on its way to the next row, or is pressed up beside a flange
     pub(super) rises: bool,

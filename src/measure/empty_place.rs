@@ -13,7 +13,7 @@ use super::support::PLACE;
 const LASTS: f64 = 0.5;
 
 impl Coil {
-    /// Stations on end beside which a place is empty up to this one, of this row, and the least room there beyond the plan, m.
+    /// Stations on end beside which a place is empty up to this one, of this row, and the room there beyond the plan, m, as it was once that counted.
     pub(super) fn left_empty(&self, station: &Station, row: Row) -> (u32, f64) {
         let radius = 0.5 * self.spec.diameter;
         let start = self.spec.layer_starts.get(station.layer as usize - 1);
@@ -30,8 +30,15 @@ impl Coil {
         match more {
             Some(more) if begins && more >= PLACE * self.spec.diameter => {
                 let last = self.records.last().map_or((0, 0.0), |last| last.left_empty);
-                // (where wire crosses to its next place there is more)
-                (last.0 + 1, if last.0 > 0 { more.min(last.1) } else { more })
+                // (there is less where wire comes to lie in its place, and more where it crosses to the next one)
+                (
+                    last.0 + 1,
+                    if self.is_empty_for(last.0) {
+                        last.1
+                    } else {
+                        more
+                    },
+                )
             }
             _ => (0, 0.0),
         }
@@ -41,9 +48,13 @@ impl Coil {
     /// a turn is full once a gap there counts.
     pub(super) fn gap_at(&self, record: &Record) -> Option<f64> {
         let (count, room) = record.left_empty;
-        let lasts = (LASTS * STATIONS_PER_TURN as f64) as u32;
-        let is_empty = count + stations_for(self.spec.limits.gap_fraction) > lasts;
         let neighbour = record.station.neighbour.map(|neighbour| neighbour.gap);
-        neighbour.or_else(|| is_empty.then_some(room))
+        neighbour.or_else(|| self.is_empty_for(count).then_some(room))
+    }
+
+    /// Whether a place that has been empty for so many stations is a gap, once that lasts.
+    fn is_empty_for(&self, count: u32) -> bool {
+        let lasts = (LASTS * STATIONS_PER_TURN as f64) as u32;
+        count + stations_for(self.spec.limits.gap_fraction) > lasts
     }
 }

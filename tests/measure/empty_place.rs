@@ -36,6 +36,10 @@ fn an_empty_place_beside_the_flange_is_a_gap() {
     assert_eq!(gaps(&told), [(DefectKind::Gap, 1)]);
     let size = told.defects()[0].size_m;
     assert!(size.is_some_and(|size| (size - D).abs() < 1e-6), "{size:?}");
+    // wire that comes to lie there from nearer the flange leaves as much
+    let coming = |turns: f64| stepping(1.0)(turns) - 0.3 * (1.0 - 4.0 * turns).max(0.0);
+    let size = coil(Some(0.0), coming).defects()[0].size_m;
+    assert!(size.is_some_and(|size| (size - D).abs() < 1e-6), "{size:?}");
 }
 
 #[test]
