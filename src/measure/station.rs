@@ -39,8 +39,8 @@ pub struct Station {
     /// diameter minus axial distance where the wire stands on its neighbour, a diameter where it has changed
     /// places with it, else 0, m
     pub overlap_depth: f64,
-    /// room along y between the wire and the flange beside it, with or without wire in it, m; `None` where all of the wire lies above the rims, without
-    /// flanges, or far from those of a mesh
+    /// room along y between the wire and the flange beside it, with or without wire in it, m; `None` where all of the wire lies above
+    /// the rims, without flanges, or far from those of a mesh
     pub flange_gap: Option<f64>,
     /// one more than the layer of the wire below, 1 without any
     pub layer: u32,

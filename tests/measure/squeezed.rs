@@ -175,8 +175,8 @@ fn the_end_of_a_coil_whose_place_is_taken_is_no_overlap() {
     assert_eq!(found(0.9), (false, None));
 }
 
-/// In a window of two turns the first lies beside the flange that the layer goes away from, and leaves the second its place: all of that
-/// was taken for the end of a coil without a place, and a gap of it was not judged.
+/// In a window of two turns the first lies beside the flange that the layer goes away from, and leaves the second its place. The second
+/// was taken for the end of a coil without a place, and its gap was not judged.
 #[test]
 fn a_turn_beside_the_other_flange_leaves_a_place() {
     let [gap, turns] = [0.4 * D, 2.0];
