@@ -75,6 +75,15 @@ impl<T, const N: usize> PersistentVec<T, N> {
 }
 
 impl<T: Clone, const N: usize> PersistentVec<T, N> {
+    /// Entry `i` from the bottom, to be changed; copies keep what it was.
+    pub fn get_mut(&mut self, i: usize) -> Option<&mut T> {
+        let full = self.full.len() * N;
+        match self.full.get_mut(i / N) {
+            Some(chunk) => Arc::make_mut(chunk).get_mut(i % N),
+            None => self.top.get_mut(i - full),
+        }
+    }
+
     /// Takes the entries from `len` on off the top.
     pub fn truncate(&mut self, len: usize) {
         while self.full.len() * N > len

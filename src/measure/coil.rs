@@ -247,6 +247,14 @@ impl Coil {
         }
     }
 
+    /// Replaces the tensions of the settled wire from the node `first` on, N, and measures it again.
+    pub fn set_tensions(&mut self, first: usize, tensions: &[f64]) {
+        let nodes = self.take_from(first).into_iter().zip(tensions);
+        for (node, &tension) in nodes {
+            self.settle(SettledNode { tension, ..node });
+        }
+    }
+
     /// Takes the nodes from this one on back.
     pub(super) fn take_from(&mut self, first: usize) -> Vec<SettledNode> {
         let nodes: Vec<SettledNode> = (first..self.nodes.len())

@@ -16,6 +16,7 @@ mod doubt;
 mod drawn_loop;
 mod faults;
 mod freezing;
+mod frozen_tension;
 mod io;
 mod judgement;
 mod layon;

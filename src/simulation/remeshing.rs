@@ -60,6 +60,9 @@ impl Winding {
             .watch
             .due(&self.run.policy, s.angle, s.speed, self.sys.state.time);
         let freeze = if due { self.nodes_to_freeze() } else { 0 };
+        if due {
+            self.follow_slip();
+        }
         let coarsen = if due && self.scene.solver.features.coarse_settled {
             self.nodes_to_coarsen()
         } else {

@@ -14,9 +14,7 @@ pub struct FrozenNodeRecord {
     pub(super) frame: Quat,
     /// frame that a clamp at this node has, core frame
     pub(super) clamp: Quat,
-    /// unstretched length from the clamp to the node, m
-    pub(super) arc: f64,
-    /// unstretched length of the edge, m
+    /// unstretched length of the edge when it froze, m
     pub(super) rest: f64,
     pub(super) spin: f64,
     pub(super) stretch: Scalar,

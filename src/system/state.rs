@@ -3,7 +3,7 @@
 //! What influences the rounding of a later step belongs to it, be it a cache: forces of the last
 //! evaluation, history of the step formula. Work arrays do not, nor does what follows from the state.
 
-use super::{ContactState, EnergyBalance, FrozenHistory, Past, Spindle, Support};
+use super::{ContactState, EnergyBalance, FrozenHistory, FrozenPulls, Past, Spindle, Support};
 use crate::feed::{Feed, LineWire};
 use crate::geometry::Tube;
 use crate::rod::{Load, Rod};
@@ -27,6 +27,10 @@ pub struct State {
     pub frozen: Arc<Tube>,
     /// frozen wire of the implicit method, as it is kept to let it move again
     pub(crate) frozen_history: FrozenHistory,
+    /// tensions of frozen wire of the implicit method
+    pub frozen_pulls: FrozenPulls,
+    /// the first frozen edge whose tension has changed and was not measured since; beyond all: none
+    pub(crate) slipped_from: usize,
     /// feed at the last node, if there is one
     pub feed: Option<Feed>,
     /// plastic stretch of the wire behind the nozzle
@@ -74,6 +78,8 @@ impl State {
             contact: ContactState::None,
             frozen: Arc::new(Tube::new(radius)),
             frozen_history: FrozenHistory::default(),
+            frozen_pulls: FrozenPulls::default(),
+            slipped_from: usize::MAX,
             feed: None,
             line_wire: LineWire::default(),
             set_tension: 0.0,
@@ -103,6 +109,8 @@ impl State {
             contact,
             frozen,
             frozen_history,
+            frozen_pulls,
+            slipped_from,
             feed,
             line_wire,
             set_tension,
@@ -126,6 +134,8 @@ impl State {
         self.contact.copy_from(contact);
         self.frozen.clone_from(frozen);
         self.frozen_history.clone_from(frozen_history);
+        self.frozen_pulls.clone_from(frozen_pulls);
+        self.slipped_from = *slipped_from;
         self.feed = *feed;
         self.line_wire.clone_from(line_wire);
         (self.set_tension, self.set_rate) = (*set_tension, *set_rate);
@@ -189,6 +199,10 @@ impl State {
         }
         if !self.line_wire.is_sound() {
             return Err("wire behind the nozzle is stretched beyond measure");
+        }
+        let pulls = &self.frozen_pulls;
+        if pulls.len() != self.frozen_history.len() || !pulls.iter().all(|pull| pull.is_sound()) {
+            return Err("tensions of frozen wire cannot be");
         }
         if !self.frozen_history.iter().all(|node| node.is_sound()) {
             return Err("frozen wire remembers what cannot be");

@@ -189,7 +189,6 @@ impl LineState {
 
     /// Normal force of each touch of point `k` at the last evaluation, which stands for `length` (m), core frame, N: the
     /// core's first, then those of frozen wire.
-    #[cfg(feature = "lab")]
     pub fn normal_forces<'a>(
         &'a self,
         model: &LineModel,

@@ -2,6 +2,7 @@
 
 use super::Implicit;
 use super::carried::Carried;
+use super::first_edge::FirstEdge;
 use super::landings::Solved;
 use super::nozzle_edge::NozzleEdge;
 use super::scheme::{Scheme, StepFormula};
@@ -77,6 +78,13 @@ impl Implicit {
             sys.keep_set_at_nozzle(grown);
             // the node before the nozzle gains mass that moves as it does
             sys.state.balance.inflow += 0.5 * inflow * sys.state.rod.v[last].norm_squared();
+        }
+        if self.scheme == Scheme::Bdf2 {
+            let length = (w.q[1] - w.q[0]).norm();
+            let slip = FirstEdge::of(sys).and_then(|first| first.slip(length));
+            if let Some((slip, rest)) = slip {
+                sys.slip_frozen(&slip, rest);
+            }
         }
         if let Some(line) = sys.state.contact.as_line_mut() {
             // late Newton steps hold the coefficients of friction; what is accepted goes by its own slide

@@ -12,6 +12,7 @@ mod commit;
 mod conjugate;
 mod dispatch;
 mod error;
+mod first_edge;
 mod impact;
 mod impulse;
 mod landings;

@@ -1,5 +1,6 @@
 //! The incremental potential of a step: its value, gradient and Gauss-Newton Hessian at an iterate.
 
+use super::first_edge::FirstEdge;
 use super::lengths::voronoi;
 use super::nozzle_edge::NozzleEdge;
 use super::scheme::StepFormula;
@@ -21,6 +22,8 @@ pub(super) struct Model<'a> {
     pub(super) last: &'a [V3],
     /// tension of each edge at the last accepted instant, N
     pub(super) tension: &'a [f64],
+    /// the edge after frozen wire
+    pub(super) first: Option<FirstEdge<'a>>,
     pub(super) nozzle: Option<NozzleEdge>,
     /// by how much the edge at the nozzle is likely to grow, m
     pub(super) grown: f64,
@@ -56,7 +59,14 @@ impl<'a> Model<'a> {
         support: &[Support; 2],
         nozzle: Option<NozzleEdge>,
     ) -> Self {
+        let friction = sys.friction_at_rest().filter(|_| step.share == 1.0);
+        let (rod, stretch) = (&sys.state.rod, &sys.model.laws.stretch);
+        let first = friction.and_then(|friction| {
+            let pulls = &sys.state.frozen_pulls;
+            FirstEdge::new(pulls, friction, stretch, (&rod.stretch[0], rod.rest[0]))
+        });
         Self {
+            first,
             rod: &sys.state.rod,
             laws: &sys.model.laws,
             line: line_contact(
@@ -227,8 +237,14 @@ impl Model<'_> {
         for (j, ((axial, expected), (state, rest))) in edges.enumerate() {
             let (along, length, inverse) = unknowns.joints().edge(j);
             let mut expected = *expected;
-            let s = match &self.nozzle {
-                Some(nozzle) if j == last => {
+            let s = match (&self.nozzle, &self.first) {
+                (_, Some(first)) if j == 0 => {
+                    let s = first.stretched(length, expected.length);
+                    (expected.energy, expected.tension) = (s.energy, s.tension);
+                    expected.length = length;
+                    s
+                }
+                (Some(nozzle), _) if j == last => {
                     let s = nozzle.stretched(length);
                     // it gives way and can go slack: nothing to straighten out there
                     (expected.energy, expected.tension) = (s.energy, s.tension);

@@ -122,6 +122,7 @@ pub(super) fn model_at_rest(sys: &mut System) -> Model<'_> {
         line.begin_solve();
     }
     Model {
+        first: None,
         last: &sys.state.past.q[0],
         rod: &sys.state.rod,
         laws: &sys.model.laws,

@@ -20,6 +20,7 @@ impl System {
         }
         let frame = self.frame_to_clamp(count);
         self.record_frozen(count);
+        self.record_pulls(count);
         self.state.support[0] = Support {
             hold: [true; 3],
             point: spin.to_core(self.state.rod.x[count]),
@@ -55,7 +56,6 @@ impl System {
         };
         let spin = Spin::new(self.state.spindle.angle);
         let back = turn_about_y(-self.state.spindle.angle);
-        let mut arc = self.state.arc0;
         for i in 0..count {
             let clamp = match self.state.support[0].frame {
                 Some(frame) if i == 0 => frame,
@@ -67,7 +67,6 @@ impl System {
                 place: spin.to_core(rod.x[i]),
                 frame: back * rod.frame[i],
                 clamp,
-                arc,
                 rest: rod.rest[i],
                 spin: rod.spin[i],
                 stretch: rod.stretch[i],
@@ -77,12 +76,11 @@ impl System {
                 end_twist: rod.twist[i + 1],
                 memory: line.memory(i),
             });
-            arc += rod.rest[i];
         }
     }
 
     /// Unstretched lengths of the frozen edges, the last to freeze first, m.
     pub fn frozen_lengths(&self) -> impl Iterator<Item = f64> {
-        self.state.frozen_history.iter().rev().map(|d| d.rest)
+        self.state.frozen_pulls.iter().rev().map(|pull| pull.rest)
     }
 }

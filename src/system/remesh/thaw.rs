@@ -27,8 +27,13 @@ impl System {
         if count == 0 {
             return 0;
         }
+        let mut nodes = self.state.frozen_history.split_off(count);
+        let pulls = self.state.frozen_pulls.split_off(count);
+        for (node, pull) in nodes.iter_mut().zip(&pulls) {
+            node.rest = pull.rest;
+        }
         let thaw = Thaw {
-            nodes: self.state.frozen_history.split_off(count),
+            nodes,
             core: self.state.spindle,
             core_before: self.state.spindle.before(self.state.past.h[0]),
         };
@@ -40,7 +45,7 @@ impl System {
             frame: Some(thaw.nodes[0].clamp),
             turning: true,
         };
-        self.state.arc0 = thaw.nodes[0].arc;
+        self.state.arc0 -= pulls.iter().map(|pull| pull.rest).sum::<f64>();
         for part in self.parts() {
             part.insert_front(&thaw);
         }

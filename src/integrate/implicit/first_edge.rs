@@ -1,0 +1,210 @@
+//! The first live edge together with the frozen wire before it, as one spring.
+//!
+//! Frozen wire keeps its place, but it slips along itself where the tension of the first live edge differs by more from its
+//! own than friction holds. From node to node the ratio of tensions is then the largest that friction holds, so all of
+//! them follow that of the first live edge. Up to where the wire slips they are in proportion to it. What the frozen wire
+//! becomes longer the live edge gets. So the length of the edge is a quadratic in its tension, in pieces, and
+//! the tension has a closed potential: slip costs no unknown.
+
+use crate::rod::{Law, Scalar, Stretched, stretched};
+use crate::system::{FrozenPulls, FrozenSlip, System};
+
+/// The first live edge during one solve.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FirstEdge<'a> {
+    pulls: &'a FrozenPulls,
+    friction: f64,
+    law: &'a Law,
+    state: &'a Scalar,
+    /// unstretched length at the start of the step, m
+    rest: f64,
+}
+
+/// Frozen wire that slips, from the edge `from` on.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    from: usize,
+    /// wire that it gives over the tension of the first live edge, m/N
+    a: f64,
+    /// what it would give less at no tension, m
+    b: f64,
+    /// tension of the live edge from which on all of it slips, N
+    begins: f64,
+    /// work done on it up to there, J
+    work: f64,
+}
+
+impl<'a> FirstEdge<'a> {
+    /// The edge at the start of a step; none where nothing is frozen.
+    pub(super) fn of(sys: &'a System) -> Option<Self> {
+        let friction = sys.friction_at_rest()?;
+        let state = &sys.state;
+        Self::new(
+            &state.frozen_pulls,
+            friction,
+            &sys.model.laws.stretch,
+            (&state.rod.stretch[0], state.rod.rest[0]),
+        )
+    }
+
+    /// An edge of the unstretched length `rest` (m) after frozen wire with these tensions.
+    pub(super) fn new(
+        pulls: &'a FrozenPulls,
+        friction: f64,
+        law: &'a Law,
+        (state, rest): (&'a Scalar, f64),
+    ) -> Option<Self> {
+        (!pulls.is_empty()).then_some(Self {
+            pulls,
+            friction,
+            law,
+            state,
+            rest,
+        })
+    }
+
+    /// `1 + plastic stretch` of the edge.
+    fn set(&self) -> f64 {
+        1.0 + self.state.strain
+    }
+
+    /// Tension of the edge were no wire to slip, N.
+    fn held(&self, length: f64) -> f64 {
+        self.law.modulus * (length / self.rest - self.set())
+    }
+
+    /// Tension and length of the edge, m, are in balance while it has `rest`, m, at no tension and `a`, m/N, more with it.
+    fn length_at(&self, tension: f64, rest: f64, a: f64) -> f64 {
+        (rest + tension * a) * (self.set() + tension / self.law.modulus)
+    }
+
+    /// Which of the frozen wire slips when the edge is `length` long, and whether its tension falls; none where friction holds.
+    fn slips(&self, length: f64) -> Option<(Run, bool)> {
+        let last = self.pulls.last()?;
+        let (pulls, ratio) = (last.pulls(), last.held_by(self.friction));
+        let held = self.held(length);
+        let falls = held < pulls / ratio;
+        if falls && pulls > 0.0 || held > pulls * ratio {
+            let reached = |tension: f64, run: &Run| {
+                let there = self.length_at(tension, self.rest - run.b, run.a);
+                if falls {
+                    there <= length
+                } else {
+                    there >= length
+                }
+            };
+            return Some((self.run(falls, reached), falls));
+        }
+        None
+    }
+
+    /// Goes back along the frozen wire until the tension at which the next edge would slip is `reached`.
+    fn run(&self, falls: bool, reached: impl Fn(f64, &Run) -> bool) -> Run {
+        let modulus = self.law.modulus;
+        let count = self.pulls.len();
+        let mut run = Run {
+            from: count,
+            a: 0.0,
+            b: 0.0,
+            begins: 0.0,
+            work: 0.0,
+        };
+        // tension of a frozen edge that slips over that of the live one
+        let mut share = 1.0;
+        for i in (0..count).rev() {
+            let Some(pull) = self.pulls.get(i) else {
+                break;
+            };
+            let held = pull.held_by(self.friction);
+            share = if falls { share * held } else { share / held };
+            let first = run.from == count;
+            // (friction that has been lowered holds less than there is: what is beyond stays until it slips)
+            let tension = match falls {
+                _ if first => pull.pulls(),
+                true => pull.pulls().min(run.begins * share),
+                false => pull.pulls().max(run.begins * share),
+            };
+            if falls && tension == 0.0 {
+                break;
+            }
+            let begins = tension / share;
+            if !first && reached(begins, &run) {
+                break;
+            }
+            if !first {
+                run.work += self.work(run.a, run.begins, begins);
+            }
+            (run.from, run.begins) = (i, begins);
+            run.a += pull.rest * share / modulus;
+            run.b += pull.rest * tension / modulus;
+        }
+        run
+    }
+
+    /// Work on frozen wire that gives `a`, m/N, while the live edge's tension goes from one value to another, N; J.
+    fn work(&self, a: f64, from: f64, to: f64) -> f64 {
+        let square = to * to - from * from;
+        let cube = to * to * to - from * from * from;
+        a * (0.5 * self.set() * square + cube / (6.0 * self.law.modulus))
+    }
+
+    /// Tension, stiffness and potential at a `length`, m; the branch of the stretch is that at the length `expected`, m.
+    pub(super) fn stretched(&self, length: f64, expected: f64) -> Stretched {
+        let Some((run, falls)) = self.slips(length) else {
+            return stretched(self.law, self.state, self.rest, length, expected);
+        };
+        let (tension, rest, run, yields) = self.balanced(length, run, falls);
+        let work = run.work + self.work(run.a, run.begins, tension.max(0.0));
+        if yields || tension <= 0.0 {
+            let own = stretched(self.law, self.state, rest, length, expected);
+            return Stretched {
+                energy: own.energy + work,
+                ..own
+            };
+        }
+        let (modulus, a) = (self.law.modulus, run.a);
+        let per_tension = a * (self.set() + tension / modulus) + rest / modulus;
+        Stretched {
+            tension,
+            stiffness: 1.0 / per_tension,
+            energy: 0.5 * tension * tension / modulus * rest + work,
+        }
+    }
+
+    /// Tension at which edge and frozen wire are in balance, N, the edge's unstretched length, m, what slips, and whether the edge
+    /// yields. Frozen wire pulls no harder than the edge does where it begins to yield, and gives no more than it has.
+    fn balanced(&self, length: f64, run: Run, falls: bool) -> (f64, f64, Run, bool) {
+        let modulus = self.law.modulus;
+        let rest = self.rest - run.b;
+        let most = self.law.limit + self.state.rise;
+        // a quadratic, with its root in the form without cancellation
+        let [c2, c1, c0] = [
+            run.a / modulus,
+            run.a * self.set() + rest / modulus,
+            rest * self.set() - length,
+        ];
+        if c0 >= 0.0 {
+            return (0.0, rest, run, false);
+        }
+        let tension = -2.0 * c0 / (c1 + (c1 * c1 - 4.0 * c2 * c0).sqrt());
+        if tension <= most || falls {
+            return (tension, rest + tension * run.a, run, false);
+        }
+        let run = self.run(falls, |begins, _| begins >= most);
+        let rest = self.rest - run.b + most * run.a;
+        (most, rest, run, true)
+    }
+
+    /// How frozen wire has slipped when the edge is `length` long, m, and the unstretched length that the edge then has, m.
+    pub(super) fn slip(&self, length: f64) -> Option<(FrozenSlip, f64)> {
+        let (run, falls) = self.slips(length)?;
+        let (tension, rest, run, _) = self.balanced(length, run, falls);
+        let slip = FrozenSlip {
+            from: run.from,
+            tension,
+            falls,
+            work: run.work + self.work(run.a, run.begins, tension),
+        };
+        Some((slip, rest))
+    }
+}
