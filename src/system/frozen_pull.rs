@@ -3,17 +3,28 @@
 use super::System;
 use crate::contact::ContactPoint;
 use crate::math::PersistentVec;
+use crate::rod::turning;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// The tension of a frozen edge, and what holds it against the edge after it.
+///
+/// The core presses on a node with what the tension asks for where the wire turns, and with what bending does. Where the tension changes, the
+/// first part goes with it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FrozenPull {
     /// tension, N
     pub tension: f64,
     /// unstretched length of the edge, m
     pub rest: f64,
-    /// normal force on the node after the edge, over the tension that the edge froze with
+    /// angle by which the wire turned at the node after the edge, rad
+    pub turned: f64,
+    /// normal force on that node when the edge froze, over the tension then
     pub pressed: f64,
+    /// the part of it that goes with the tension
+    pub drawn: f64,
+    /// the part that bending made, N
+    pub bent: f64,
 }
 
 impl FrozenPull {
@@ -22,14 +33,35 @@ impl FrozenPull {
         self.tension.max(0.0)
     }
 
-    /// Largest ratio of tensions on either side of the node after the edge that a coefficient of `friction` holds.
-    pub fn held_by(&self, friction: f64) -> f64 {
-        1.0 + friction * self.pressed
+    /// Largest tension beside one of `tension`, N, that a coefficient of `friction` holds.
+    pub fn most(&self, tension: f64, friction: f64) -> f64 {
+        tension * (1.0 + friction * self.drawn) + friction * self.bent
+    }
+
+    /// Least tension beside one of `tension`, N; less than none is none.
+    pub fn least(&self, tension: f64, friction: f64) -> f64 {
+        (tension - friction * self.bent) / (1.0 + friction * self.drawn)
+    }
+
+    /// Splits what presses by the `share` that goes with the tension, and holds what is there: the tension `after` the edge, N. A
+    /// difference that is there is one that something holds, be it inertia.
+    fn split(&mut self, share: f64, after: f64, friction: f64) {
+        self.drawn = share * self.pressed;
+        self.bent = (1.0 - share) * self.pressed * self.pulls();
+        if friction > 0.0 {
+            let (low, high) = (self.pulls().min(after), self.pulls().max(after));
+            let missing = high - self.most(low, friction);
+            self.bent += missing.max(0.0) / friction;
+        }
     }
 
     /// Whether it can be; bytes from elsewhere may say anything.
     pub(super) fn is_sound(&self) -> bool {
-        self.tension.is_finite() && self.rest > 0.0 && self.rest.is_finite() && self.pressed >= 0.0
+        let parts = [self.turned, self.pressed, self.drawn, self.bent];
+        self.tension.is_finite()
+            && self.rest > 0.0
+            && self.rest.is_finite()
+            && parts.iter().all(|x| *x >= 0.0 && x.is_finite())
     }
 }
 
@@ -56,30 +88,44 @@ impl System {
     }
 
     /// Puts the tensions of the first `count` edges on record, which freeze.
-    ///
-    /// A ratio of tensions that is there is one that something holds, be it inertia.
     pub(super) fn record_pulls(&mut self, count: usize) {
         let Some(friction) = self.friction_at_rest() else {
             return;
         };
         for i in 0..count {
-            let tension = self.state.load.tension[i];
-            let rest = self.state.rod.rest[i];
-            let pressed = match tension > 0.0 {
-                true => self.normal_force_at(i + 1) / tension,
-                false => 0.0,
-            };
+            let (rod, load) = (&self.state.rod, &self.state.load);
+            let tension = load.tension[i];
             let mut pull = FrozenPull {
                 tension,
-                rest,
-                pressed,
+                rest: rod.rest[i],
+                turned: turning([&load.tangent[i], &load.tangent[i + 1]]).norm(),
+                pressed: match tension > 0.0 {
+                    true => self.normal_force_at(i + 1) / tension,
+                    false => 0.0,
+                },
+                drawn: 0.0,
+                bent: 0.0,
             };
-            let after = self.state.load.tension[i + 1].max(0.0);
-            if friction > 0.0 && tension > 0.0 && after > 0.0 {
-                let ratio = (after / tension).max(tension / after);
-                pull.pressed = pull.pressed.max((ratio - 1.0) / friction);
-            }
+            let share = self.share_by_tension(&pull);
+            pull.split(share, load.tension[i + 1].max(0.0), friction);
             self.state.frozen_pulls.push(pull);
+        }
+    }
+
+    /// Share of what presses on the wire of the last turn, up to this edge, that its tension alone would make; 1 at most.
+    fn share_by_tension(&self, last: &FrozenPull) -> f64 {
+        let (mut turned, mut pressed) = (last.turned, last.pressed);
+        for pull in self.state.frozen_pulls.iter().rev() {
+            if turned >= TAU {
+                break;
+            }
+            turned += pull.turned;
+            pressed += pull.pressed;
+        }
+        if pressed > turned {
+            turned / pressed
+        } else {
+            1.0
         }
     }
 
@@ -112,11 +158,9 @@ impl System {
                 break;
             };
             gained -= stored(pull);
-            let held = pull.held_by(friction);
-            tension = if slip.falls {
-                tension * held
-            } else {
-                tension / held
+            tension = match slip.falls {
+                true => pull.most(tension, friction),
+                false => pull.least(tension, friction),
             };
             pull.rest -= pull.rest * (tension - pull.pulls()) / modulus;
             pull.tension = tension;

@@ -81,10 +81,10 @@ impl<'a> FirstEdge<'a> {
     /// Which of the frozen wire slips when the edge is `length` long, and whether its tension falls; none where friction holds.
     fn slips(&self, length: f64) -> Option<(Run, bool)> {
         let last = self.pulls.last()?;
-        let (pulls, ratio) = (last.pulls(), last.held_by(self.friction));
         let held = self.held(length);
-        let falls = held < pulls / ratio;
-        if falls && pulls > 0.0 || held > pulls * ratio {
+        let least = last.least(last.pulls(), self.friction);
+        let falls = held < least;
+        if (falls && least > 0.0) || held > last.most(last.pulls(), self.friction) {
             let reached = |tension: f64, run: &Run| {
                 let there = self.length_at(tension, self.rest - run.b, run.a);
                 if falls {
@@ -109,26 +109,28 @@ impl<'a> FirstEdge<'a> {
             begins: 0.0,
             work: 0.0,
         };
-        // tension of a frozen edge that slips over that of the live one
-        let mut share = 1.0;
+        // the tension of a frozen edge that slips, by that of the live one: `share` times it and `more`
+        let (mut share, mut more) = (1.0, 0.0);
         for i in (0..count).rev() {
             let Some(pull) = self.pulls.get(i) else {
                 break;
             };
-            let held = pull.held_by(self.friction);
-            share = if falls { share * held } else { share / held };
+            // (an affine law: its value at none, and its slope)
+            let law = |tension: f64| match falls {
+                true => pull.most(tension, self.friction),
+                false => pull.least(tension, self.friction),
+            };
+            let slope = law(1.0) - law(0.0);
+            (share, more) = (share * slope, law(more));
             let first = run.from == count;
             // (friction that has been lowered holds less than there is: what is beyond stays until it slips)
             let tension = match falls {
                 _ if first => pull.pulls(),
-                true => pull.pulls().min(run.begins * share),
-                false => pull.pulls().max(run.begins * share),
+                true => pull.pulls().min(run.begins * share + more),
+                false => pull.pulls().max(run.begins * share + more),
             };
-            if falls && tension == 0.0 {
-                break;
-            }
-            let begins = tension / share;
-            if !first && reached(begins, &run) {
+            let begins = (tension - more) / share;
+            if falls && begins <= 0.0 || !first && reached(begins, &run) {
                 break;
             }
             if !first {
@@ -136,7 +138,7 @@ impl<'a> FirstEdge<'a> {
             }
             (run.from, run.begins) = (i, begins);
             run.a += pull.rest * share / modulus;
-            run.b += pull.rest * tension / modulus;
+            run.b += pull.rest * (tension - more) / modulus;
         }
         run
     }
