@@ -1,11 +1,7 @@
-//! Tension of frozen wire, which slips along itself where friction gives way.
+//! Tension of frozen wire, and how far friction holds it.
 
-use super::System;
-use crate::contact::ContactPoint;
 use crate::math::PersistentVec;
-use crate::rod::turning;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// The tension of a frozen edge, and what holds it against the edge after it.
 ///
@@ -33,24 +29,39 @@ impl FrozenPull {
         self.tension.max(0.0)
     }
 
-    /// Largest tension beside one of `tension`, N, that a coefficient of `friction` holds.
-    pub fn most(&self, tension: f64, friction: f64) -> f64 {
-        tension * (1.0 + friction * self.drawn) + friction * self.bent
+    /// Largest tension beside one of `T` that a coefficient of `friction` holds: factor of `T`, and what comes to it, N.
+    pub fn most(&self, friction: f64) -> Beside {
+        Beside {
+            share: 1.0 + friction * self.drawn,
+            more: friction * self.bent,
+        }
     }
 
-    /// Least tension beside one of `tension`, N; less than none is none.
-    pub fn least(&self, tension: f64, friction: f64) -> f64 {
-        (tension - friction * self.bent) / (1.0 + friction * self.drawn)
+    /// Least tension beside one of `T`; less than none is none.
+    pub fn least(&self, friction: f64) -> Beside {
+        let share = 1.0 / (1.0 + friction * self.drawn);
+        Beside {
+            share,
+            more: -friction * self.bent * share,
+        }
+    }
+
+    /// The limit of the tension where that of the wire after it falls, or rises.
+    pub fn limit(&self, falls: bool, friction: f64) -> Beside {
+        match falls {
+            true => self.most(friction),
+            false => self.least(friction),
+        }
     }
 
     /// Splits what presses by the `share` that goes with the tension, and holds what is there: the tension `after` the edge, N. A
     /// difference that is there is one that something holds, be it inertia.
-    fn split(&mut self, share: f64, after: f64, friction: f64) {
+    pub(super) fn split(&mut self, share: f64, after: f64, friction: f64) {
         self.drawn = share * self.pressed;
         self.bent = (1.0 - share) * self.pressed * self.pulls();
         if friction > 0.0 {
             let (low, high) = (self.pulls().min(after), self.pulls().max(after));
-            let missing = high - self.most(low, friction);
+            let missing = high - self.most(friction).at(low);
             self.bent += missing.max(0.0) / friction;
         }
     }
@@ -65,119 +76,35 @@ impl FrozenPull {
     }
 }
 
+/// A tension that is a straight line over that of other wire.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beside {
+    /// its slope
+    pub share: f64,
+    /// its value where the other is none, N
+    pub more: f64,
+}
+
+impl Beside {
+    /// The tension of the other wire itself.
+    pub const ITSELF: Self = Self {
+        share: 1.0,
+        more: 0.0,
+    };
+
+    /// The tension beside this one, N.
+    pub fn at(&self, tension: f64) -> f64 {
+        self.share * tension + self.more
+    }
+
+    /// This limit beside wire that is itself at `other`.
+    pub fn after(&self, other: &Self) -> Self {
+        Self {
+            share: self.share * other.share,
+            more: self.share * other.more + self.more,
+        }
+    }
+}
+
 /// Tensions of all frozen edges, the oldest first; a chunk is about half a turn of fine wire.
 pub type FrozenPulls = PersistentVec<FrozenPull, 64>;
-
-/// What frozen wire gave to the first live edge when it slipped.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FrozenSlip {
-    /// the first frozen edge that slipped
-    pub from: usize,
-    /// tension of the first live edge now, N
-    pub tension: f64,
-    /// the tensions fell
-    pub falls: bool,
-    /// work that was done on frozen wire, J
-    pub work: f64,
-}
-
-impl System {
-    /// Coefficient of friction by which frozen wire holds; none where wire does not freeze with its tensions.
-    pub(crate) fn friction_at_rest(&self) -> Option<f64> {
-        self.model.contact.as_line().map(|line| line.law.mu_static)
-    }
-
-    /// Puts the tensions of the first `count` edges on record, which freeze.
-    pub(super) fn record_pulls(&mut self, count: usize) {
-        let Some(friction) = self.friction_at_rest() else {
-            return;
-        };
-        for i in 0..count {
-            let (rod, load) = (&self.state.rod, &self.state.load);
-            let tension = load.tension[i];
-            let mut pull = FrozenPull {
-                tension,
-                rest: rod.rest[i],
-                turned: turning([&load.tangent[i], &load.tangent[i + 1]]).norm(),
-                pressed: match tension > 0.0 {
-                    true => self.normal_force_at(i + 1) / tension,
-                    false => 0.0,
-                },
-                drawn: 0.0,
-                bent: 0.0,
-            };
-            let share = self.share_by_tension(&pull);
-            pull.split(share, load.tension[i + 1].max(0.0), friction);
-            self.state.frozen_pulls.push(pull);
-        }
-    }
-
-    /// Share of what presses on the wire of the last turn, up to this edge, that its tension alone would make; 1 at most.
-    fn share_by_tension(&self, last: &FrozenPull) -> f64 {
-        let (mut turned, mut pressed) = (last.turned, last.pressed);
-        for pull in self.state.frozen_pulls.iter().rev() {
-            if turned >= TAU {
-                break;
-            }
-            turned += pull.turned;
-            pressed += pull.pressed;
-        }
-        if pressed > turned {
-            turned / pressed
-        } else {
-            1.0
-        }
-    }
-
-    /// Normal force of what node `i` touches with half of the edges at it, N.
-    fn normal_force_at(&self, i: usize) -> f64 {
-        let (Some(model), Some(line)) =
-            (self.model.contact.as_line(), self.state.contact.as_line())
-        else {
-            return 0.0;
-        };
-        let at = |point: ContactPoint| {
-            let forces = line.normal_forces(model, point.number(), point.length(&self.state.rod));
-            forces.map(|force| force.norm()).sum::<f64>()
-        };
-        at(ContactPoint::Node(i))
-            + 0.5 * (at(ContactPoint::Edge(i - 1)) + at(ContactPoint::Edge(i)))
-    }
-
-    /// Takes over how frozen wire slipped in a step: the first live edge is `rest` long unstretched now, m.
-    pub(crate) fn slip_frozen(&mut self, slip: &FrozenSlip, rest: f64) {
-        let Some(friction) = self.friction_at_rest() else {
-            return;
-        };
-        let modulus = self.model.laws.stretch.modulus;
-        let stored = |pull: &FrozenPull| 0.5 * pull.tension * pull.tension * pull.rest / modulus;
-        let mut tension = slip.tension;
-        let mut gained = 0.0;
-        for i in (slip.from..self.state.frozen_pulls.len()).rev() {
-            let Some(pull) = self.state.frozen_pulls.get_mut(i) else {
-                break;
-            };
-            gained -= stored(pull);
-            tension = match slip.falls {
-                true => pull.most(tension, friction),
-                false => pull.least(tension, friction),
-            };
-            pull.rest -= pull.rest * (tension - pull.pulls()) / modulus;
-            pull.tension = tension;
-            gained += stored(pull);
-        }
-        self.state.slipped_from = self.state.slipped_from.min(slip.from);
-        self.state.arc0 -= rest - self.state.rod.rest[0];
-        self.state.rod.rest[0] = rest;
-        self.state.balance.frozen_stored += gained;
-        if let Some(line) = self.state.contact.as_line_mut() {
-            line.loss.friction += slip.work - gained;
-        }
-    }
-
-    /// The first frozen edge that has slipped since this was asked last.
-    pub(crate) fn take_slipped(&mut self) -> Option<usize> {
-        let from = std::mem::replace(&mut self.state.slipped_from, usize::MAX);
-        (from < self.state.frozen_pulls.len()).then_some(from)
-    }
-}

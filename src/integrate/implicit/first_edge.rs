@@ -7,7 +7,7 @@
 //! the tension has a closed potential: slip costs no unknown.
 
 use crate::rod::{Law, Scalar, Stretched, stretched};
-use crate::system::{FrozenPulls, FrozenSlip, System};
+use crate::system::{Beside, FrozenPulls, FrozenSlip, System};
 
 /// The first live edge during one solve.
 #[derive(Clone, Copy, Debug)]
@@ -82,9 +82,9 @@ impl<'a> FirstEdge<'a> {
     fn slips(&self, length: f64) -> Option<(Run, bool)> {
         let last = self.pulls.last()?;
         let held = self.held(length);
-        let least = last.least(last.pulls(), self.friction);
+        let least = last.least(self.friction).at(last.pulls());
         let falls = held < least;
-        if (falls && least > 0.0) || held > last.most(last.pulls(), self.friction) {
+        if (falls && least > 0.0) || held > last.most(self.friction).at(last.pulls()) {
             let reached = |tension: f64, run: &Run| {
                 let there = self.length_at(tension, self.rest - run.b, run.a);
                 if falls {
@@ -109,36 +109,30 @@ impl<'a> FirstEdge<'a> {
             begins: 0.0,
             work: 0.0,
         };
-        // the tension of a frozen edge that slips, by that of the live one: `share` times it and `more`
-        let (mut share, mut more) = (1.0, 0.0);
+        // the tension of a frozen edge that slips, by that of the live one
+        let mut slipping = Beside::ITSELF;
         for i in (0..count).rev() {
             let Some(pull) = self.pulls.get(i) else {
                 break;
             };
-            // (an affine law: its value at none, and its slope)
-            let law = |tension: f64| match falls {
-                true => pull.most(tension, self.friction),
-                false => pull.least(tension, self.friction),
-            };
-            let slope = law(1.0) - law(0.0);
-            (share, more) = (share * slope, law(more));
+            slipping = pull.limit(falls, self.friction).after(&slipping);
             let first = run.from == count;
             // (friction that has been lowered holds less than there is: what is beyond stays until it slips)
             let tension = match falls {
                 _ if first => pull.pulls(),
-                true => pull.pulls().min(run.begins * share + more),
-                false => pull.pulls().max(run.begins * share + more),
+                true => pull.pulls().min(slipping.at(run.begins)),
+                false => pull.pulls().max(slipping.at(run.begins)),
             };
-            let begins = (tension - more) / share;
-            if falls && begins <= 0.0 || !first && reached(begins, &run) {
+            let begins = (tension - slipping.more) / slipping.share;
+            if (falls && begins <= 0.0) || (!first && reached(begins, &run)) {
                 break;
             }
             if !first {
                 run.work += self.work(run.a, run.begins, begins);
             }
             (run.from, run.begins) = (i, begins);
-            run.a += pull.rest * share / modulus;
-            run.b += pull.rest * (tension - more) / modulus;
+            run.a += pull.rest * slipping.share / modulus;
+            run.b += pull.rest * (tension - slipping.more) / modulus;
         }
         run
     }
@@ -208,5 +202,147 @@ impl<'a> FirstEdge<'a> {
             work: run.work + self.work(run.a, run.begins, tension),
         };
         Some((slip, rest))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::FrozenPull;
+    use proptest::prelude::*;
+
+    const EA: f64 = 44_000.0;
+    const REST: f64 = 1.2e-3;
+
+    fn law() -> Law {
+        Law::new(EA, 0.02 * EA, 60.0, f64::INFINITY)
+    }
+
+    /// Frozen wire of one tension, whose nodes hold by their bends and by what the wire's stiffness presses, N.
+    fn wire(tension: f64, nodes: &[(f64, f64)]) -> FrozenPulls {
+        let pull = |&(drawn, bent): &(f64, f64)| FrozenPull {
+            tension,
+            rest: 0.9e-3,
+            turned: drawn,
+            pressed: drawn,
+            drawn,
+            bent,
+        };
+        nodes.iter().map(pull).collect()
+    }
+
+    fn edge<'a>(pulls: &'a FrozenPulls, law: &'a Law, state: &'a Scalar) -> FirstEdge<'a> {
+        FirstEdge::new(pulls, 0.2, law, (state, REST)).expect("frozen wire")
+    }
+
+    /// Tensions of the frozen wire when the live edge has this one, edge by edge, and the wire that it gives, m.
+    fn by_hand(pulls: &FrozenPulls, friction: f64, tension: f64) -> (Vec<f64>, f64) {
+        let mut after = tension.max(0.0);
+        let mut given = 0.0;
+        let mut all = Vec::new();
+        for pull in pulls.iter().rev() {
+            let hold = |least: f64| friction * (pull.drawn * least + pull.bent);
+            let lowest = (after - friction * pull.bent) / (1.0 + friction * pull.drawn);
+            let now = pull.tension.clamp(lowest, after + hold(after));
+            given += pull.rest * (now - pull.tension) / EA;
+            all.push(now);
+            after = now;
+        }
+        all.reverse();
+        (all, given)
+    }
+
+    /// The same edge by halving: the tension at which edge and frozen wire are together as long as is asked.
+    fn slow_twin(edge: &FirstEdge<'_>, length: f64) -> f64 {
+        let (mut low, mut high) = (-200.0, 2000.0);
+        for _ in 0..200 {
+            let tension = 0.5 * (low + high);
+            let (_, given) = by_hand(edge.pulls, edge.friction, tension);
+            let there = (edge.rest + given) * (edge.set() + tension / EA);
+            *(if there < length { &mut low } else { &mut high }) = tension;
+        }
+        0.5 * (low + high)
+    }
+
+    fn length_of(tension: f64) -> f64 {
+        REST * (1.0 + tension / EA)
+    }
+
+    proptest! {
+        /// What slips is what a search over all of the frozen wire finds, step after step.
+        #[test]
+        fn it_slips_as_far_as_friction_lets_it(
+            tension in 0.5..20.0_f64,
+            nodes in proptest::collection::vec((0.0..0.3_f64, 0.0..2.0_f64), 1..40),
+            ways in proptest::collection::vec(-40.0..60.0_f64, 1..8),
+        ) {
+            let (law, state) = (law(), Scalar::default());
+            let mut pulls = wire(tension, &nodes);
+            let mut rest = REST;
+            for way in ways {
+                let edge = FirstEdge { rest, ..edge(&pulls, &law, &state) };
+                let length = length_of(way);
+                let twin = slow_twin(&edge, length);
+                prop_assume!(twin < 55.0);
+                let s = edge.stretched(length, length);
+                prop_assert!((s.tension - twin).abs() < 1e-6 * (1.0 + twin.abs()), "{s:?} {twin}");
+                let (tensions, given) = by_hand(&pulls, edge.friction, twin);
+                if let Some((slip, after)) = edge.slip(length) {
+                    prop_assert!((after - rest - given).abs() < 1e-12, "{after} {rest} {given}");
+                    let mut after_it = slip.tension;
+                    let mut changed: Vec<FrozenPull> = pulls.iter().copied().collect();
+                    for pull in changed[slip.from..].iter_mut().rev() {
+                        after_it = pull.limit(slip.falls, edge.friction).at(after_it);
+                        pull.tension = after_it;
+                    }
+                    for (pull, tension) in changed.iter().zip(&tensions) {
+                        prop_assert!((pull.tension - tension).abs() < 1e-6 * (1.0 + tension), "{pull:?} {tension}");
+                    }
+                    pulls = changed.into_iter().collect();
+                    rest = after;
+                } else {
+                    prop_assert!(given.abs() < 1e-15);
+                }
+            }
+        }
+
+        /// Tension and stiffness are derivatives of the potential, and the potential goes on where wire begins to slip.
+        #[test]
+        fn tension_and_stiffness_are_derivatives(
+            tension in 2.0..20.0_f64,
+            nodes in proptest::collection::vec((0.0..0.3_f64, 0.0..2.0_f64), 1..40),
+            at in 0.2..90.0_f64,
+        ) {
+            let (law, state) = (law(), Scalar::default());
+            let pulls = wire(tension, &nodes);
+            let edge = edge(&pulls, &law, &state);
+            let length = length_of(at);
+            let s = edge.stretched(length, length);
+            let h = 2e-11;
+            let [a, b] = [length - h, length + h].map(|l| edge.stretched(l, l));
+            let slope = (b.energy - a.energy) / (2.0 * h);
+            prop_assert!((slope - s.tension).abs() < 1e-3 * s.tension.abs().max(1.0), "{slope} {s:?}");
+            let [below, above] = [(s.tension - a.tension) / h, (b.tension - s.tension) / h];
+            // (at a kink it is that of either side)
+            let near = [below, above].iter().any(|k| (k / s.stiffness - 1.0).abs() < 1e-2);
+            prop_assert!(near, "{below} {above} {s:?}");
+        }
+    }
+
+    /// The work on frozen wire is what the edge passes on, and none of it is lost where nothing rubs.
+    #[test]
+    fn wire_that_nothing_holds_stores_all_the_work() {
+        let (law, state) = (law(), Scalar::default());
+        let pulls = wire(10.0, &[(0.0, 0.0); 30]);
+        let edge = edge(&pulls, &law, &state);
+        let (slip, _) = edge.slip(length_of(60.0)).expect("it slips");
+        let stored = |tension: f64, rest: f64| 0.5 * tension * tension * rest / EA;
+        let gained: f64 = (0..30)
+            .map(|_| {
+                let shorter = 0.9e-3 * (1.0 - (slip.tension - 10.0) / EA);
+                stored(slip.tension, shorter) - stored(10.0, 0.9e-3)
+            })
+            .sum();
+        assert!((slip.work / gained - 1.0).abs() < 1e-3, "{slip:?} {gained}");
     }
 }

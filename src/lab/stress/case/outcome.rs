@@ -105,6 +105,8 @@ pub enum Invariant {
     Tension,
     /// frozen wire stays where it is
     Frozen,
+    /// friction holds its tensions
+    FrozenTension,
     /// so many steps are enough
     Steps,
 }
@@ -122,6 +124,7 @@ impl fmt::Display for Invariant {
             Self::PlasticWork => "plastic work",
             Self::Tension => "tension",
             Self::Frozen => "frozen wire",
+            Self::FrozenTension => "frozen tension",
             Self::Steps => "steps per turn",
         })
     }

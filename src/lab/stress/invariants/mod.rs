@@ -6,6 +6,7 @@ mod energy;
 mod finite;
 mod friction_cone;
 mod frozen;
+mod frozen_tension;
 mod length;
 #[cfg(test)]
 mod planted;

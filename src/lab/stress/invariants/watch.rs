@@ -5,7 +5,7 @@ use super::energy::Energy;
 use super::frozen::Frozen;
 use super::length::Length;
 use super::plastic_work::PlasticWork;
-use super::{depth, finite, friction_cone, tension, wire_in_wire};
+use super::{depth, finite, friction_cone, frozen_tension, tension, wire_in_wire};
 use crate::lab::stress::Measures;
 use crate::simulation::Simulation;
 
@@ -43,6 +43,7 @@ impl Watch {
         if same {
             friction_cone::look(sim, m)?;
             tension::look(sim, m)?;
+            frozen_tension::look(sim)?;
         }
         depth::look(sim, m)?;
         wire_in_wire::look(sim, m)?;
@@ -51,9 +52,9 @@ impl Watch {
 }
 
 /// Tells nodes from others: their number may be the same where one came and one went. The unstretched lengths between them
-/// are theirs, but for the last, which grows.
+/// are theirs, but for the last, which grows, and the first, which gets what frozen wire gives.
 fn nodes_of(sim: &Simulation) -> Vec<u64> {
     let rest = &sim.system().state.rod.rest;
-    let lengths = rest[..rest.len() - 1].iter().map(|l| l.to_bits());
+    let lengths = rest[1..rest.len() - 1].iter().map(|l| l.to_bits());
     lengths.chain([sim.centreline().frozen as u64]).collect()
 }

@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn a_solver_that_crawls_is_seen() {
         let mut case = draw::case(1, 4).unwrap();
-        assert!(judge(&case).outcome == Outcome::Completed);
+        assert_eq!(judge(&case).outcome, Outcome::Completed);
         case.settings.solver.step = 1e-8;
         match judge(&case).outcome {
             Outcome::Invariant { what, .. } => assert_eq!(what, Invariant::Steps),
