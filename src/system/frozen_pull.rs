@@ -21,6 +21,8 @@ pub struct FrozenPull {
     pub drawn: f64,
     /// the part that bending made, N
     pub bent: f64,
+    /// difference of the tensions on either side when the edge froze, beyond what friction holds, N
+    pub apart: f64,
 }
 
 impl FrozenPull {
@@ -33,7 +35,7 @@ impl FrozenPull {
     pub fn most(&self, friction: f64) -> Beside {
         Beside {
             share: 1.0 + friction * self.drawn,
-            more: friction * self.bent,
+            more: friction * self.bent + self.apart,
         }
     }
 
@@ -42,7 +44,7 @@ impl FrozenPull {
         let share = 1.0 / (1.0 + friction * self.drawn);
         Beside {
             share,
-            more: -friction * self.bent * share,
+            more: -(friction * self.bent + self.apart) * share,
         }
     }
 
@@ -54,21 +56,19 @@ impl FrozenPull {
         }
     }
 
-    /// Splits what presses by the `share` that goes with the tension, and holds what is there: the tension `after` the edge, N. A
-    /// difference that is there is one that something holds, be it inertia.
+    /// Splits what presses by the `share` that goes with the tension, and holds the tension that is there `after` the edge, N. A
+    /// difference that is there is one that something holds, be it the wire's stiffness.
     pub(super) fn split(&mut self, share: f64, after: f64, friction: f64) {
         self.drawn = share * self.pressed;
         self.bent = (1.0 - share) * self.pressed * self.pulls();
-        if friction > 0.0 {
-            let (low, high) = (self.pulls().min(after), self.pulls().max(after));
-            let missing = high - self.most(friction).at(low);
-            self.bent += missing.max(0.0) / friction;
-        }
+        self.apart = 0.0;
+        let (low, high) = (self.pulls().min(after), self.pulls().max(after));
+        self.apart = (high - self.most(friction).at(low)).max(0.0);
     }
 
     /// Whether it can be; bytes from elsewhere may say anything.
     pub(super) fn is_sound(&self) -> bool {
-        let parts = [self.turned, self.pressed, self.drawn, self.bent];
+        let parts = [self.turned, self.pressed, self.drawn, self.bent, self.apart];
         self.tension.is_finite()
             && self.rest > 0.0
             && self.rest.is_finite()

@@ -42,6 +42,7 @@ impl System {
                 },
                 drawn: 0.0,
                 bent: 0.0,
+                apart: 0.0,
             };
             let share = self.share_by_tension(&pull);
             pull.split(share, load.tension[i + 1].max(0.0), friction);

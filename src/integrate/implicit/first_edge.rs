@@ -227,6 +227,7 @@ mod tests {
             pressed: drawn,
             drawn,
             bent,
+            apart: 0.0,
         };
         nodes.iter().map(pull).collect()
     }

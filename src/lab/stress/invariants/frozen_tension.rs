@@ -8,6 +8,9 @@ use crate::system::FrozenPull;
 /// By which strain they may: the rounding of places and of a walk along the wire.
 const ROUNDING: f64 = 1e-13;
 
+/// Share below the yield limit from which on a tension yields: the rounding of a return to it.
+const YIELDS: f64 = 1e-9;
+
 /// Judges every pair of frozen edges, and the last with the first live one.
 pub(super) fn look(sim: &Simulation) -> Found {
     let sys = sim.system();
@@ -18,7 +21,7 @@ pub(super) fn look(sim: &Simulation) -> Found {
     let live = sys.state.load.tension.first().map_or(0.0, |t| t.max(0.0));
     // (an edge that yields pulls at frozen wire as it does where yield begins)
     let yields = sys.model.laws.stretch.limit + sys.state.rod.stretch[0].rise;
-    let live = (live < yields).then_some(live);
+    let live = (live < (1.0 - YIELDS) * yields).then_some(live);
     let after = pulls.iter().skip(1).map(FrozenPull::pulls).chain(live);
     for (i, (pull, after)) in pulls.iter().zip(after).enumerate() {
         let own = pull.pulls();

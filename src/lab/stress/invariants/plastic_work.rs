@@ -58,16 +58,16 @@ impl PlasticWork {
         let laws = &sim.system().model.laws;
         let twist = sim.system().model.twist.is_carried();
         let edges = self.rod.edges();
-        // the edge at the nozzle grows, and the set of its joint with it
+        // the edge at the nozzle grows, and the set of its joint with it; the first gets and gives what frozen wire gives and gets
         let inner = edges - 1;
         let kinds = [
-            ("bending", laws.bend, inner, 0),
-            ("twist", laws.twist, if twist { inner } else { 0 }, 1),
-            ("stretch", laws.stretch, inner, 2),
+            ("bending", laws.bend, 2..inner, 0),
+            ("twist", laws.twist, if twist { 2..inner } else { 0..0 }, 1),
+            ("stretch", laws.stretch, 1..inner, 2),
         ];
-        for (name, law, count, kind) in kinds {
+        for (name, law, joints, kind) in kinds {
             let (mut least, mut grain) = (0.0, 0.0);
-            for i in 0..count {
+            for i in joints {
                 let (was, is) = (set(&before.rod, kind, i), set(&self.rod, kind, i));
                 let length = match kind {
                     2 => self.rod.rest[i],
