@@ -19,16 +19,20 @@ pub(crate) struct FrozenSlip {
 }
 
 impl System {
-    /// Coefficient of friction by which frozen wire holds; none where wire does not freeze with its tensions.
+    /// Coefficient of friction by which frozen wire holds; none where wire does not freeze with its tensions, or nothing holds it.
+    ///
+    /// Without friction wire swings along the core and never comes to rest. It freezes all the same, and then stays as it froze.
     pub(crate) fn friction_at_rest(&self) -> Option<f64> {
-        self.model.contact.as_line().map(|line| line.law.mu_static)
+        let line = self.model.contact.as_line()?;
+        Some(line.law.mu_static).filter(|friction| *friction > 0.0)
     }
 
     /// Puts the tensions of the first `count` edges on record, which freeze.
     pub(super) fn record_pulls(&mut self, count: usize) {
-        let Some(friction) = self.friction_at_rest() else {
+        if !self.model.contact.is_line() {
             return;
-        };
+        }
+        let friction = self.friction_at_rest().unwrap_or(0.0);
         for i in 0..count {
             let (rod, load) = (&self.state.rod, &self.state.load);
             let tension = load.tension[i];
