@@ -9,6 +9,10 @@ use super::{STATION_STEP, STATIONS_PER_TURN, Verdict};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 
+/// Share below the largest value of a run within which a station is as bad: sizes are told to a hundredth of a diameter. Wire that lies on
+/// the turn before overlaps it by a diameter over half a turn, and which station of these has the most is rounding.
+const LEVEL: f64 = 1e-2;
+
 /// Largest values over the last 2 pi of settled wire, m; 0 before there is any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Worst {
@@ -107,15 +111,15 @@ impl Coil {
 
     fn defects_of(&self, kind: DefectKind) -> Vec<Defect> {
         let worst = |run: CountedRun| -> Option<(usize, usize)> {
-            let mut worst: Option<(usize, f64)> = None;
-            for index in run.first..=run.last {
-                if let (Some(value), ..) = self.criterion(kind, &self.records[index])
-                    && worst.is_none_or(|(_, most)| value > most)
-                {
-                    worst = Some((index, value));
-                }
-            }
-            worst.map(|(index, _)| (index, run.counts_at))
+            let value = |index: usize| self.criterion(kind, &self.records[index]).0;
+            let most = (run.first..=run.last)
+                .filter_map(value)
+                .max_by(f64::total_cmp)?;
+            let is_high = |index: &usize| value(*index).is_some_and(|v| v >= (1.0 - LEVEL) * most);
+            let high: Vec<usize> = (run.first..=run.last).filter(is_high).collect();
+            let middle = (high.first()? + high.last()?) / 2;
+            let at = high.into_iter().min_by_key(|at| at.abs_diff(middle))?;
+            Some((at, run.counts_at))
         };
         let runs = self.counted_runs(kind, 0).into_iter();
         let worst = runs.filter_map(worst);
