@@ -9,8 +9,8 @@ use super::{STATION_STEP, STATIONS_PER_TURN, Verdict};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 
-/// Share below the largest value of a run within which a station is as bad: sizes are told to a hundredth of a diameter. Wire that lies on
-/// the turn before overlaps it by a diameter over half a turn, and which station of these has the most is rounding.
+/// Share below the largest value of an overlap or double turn within which a station is as bad: sizes are told to a hundredth of a
+/// diameter. Wire that lies on the turn before overlaps it by a diameter over half a turn, and which station of these has the most is rounding.
 const LEVEL: f64 = 1e-2;
 
 /// Largest values over the last 2 pi of settled wire, m; 0 before there is any.
@@ -98,7 +98,7 @@ impl Coil {
     }
 
     /// Defects of the settled wire, along the wire: one for each run of stations long enough to count, at
-    /// the station of the run where it is largest (linear in the wire).
+    /// the station of the run where it is largest, or the middle of those where it is (linear in the wire).
     pub fn defects(&self) -> Vec<Defect> {
         let mut found: Vec<Defect> = DefectKind::MEASURED
             .into_iter()
@@ -115,7 +115,11 @@ impl Coil {
             let most = (run.first..=run.last)
                 .filter_map(value)
                 .max_by(f64::total_cmp)?;
-            let is_high = |index: &usize| value(*index).is_some_and(|v| v >= (1.0 - LEVEL) * most);
+            let level = match kind {
+                DefectKind::Overlap | DefectKind::DoubleTurn => LEVEL,
+                _ => 0.0,
+            };
+            let is_high = |index: &usize| value(*index).is_some_and(|v| v >= (1.0 - level) * most);
             let high: Vec<usize> = (run.first..=run.last).filter(is_high).collect();
             let middle = (high.first()? + high.last()?) / 2;
             let at = high.into_iter().min_by_key(|at| at.abs_diff(middle))?;
