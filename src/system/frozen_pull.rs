@@ -56,14 +56,16 @@ impl FrozenPull {
         }
     }
 
-    /// Splits what presses by the `share` that goes with the tension, and holds the tension that is there `after` the edge, N. A
-    /// difference that is there is one that something holds, be it the wire's stiffness.
-    pub(super) fn split(&mut self, share: f64, after: f64, friction: f64) {
+    /// Splits what presses by the `share` that goes with the tension.
+    pub(super) fn split(&mut self, share: f64) {
         self.drawn = share * self.pressed;
         self.bent = (1.0 - share) * self.pressed * self.pulls();
-        self.apart = 0.0;
+    }
+
+    /// Holds the tension that is there `after` the edge, N, whatever friction does: the wire's stiffness may.
+    pub(super) fn hold(&mut self, after: f64, friction: f64) {
         let (low, high) = (self.pulls().min(after), self.pulls().max(after));
-        self.apart = (high - self.most(friction).at(low)).max(0.0);
+        self.apart += (high - self.most(friction).at(low)).max(0.0);
     }
 
     /// Whether it can be; bytes from elsewhere may say anything.

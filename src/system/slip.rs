@@ -33,6 +33,13 @@ impl System {
             return;
         }
         let friction = self.friction_at_rest().unwrap_or(0.0);
+        // an edge that yields as it freezes pulls harder than frozen wire followed
+        let (first, before) = (self.state.load.tension[0], self.state.frozen_pulls.len());
+        if let Some(i) = before.checked_sub(1)
+            && let Some(last) = self.state.frozen_pulls.get_mut(i)
+        {
+            last.hold(first.max(0.0), friction);
+        }
         for i in 0..count {
             let (rod, load) = (&self.state.rod, &self.state.load);
             let tension = load.tension[i];
@@ -49,7 +56,8 @@ impl System {
                 apart: 0.0,
             };
             let share = self.share_by_tension(&pull);
-            pull.split(share, load.tension[i + 1].max(0.0), friction);
+            pull.split(share);
+            pull.hold(load.tension[i + 1].max(0.0), friction);
             self.state.frozen_pulls.push(pull);
         }
     }
