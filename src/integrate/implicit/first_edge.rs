@@ -68,6 +68,11 @@ impl<'a> FirstEdge<'a> {
         1.0 + self.state.strain
     }
 
+    /// Tension at which the edge yields, N.
+    fn yields_at(&self) -> f64 {
+        self.law.limit + self.state.rise
+    }
+
     /// Tension of the edge were no wire to slip, N.
     fn held(&self, length: f64) -> f64 {
         self.law.modulus * (length / self.rest - self.set())
@@ -84,7 +89,9 @@ impl<'a> FirstEdge<'a> {
         let held = self.held(length);
         let least = last.least(self.friction).at(last.pulls());
         let falls = held < least;
-        if (falls && least > 0.0) || held > last.most(self.friction).at(last.pulls()) {
+        // (an edge that yields pulls no harder than it yields at)
+        let rises = held.min(self.yields_at()) > last.most(self.friction).at(last.pulls());
+        if (falls && least > 0.0) || rises {
             let reached = |tension: f64, run: &Run| {
                 let there = self.length_at(tension, self.rest - run.b, run.a);
                 if falls {
@@ -172,7 +179,7 @@ impl<'a> FirstEdge<'a> {
     fn balanced(&self, length: f64, run: Run, falls: bool) -> (f64, f64, Run, bool) {
         let modulus = self.law.modulus;
         let rest = self.rest - run.b;
-        let most = self.law.limit + self.state.rise;
+        let most = self.yields_at();
         // a quadratic, with its root in the form without cancellation
         let [c2, c1, c0] = [
             run.a / modulus,
@@ -328,6 +335,31 @@ mod tests {
             let near = [below, above].iter().any(|k| (k / s.stiffness - 1.0).abs() < 1e-2);
             prop_assert!(near, "{below} {above} {s:?}");
         }
+    }
+
+    /// Frozen wire that holds more than the edge yields at lost tension to it.
+    #[test]
+    fn an_edge_that_yields_first_draws_no_wire() {
+        let (law, state) = (law(), Scalar::default());
+        let pulls = wire(59.0, &[(0.1, 20.0); 5]);
+        let edge = edge(&pulls, &law, &state);
+        let length = length_of(90.0);
+        assert!(edge.slip(length).is_none(), "{:?}", edge.slip(length));
+        let (own, s) = (
+            stretched(&law, &state, REST, length, length),
+            edge.stretched(length, length),
+        );
+        assert_eq!((own.tension, own.energy), (s.tension, s.energy));
+        // wire that holds less gives what it can up to there
+        let pulls = wire(50.0, &[(0.01, 0.0); 5]);
+        let (slip, _) = FirstEdge::new(&pulls, 0.2, &law, (&state, REST))
+            .expect("frozen wire")
+            .slip(length)
+            .expect("it slips");
+        assert!(
+            (slip.tension - 60.0).abs() < 1e-12 && slip.from == 0,
+            "{slip:?}"
+        );
     }
 
     /// The work on frozen wire is what the edge passes on, and none of it is lost where nothing rubs.
