@@ -354,7 +354,7 @@ mod tests {
         let pulls = wire(50.0, &[(0.01, 0.0); 5]);
         let (slip, _) = FirstEdge::new(&pulls, 0.2, &law, (&state, REST))
             .expect("frozen wire")
-            .slip(length)
+            .slip(length_of(400.0))
             .expect("it slips");
         assert!(
             (slip.tension - 60.0).abs() < 1e-12 && slip.from == 0,
