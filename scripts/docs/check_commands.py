@@ -38,6 +38,8 @@ ROOT_PAGES = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md", "CHANGELOG.md"]
 LINKED = ["release", "debug", "portable", "venv", "venv-*", "node-docs"]
 # ... and copied, since pages make it anew.
 COPIED = ["fmu"]
+# What the FMU is built from. One that is older than a source shows what the sources no longer do.
+SOURCES = ["Cargo.toml", "Cargo.lock", "src", "fmu", "modelDescription"]
 # Set while a page runs, to be seen by a check of pages that a page starts.
 RUNNING = "COILWIND_PAGE_RUNS"
 SHELLS_BY_OTHER_NAMES = {"bash", "shell", "zsh", "console", "shell-session", "terminal"}
@@ -279,6 +281,14 @@ class Runner:
         return True
 
 
+def refuse_what_is_old(root, fmu):
+    """Ends the check where the FMU is older than a source. (The command is cargo's to judge.)"""
+    sources = [path for name in SOURCES for path in [root / name, *(root / name).rglob("*")] if path.is_file()]
+    newest = max(sources, key=lambda path: path.stat().st_mtime, default=None)
+    if newest and fmu.exists() and fmu.stat().st_mtime < newest.stat().st_mtime:
+        sys.exit(f"check_commands.py: {fmu} is older than {newest.relative_to(root)}; build it with scripts/build_fmu.sh")
+
+
 def check_page(page, text, root, target, python, command):
     """Problems of a page as pairs of line number and sentence; its fences, and those that ran with their times."""
     fences, problems = fences_of(text)
@@ -315,6 +325,7 @@ def main():
         sys.exit("check_commands.py: a page runs the check of pages; mark its fence <!-- not run: REASON -->")
     root = args.root.resolve()
     target = (root / (os.environ.get("CARGO_TARGET_DIR") or "target")).resolve()
+    refuse_what_is_old(root, target / "fmu/CoilWinding.fmu")
     command = Command(str(target / "release/coilwind"))
     pages = [Path(page).resolve().relative_to(root).as_posix() for page in args.pages] or [
         *(name for name in ROOT_PAGES if (root / name).exists()),

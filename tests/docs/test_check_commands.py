@@ -184,3 +184,12 @@ def test_a_page_that_checks_pages_is_refused(check, root):
     code, said = check(page("sh", f"{sys.executable} {root}/scripts/docs/check_commands.py"))
     assert code == 1
     assert "a page runs the check of pages" in said
+
+
+def test_an_fmu_older_than_its_sources_is_refused(planted, root):
+    folder = planted({"README.md": "# Page\n", "src/lib.rs": "// newer than any FMU\n"})
+    words = [sys.executable, root / "scripts/docs/check_commands.py", "--root", folder]
+    inherited = {name: value for name, value in os.environ.items() if name != "CARGO_TARGET_DIR"}
+    done = subprocess.run(words, env=inherited, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "CoilWinding.fmu is older than src/lib.rs; build it with scripts/build_fmu.sh" in done.stderr
