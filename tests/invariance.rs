@@ -11,16 +11,48 @@ use coilwind::signals::{Inputs, Outputs};
 use coilwind::simulation::Simulation;
 use coilwind::variables::{Access, Causality, Unit, Value, table, units};
 
-/// Power of the length with which values of a unit grow.
-fn exponent(unit: &str) -> i32 {
-    let known = |u: &&Unit| u.name == unit;
-    let base = units().iter().find(known).map_or(&[][..], |u| u.base);
-    let powers = base.iter().map(|(name, power)| match *name {
-        "kg" => 3 * power,
-        "m" | "s" => *power,
-        _ => 0,
-    });
-    powers.sum()
+/// A scene like another one: its lengths, times and masses are these powers of one factor times the other's.
+#[derive(Clone, Copy)]
+struct Like {
+    lengths: i32,
+    times: i32,
+    masses: i32,
+}
+
+/// Of another size, with the same metal.
+const LARGER: Like = Like {
+    lengths: 1,
+    times: 1,
+    masses: 3,
+};
+
+/// Of the same size and with the same forces, of heavier metal.
+const HEAVIER: Like = Like {
+    lengths: 0,
+    times: 1,
+    masses: 2,
+};
+
+/// Of the same size and as fast, of heavier metal with stronger forces.
+const STRONGER: Like = Like {
+    lengths: 0,
+    times: 0,
+    masses: 1,
+};
+
+impl Like {
+    /// Power of the factor with which values of a unit grow.
+    fn exponent(self, unit: &str) -> i32 {
+        let known = |u: &&Unit| u.name == unit;
+        let base = units().iter().find(known).map_or(&[][..], |u| u.base);
+        let powers = base.iter().map(|(name, power)| match *name {
+            "kg" => self.masses * power,
+            "m" => self.lengths * power,
+            "s" => self.times * power,
+            _ => 0,
+        });
+        powers.sum()
+    }
 }
 
 /// `fig8` with these changes. Spacing and tolerance that nobody gives go with the wire.
@@ -38,15 +70,15 @@ fn settings(changes: &[(&str, &str)]) -> SceneSettings {
     settings
 }
 
-/// Winds a scene of which all lengths are `scale` times those of `settings`; its outputs in lengths of the original, by name.
-fn wound(settings: &SceneSettings, scale: f64) -> Vec<(&'static str, f64)> {
+/// Winds a scene like that of `settings`, the factor being `scale`; its outputs in units of the original, by name.
+fn wound(settings: &SceneSettings, like: Like, scale: f64) -> Vec<(&'static str, f64)> {
     let mut scaled = settings.clone();
     for row in table() {
         if let (Causality::Parameter, Access::Parameter { get, .. }) = (row.causality, &row.access)
             && let Value::Real(value) = get(settings)
             && value != 0.0
         {
-            let value = value * scale.powi(exponent(row.unit));
+            let value = value * scale.powi(like.exponent(row.unit));
             scaled.set(row.name, Value::Real(value)).expect(row.name);
         }
     }
@@ -54,16 +86,16 @@ fn wound(settings: &SceneSettings, scale: f64) -> Vec<(&'static str, f64)> {
     let end = sim.motion_profile().end();
     while sim.time() < end {
         let left = end - sim.time();
-        sim.advance_profile(left.min(1e-3 * scale))
+        sim.advance_profile(left.min(1e-3 * scale.powi(like.times)))
             .expect("goes on");
     }
-    outputs(sim.outputs(), scale)
+    outputs(sim.outputs(), like, scale)
 }
 
-fn outputs(of: &Outputs, scale: f64) -> Vec<(&'static str, f64)> {
+fn outputs(of: &Outputs, like: Like, scale: f64) -> Vec<(&'static str, f64)> {
     let rows = table().iter().filter_map(|row| match row.access {
         Access::Output(get) => match get(of) {
-            Value::Real(x) => Some((row.name, x / scale.powi(exponent(row.unit)))),
+            Value::Real(x) => Some((row.name, x / scale.powi(like.exponent(row.unit)))),
             Value::Integer(n) => Some((row.name, f64::from(n))),
             Value::Boolean(b) => Some((row.name, f64::from(u8::from(b)))),
             Value::String(_) => None,
@@ -73,14 +105,18 @@ fn outputs(of: &Outputs, scale: f64) -> Vec<(&'static str, f64)> {
     rows.collect()
 }
 
-fn is_the_same_at_every_scale(changes: &[(&str, &str)]) {
+fn is_the_same_in_all(like: Like, changes: &[(&str, &str)]) {
     let settings = settings(changes);
-    let original = wound(&settings, 1.0);
+    let original = wound(&settings, like, 1.0);
     for scale in [0.25, 4.0] {
-        for (a, b) in original.iter().zip(wound(&settings, scale)) {
-            assert_eq!(*a, b, "at {scale} times the length");
+        for (a, b) in original.iter().zip(wound(&settings, like, scale)) {
+            assert_eq!(*a, b, "with a factor of {scale}");
         }
     }
+}
+
+fn is_the_same_at_every_scale(changes: &[(&str, &str)]) {
+    is_the_same_in_all(LARGER, changes);
 }
 
 /// A fixed onset of contact and a fixed reach of Newton's steps moved fed wire by 2.6 % of a diameter.
@@ -103,11 +139,56 @@ fn a_cylinder_too() {
     ]);
 }
 
+/// Densities that 16 times as much, and a sixteenth, are allowed of.
+const LIGHT: [(&str, &str); 2] = [("wire.density", "1600"), ("wire.enamel_density", "600")];
+
+/// The first step went with the diameter alone, and moved the tension by up to 0.4 % before the wire landed.
+#[test]
+fn heavier_wire_with_slower_spindle() {
+    for speed in ["100", "400"] {
+        let changes = [&LIGHT[..], &[("spindle.speed", speed)]].concat();
+        is_the_same_in_all(HEAVIER, &changes);
+    }
+}
+
+#[test]
+fn heavier_wire_on_a_line_with_mass() {
+    let line = [
+        ("tensioner.line_inertia", "true"),
+        ("tensioner.pulley_mass", "2e-3"),
+        ("core.shape", "cylinder"),
+        ("core.radius", "8e-3"),
+        ("spindle.speed", "100"),
+    ];
+    is_the_same_in_all(HEAVIER, &[&LIGHT[..], &line].concat());
+}
+
+/// A force that is not the scene's shows here.
+#[test]
+fn stronger_wire_under_more_tension() {
+    let wire = [
+        ("wire.material", "custom"),
+        ("wire.EA", "4.9e4"),
+        ("wire.EAp", "1.1e3"),
+        ("wire.EI", "1.5e-3"),
+        ("wire.EIp", "1.1e-4"),
+        ("wire.GJ", "1.1e-3"),
+        ("wire.GJp", "9e-5"),
+        ("wire.N_y", "60"),
+        ("wire.M_y", "8e-3"),
+        ("wire.T_y", "7e-3"),
+        ("wire.moment_cap", "12e-3"),
+        ("wire.strength", "90"),
+        ("spindle.speed", "200"),
+    ];
+    is_the_same_in_all(STRONGER, &[&LIGHT[..], &wire].concat());
+}
+
 /// The other way along the axis is the same coil in a mirror, to the bit.
 #[test]
 fn traverse_to_either_side() {
     let scene = settings(&[("spindle.speed", "300")]);
-    let left = wound(&scene, 1.0);
+    let left = wound(&scene, LARGER, 1.0);
     let mut mirrored = scene.clone();
     let per_turn = mirrored.traverse.per_turn;
     let other = Value::Real(-per_turn);
@@ -120,7 +201,7 @@ fn traverse_to_either_side() {
         "nozzle_angle",
         "nozzle_y",
     ];
-    for (a, b) in left.iter().zip(wound(&mirrored, 1.0)) {
+    for (a, b) in left.iter().zip(wound(&mirrored, LARGER, 1.0)) {
         let sign = if odd.contains(&a.0) { -1.0 } else { 1.0 };
         assert_eq!((a.0, sign * a.1), b);
     }

@@ -3,8 +3,8 @@
 use super::surface::Surface;
 use crate::math::V3;
 
-/// Depth in a face that is none, m.
-const TOUCHES: f64 = 1e-9;
+/// Depth in a face that is none, as a share of the core's radius: a nanometre of 10 mm.
+const TOUCHES: f64 = 1e-7;
 
 /// Depth in a face, as a share of the wire's radius, up to which clamped wire lies on it. Chosen: as exact as a room with slanted flanges.
 const ON_FACE: f64 = 0.05;
@@ -19,6 +19,11 @@ const THIN: f64 = 0.9;
 const MOST_WAYS: usize = 500;
 
 impl Surface {
+    /// Depth in a face that is none, m.
+    fn touches(&self) -> f64 {
+        TOUCHES * self.radius_max()
+    }
+
     /// Half width of the core on +x at `y` for wire of `radius`, m: what its centreline has from the axis there, less its radius. None
     /// where the core has nothing that would hold it.
     ///
@@ -53,7 +58,7 @@ impl Surface {
         let mut x = 0.0;
         for _ in 0..MOST_WAYS {
             let depth = -self.nearest(V3::new(x, y, 0.0)).distance;
-            if depth < TOUCHES {
+            if depth < self.touches() {
                 // (an axis in a hollow of the core says nothing)
                 return x > 0.0 && outside > x + radius;
             }
@@ -68,7 +73,7 @@ impl Surface {
         let mut x = self.radius_max() * 1.01 + radius;
         for _ in 0..MOST_WAYS {
             let d = self.nearest(V3::new(x, y, 0.0)).distance - radius;
-            if d < TOUCHES {
+            if d < self.touches() {
                 return Some(x);
             }
             x -= d;
@@ -87,10 +92,10 @@ impl Surface {
         for step in 0..MOST_STEPS {
             let near = self.nearest(at);
             let depth = radius - near.distance;
-            if step > 0 && depth.abs() <= TOUCHES {
+            if step > 0 && depth.abs() <= self.touches() {
                 return Some(at.x);
             }
-            if step == 0 && depth <= TOUCHES || near.normal.x <= 0.0 {
+            if step == 0 && depth <= self.touches() || near.normal.x <= 0.0 {
                 return None;
             }
             at.x += depth / near.normal.x;
@@ -134,7 +139,7 @@ mod tests {
             let tapered = changed(|p| V3::new(p.x * (1.0 + 10.0 * p.y), p.y, p.z));
             for surface in [turned, tapered] {
                 let depth = depth(&surface, -2e-3);
-                assert!(depth.abs() <= TOUCHES, "{degrees} deg: {depth} m");
+                assert!(depth.abs() <= surface.touches(), "{degrees} deg: {depth} m");
                 assert_ne!(
                     surface.half_width(-2e-3, RADIUS),
                     surface.face_on_x(-2e-3, 0.0)
@@ -149,7 +154,7 @@ mod tests {
         let surface = Surface::new(pulley);
         for y in [0.0, 0.1e-3] {
             let depth = depth(&surface, y);
-            assert!(depth.abs() <= TOUCHES, "{depth} m");
+            assert!(depth.abs() <= surface.touches(), "{depth} m");
         }
     }
 
@@ -188,7 +193,10 @@ mod tests {
         assert!((over_gap - 6e-3).abs() < 0.1e-6, "{over_gap}");
         assert!(depth(&surface, middle_of_gap) <= ON_FACE * RADIUS);
         let over_plate = surface.half_width(3.03e-3, RADIUS).expect("a plate");
-        assert!((over_plate - 6e-3).abs() < TOUCHES, "{over_plate}");
+        assert!(
+            (over_plate - 6e-3).abs() < surface.touches(),
+            "{over_plate}"
+        );
     }
 
     /// Wire over a groove that it does not fit into was clamped on the bottom, deep in both walls.

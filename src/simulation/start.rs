@@ -21,7 +21,7 @@ use crate::integrate::{
 use crate::math::frame_along;
 use crate::math::polar_angle;
 use crate::math::turn_about_y;
-use crate::math::{Spin, V3, scaled};
+use crate::math::{Spin, V3};
 use crate::measure::{Coil, CoilSpec, Crossover};
 use crate::rod::{Rod, Scalar, Section};
 use crate::scene::{Core, Integrator, Scene, si};
@@ -33,10 +33,10 @@ use std::sync::Arc;
 /// What is left of the wire's mass where its inertia is left out: enough to keep a slack wire's motion unique.
 const MASSLESS: f64 = 1e-6;
 
-/// Shortest, first and longest step of the implicit method, s, for wire of 0.7 mm. Chosen: a step of a nanosecond resolves
-/// any contact, and what fails there fails for another reason; a tenth of a second is longer than any motion of a wire
-/// takes.
-const STEPS: [f64; 3] = [1e-9, 1e-5, 0.1];
+/// Shortest, first and longest step of the implicit method, in times that a wave along the wire takes for a diameter: 0.2 us
+/// in the default wire. Chosen: a step of a nanosecond resolves any contact, and what fails there fails for another reason; a
+/// tenth of a second is longer than any motion of a wire takes.
+const STEPS: [f64; 3] = [0.005, 50.0, 5e5];
 
 /// Turns from which on a run goes on after its planned layers. Chosen: a turn. Wire has to be wound after the last one until that comes
 /// to rest, half a turn or more.
@@ -410,7 +410,8 @@ fn stepper_for(scene: &Scene) -> Result<(Stepper, f64), SimError> {
         stable * solver.step_share
     };
     let Some(method) = method else {
-        let [shortest, first, most] = STEPS.map(|time| scaled(time, scene.wire.bare_diameter));
+        let wave = (scene.wire.ea / scene.wire.mass_per_length()).sqrt();
+        let [shortest, first, most] = STEPS.map(|share| share * (scene.wire.bare_diameter / wave));
         let mut method = Implicit::new(Scheme::Bdf2, solver.tolerance, shortest, most);
         method.next = first;
         method.fixed = (solver.step > 0.0).then_some(solver.step);
