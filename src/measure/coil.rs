@@ -385,6 +385,20 @@ impl Coil {
         Ok(())
     }
 
+    /// Winding angle of a settled node from the clamp, rad.
+    pub(crate) fn angle_of_node(&self, node: usize) -> f64 {
+        self.nodes.get(node).map_or(0.0, |node| node.angle)
+    }
+
+    /// Gap between a settled node and the turn before it or a flange, m; none where there is neither.
+    pub(crate) fn room_beside_node(&self, node: usize) -> Option<f64> {
+        let node = self.nodes.get(node)?;
+        let station = node.stations_before.saturating_sub(1);
+        let station = &self.records.get(station)?.station;
+        let before = station.neighbour.map(|neighbour| neighbour.gap);
+        before.or(station.flange_gap)
+    }
+
     /// Takes back the last `count` nodes (all, when there are fewer), as if never settled.
     pub fn unsettle(&mut self, count: usize) {
         let keep = self.nodes.len().saturating_sub(count);

@@ -29,6 +29,7 @@ mod older_wire;
 mod outputs;
 mod pool;
 mod product;
+mod pushed_wire;
 mod quasi_static;
 mod rates;
 mod refining;

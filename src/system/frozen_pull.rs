@@ -15,13 +15,15 @@ pub struct FrozenPull {
     pub rest: f64,
     /// angle by which the wire turned at the node after the edge, rad
     pub turned: f64,
-    /// normal force on that node when the edge froze, over the tension then
+    /// all normal forces on that node when the edge froze, over the tension then
     pub pressed: f64,
+    /// what they are together, as vectors: less where wire lies in a groove, whose walls press from either side
+    pub net: f64,
     /// the part of it that goes with the tension
     pub drawn: f64,
     /// the part that bending made, N
     pub bent: f64,
-    /// difference of the tensions on either side when the edge froze, beyond what friction holds, N
+    /// by how much the tension lay above, or below, what friction held beside that after the edge, N
     pub apart: f64,
 }
 
@@ -31,20 +33,21 @@ impl FrozenPull {
         self.tension.max(0.0)
     }
 
-    /// Largest tension beside one of `T` that a coefficient of `friction` holds: factor of `T`, and what comes to it, N.
+    /// Largest tension beside one of `T` after it that a coefficient of `friction` holds: factor of `T`, and what comes to it, N.
     pub fn most(&self, friction: f64) -> Beside {
         Beside {
             share: 1.0 + friction * self.drawn,
-            more: friction * self.bent + self.apart,
+            // (wire pushes no wire along itself)
+            more: (friction * self.bent + self.apart).max(0.0),
         }
     }
 
-    /// Least tension beside one of `T`; less than none is none.
+    /// Least tension beside one of `T` after it; less than none is none.
     pub fn least(&self, friction: f64) -> Beside {
         let share = 1.0 / (1.0 + friction * self.drawn);
         Beside {
             share,
-            more: -(friction * self.bent + self.apart) * share,
+            more: self.apart - friction * self.bent * share,
         }
     }
 
@@ -64,14 +67,17 @@ impl FrozenPull {
 
     /// Holds the tension that is there `after` the edge, N, whatever friction does: the wire's stiffness may.
     pub(super) fn hold(&mut self, after: f64, friction: f64) {
-        let (low, high) = (self.pulls().min(after), self.pulls().max(after));
-        self.apart += (high - self.most(friction).at(low)).max(0.0);
+        let own = self.pulls();
+        let above = own - self.most(friction).at(after);
+        let below = own - self.least(friction).at(after);
+        self.apart += above.max(0.0) + below.min(0.0);
     }
 
     /// Whether it can be; bytes from elsewhere may say anything.
     pub(super) fn is_sound(&self) -> bool {
-        let parts = [self.turned, self.pressed, self.drawn, self.bent, self.apart];
+        let parts = [self.turned, self.pressed, self.net, self.drawn, self.bent];
         self.tension.is_finite()
+            && self.apart.is_finite()
             && self.rest > 0.0
             && self.rest.is_finite()
             && parts.iter().all(|x| *x >= 0.0 && x.is_finite())
@@ -97,6 +103,11 @@ impl Beside {
     /// The tension beside this one, N.
     pub fn at(&self, tension: f64) -> f64 {
         self.share * tension + self.more
+    }
+
+    /// The other tension, where this one is the tension beside it, N.
+    pub fn other(&self, beside: f64) -> f64 {
+        (beside - self.more) / self.share
     }
 
     /// This limit beside wire that is itself at `other`.

@@ -2,6 +2,7 @@
 
 use super::{FrozenPull, System};
 use crate::contact::ContactPoint;
+use crate::math::V3;
 use crate::rod::turning;
 use std::f64::consts::TAU;
 
@@ -43,14 +44,16 @@ impl System {
         for i in 0..count {
             let (rod, load) = (&self.state.rod, &self.state.load);
             let tension = load.tension[i];
+            let [pressed, net] = match tension > 0.0 {
+                true => self.normal_force_at(i + 1).map(|force| force / tension),
+                false => [0.0; 2],
+            };
             let mut pull = FrozenPull {
                 tension,
                 rest: rod.rest[i],
                 turned: turning([&load.tangent[i], &load.tangent[i + 1]]).norm(),
-                pressed: match tension > 0.0 {
-                    true => self.normal_force_at(i + 1) / tension,
-                    false => 0.0,
-                },
+                pressed,
+                net,
                 drawn: 0.0,
                 bent: 0.0,
                 apart: 0.0,
@@ -64,34 +67,69 @@ impl System {
 
     /// Share of what presses on the wire of the last turn, up to this edge, that its tension alone would make; 1 at most.
     fn share_by_tension(&self, last: &FrozenPull) -> f64 {
-        let (mut turned, mut pressed) = (last.turned, last.pressed);
+        let (mut turned, mut net) = (last.turned, last.net);
         for pull in self.state.frozen_pulls.iter().rev() {
             if turned >= TAU {
                 break;
             }
             turned += pull.turned;
-            pressed += pull.pressed;
+            net += pull.net;
         }
-        if pressed > turned {
-            turned / pressed
-        } else {
-            1.0
-        }
+        if net > turned { turned / net } else { 1.0 }
     }
 
-    /// Normal force of what node `i` touches with half of the edges at it, N.
-    fn normal_force_at(&self, i: usize) -> f64 {
+    /// Normal forces of what node `i` touches, N: the sum of what they are, and what they are together.
+    ///
+    /// A point shares its forces out among its nodes.
+    fn normal_force_at(&self, i: usize) -> [f64; 2] {
         let (Some(model), Some(line)) =
             (self.model.contact.as_line(), self.state.contact.as_line())
         else {
-            return 0.0;
+            return [0.0; 2];
         };
-        let at = |point: ContactPoint| {
-            let forces = line.normal_forces(model, point.number(), point.length(&self.state.rod));
-            forces.map(|force| force.norm()).sum::<f64>()
+        let (mut sum, mut together) = (0.0, V3::zeros());
+        let last = 2 * self.state.rod.edges();
+        for number in (2 * i).saturating_sub(2).max(1)..(2 * i + 3).min(last) {
+            let point = ContactPoint::of_number(number);
+            let weights = point.weights();
+            let at_node = weights.iter().filter(|(node, _)| *node == i);
+            let share: f64 = at_node.map(|(_, weight)| weight).sum();
+            for force in line.normal_forces(model, number, point.length(&self.state.rod)) {
+                sum += share * force.norm();
+                together += share * force;
+            }
+        }
+        [sum, together.norm()]
+    }
+
+    /// With which force live wire presses on frozen nodes: their numbers, and the forces, core frame, N, in place of what was in `pushes`.
+    pub(crate) fn pushes_on_frozen(&self, pushes: &mut Vec<(usize, V3)>) {
+        pushes.clear();
+        let (Some(model), Some(line)) =
+            (self.model.contact.as_line(), self.state.contact.as_line())
+        else {
+            return;
         };
-        at(ContactPoint::Node(i))
-            + 0.5 * (at(ContactPoint::Edge(i - 1)) + at(ContactPoint::Edge(i)))
+        let frozen = self.state.frozen_pulls.len();
+        for point in ContactPoint::all(self.state.rod.edges()) {
+            let (k, length) = (point.number(), point.length(&self.state.rod));
+            let forces = line.forces_of_wire(model, k, length);
+            let on_frozen = forces.filter(|(node, _)| *node < frozen);
+            pushes.extend(on_frozen.map(|(node, force)| (node, -force)));
+        }
+    }
+
+    /// Which way frozen wire runs at a node, and which way leads off the core there: unit vectors, core frame.
+    pub(crate) fn frozen_way(&self, node: usize) -> (V3, V3) {
+        let points = &self.state.frozen.points;
+        let next = (node + 1).min(points.len() - 1);
+        let along = (points[next] - points[next - 1]).normalize();
+        let out = self
+            .model
+            .contact
+            .as_line()
+            .map_or(V3::zeros(), |line| line.shape.nearness(points[node]).normal);
+        (along, out)
     }
 
     /// Takes over how frozen wire slipped in a step: the first live edge is `rest` long unstretched now, m.

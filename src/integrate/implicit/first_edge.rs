@@ -87,10 +87,10 @@ impl<'a> FirstEdge<'a> {
     fn slips(&self, length: f64) -> Option<(Run, bool)> {
         let last = self.pulls.last()?;
         let held = self.held(length);
-        let least = last.least(self.friction).at(last.pulls());
+        let least = last.most(self.friction).other(last.pulls());
         let falls = held < least;
         // (an edge that yields pulls no harder than it yields at)
-        let rises = held.min(self.yields_at()) > last.most(self.friction).at(last.pulls());
+        let rises = held.min(self.yields_at()) > last.least(self.friction).other(last.pulls());
         if (falls && least > 0.0) || rises {
             let reached = |tension: f64, run: &Run| {
                 let there = self.length_at(tension, self.rest - run.b, run.a);
@@ -130,7 +130,7 @@ impl<'a> FirstEdge<'a> {
                 true => pull.pulls().min(slipping.at(run.begins)),
                 false => pull.pulls().max(slipping.at(run.begins)),
             };
-            let begins = (tension - slipping.more) / slipping.share;
+            let begins = slipping.other(tension);
             if (falls && begins <= 0.0) || (!first && reached(begins, &run)) {
                 break;
             }
@@ -225,18 +225,35 @@ mod tests {
         Law::new(EA, 0.02 * EA, 60.0, f64::INFINITY)
     }
 
-    /// Frozen wire of one tension, whose nodes hold by their bends and by what the wire's stiffness presses, N.
-    fn wire(tension: f64, nodes: &[(f64, f64)]) -> FrozenPulls {
-        let pull = |&(drawn, bent): &(f64, f64)| FrozenPull {
-            tension,
-            rest: 0.9e-3,
-            turned: drawn,
-            pressed: drawn,
-            drawn,
-            bent,
-            apart: 0.0,
-        };
-        nodes.iter().map(pull).collect()
+    /// Frozen wire of one tension as far as its nodes let it: they hold by their bends, by what the wire's stiffness presses, N, and
+    /// by how much they hold tensions apart, N.
+    fn wire(tension: f64, nodes: &[(f64, f64, f64)]) -> FrozenPulls {
+        let mut after = tension;
+        let mut all: Vec<FrozenPull> = Vec::new();
+        for &(drawn, bent, apart) in nodes.iter().rev() {
+            let [lowest, highest] = limits((drawn, bent, apart), 0.2, after);
+            after = tension.clamp(lowest.max(0.0), highest);
+            all.push(FrozenPull {
+                tension: after,
+                rest: 0.9e-3,
+                turned: drawn,
+                pressed: drawn,
+                net: drawn,
+                drawn,
+                bent,
+                apart,
+            });
+        }
+        all.into_iter().rev().collect()
+    }
+
+    /// Between which tensions one lies that has another one after it, N.
+    fn limits((drawn, bent, apart): (f64, f64, f64), friction: f64, after: f64) -> [f64; 2] {
+        let (by_bends, by_stiffness) = (1.0 + friction * drawn, friction * bent);
+        [
+            (after - by_stiffness) / by_bends + apart,
+            after * by_bends + (by_stiffness + apart).max(0.0),
+        ]
     }
 
     fn edge<'a>(pulls: &'a FrozenPulls, law: &'a Law, state: &'a Scalar) -> FirstEdge<'a> {
@@ -249,9 +266,8 @@ mod tests {
         let mut given = 0.0;
         let mut all = Vec::new();
         for pull in pulls.iter().rev() {
-            let hold = |least: f64| friction * (pull.drawn * least + pull.bent);
-            let lowest = (after - friction * pull.bent) / (1.0 + friction * pull.drawn);
-            let now = pull.tension.clamp(lowest, after + hold(after));
+            let [lowest, highest] = limits((pull.drawn, pull.bent, pull.apart), friction, after);
+            let now = pull.tension.clamp(lowest.min(highest), highest);
             given += pull.rest * (now - pull.tension) / EA;
             all.push(now);
             after = now;
@@ -281,7 +297,7 @@ mod tests {
         #[test]
         fn it_slips_as_far_as_friction_lets_it(
             tension in 0.5..20.0_f64,
-            nodes in proptest::collection::vec((0.0..0.3_f64, 0.0..2.0_f64), 1..40),
+            nodes in proptest::collection::vec((0.0..0.3_f64, 0.0..2.0_f64, -0.5..0.5_f64), 1..40),
             ways in proptest::collection::vec(-40.0..60.0_f64, 1..8),
         ) {
             let (law, state) = (law(), Scalar::default());
@@ -318,7 +334,7 @@ mod tests {
         #[test]
         fn tension_and_stiffness_are_derivatives(
             tension in 2.0..20.0_f64,
-            nodes in proptest::collection::vec((0.0..0.3_f64, 0.0..2.0_f64), 1..40),
+            nodes in proptest::collection::vec((0.0..0.3_f64, 0.0..2.0_f64, -0.5..0.5_f64), 1..40),
             at in 0.2..90.0_f64,
         ) {
             let (law, state) = (law(), Scalar::default());
@@ -341,7 +357,7 @@ mod tests {
     #[test]
     fn an_edge_that_yields_first_draws_no_wire() {
         let (law, state) = (law(), Scalar::default());
-        let pulls = wire(59.0, &[(0.1, 20.0); 5]);
+        let pulls = wire(59.0, &[(0.1, 20.0, 0.0); 5]);
         let edge = edge(&pulls, &law, &state);
         let length = length_of(90.0);
         assert!(edge.slip(length).is_none(), "{:?}", edge.slip(length));
@@ -351,7 +367,7 @@ mod tests {
         );
         assert_eq!((own.tension, own.energy), (s.tension, s.energy));
         // wire that holds less gives what it can up to there
-        let pulls = wire(50.0, &[(0.01, 0.0); 5]);
+        let pulls = wire(50.0, &[(0.01, 0.0, 0.0); 5]);
         let (slip, _) = FirstEdge::new(&pulls, 0.2, &law, (&state, REST))
             .expect("frozen wire")
             .slip(length_of(400.0))
@@ -366,7 +382,7 @@ mod tests {
     #[test]
     fn wire_that_nothing_holds_stores_all_the_work() {
         let (law, state) = (law(), Scalar::default());
-        let pulls = wire(10.0, &[(0.0, 0.0); 30]);
+        let pulls = wire(10.0, &[(0.0, 0.0, 0.0); 30]);
         let edge = edge(&pulls, &law, &state);
         let (slip, _) = edge.slip(length_of(60.0)).expect("it slips");
         let stored = |tension: f64, rest: f64| 0.5 * tension * tension * rest / EA;

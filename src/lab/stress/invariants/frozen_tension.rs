@@ -25,11 +25,13 @@ pub(super) fn look(sim: &Simulation) -> Found {
     let after = pulls.iter().skip(1).map(FrozenPull::pulls).chain(live);
     for (i, (pull, after)) in pulls.iter().zip(after).enumerate() {
         let own = pull.pulls();
-        let (low, high) = (own.min(after), own.max(after));
-        let most = pull.most(friction).at(low);
-        if high > most + ROUNDING * sys.model.laws.stretch.modulus {
-            let text =
-                format!("{own:.6} N beside {after:.6} N at frozen edge {i}, {most:.6} N held");
+        let most = pull.most(friction).at(after);
+        let least = pull.least(friction).at(after).min(most);
+        let rounding = ROUNDING * sys.model.laws.stretch.modulus;
+        if own > most + rounding || own < least - rounding {
+            let text = format!(
+                "{own:.6} N beside {after:.6} N at frozen edge {i}, {least:.6} to {most:.6} N held"
+            );
             return Err(Broken::new(Invariant::FrozenTension, text));
         }
     }
