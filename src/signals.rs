@@ -35,6 +35,9 @@ impl Inputs {
         tensioner_damping: 0.0,
     };
 
+    /// Rate of an input of which is told that it stands still, where a rate of 0 says nothing: the least number above it.
+    pub const STILL: f64 = f64::MIN_POSITIVE;
+
     /// Where these inputs are after `dt` (s) at these rates, per s.
     pub fn after(&self, rates: &Self, dt: f64) -> Self {
         Self {

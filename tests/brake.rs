@@ -105,3 +105,46 @@ fn a_brake_that_reaches_its_largest_torque_within_a_step() {
         assert!((found - tension).abs() < 0.1, "{asked} {rate}: {found}");
     }
 }
+
+/// At its largest torque, one end of a difference changed nothing and went on as before: d tension / d torque was -90 to 134 1/m.
+#[test]
+fn the_derivative_at_the_largest_torque_is_that_from_below() {
+    let (mut run, still) = braked(0.2);
+    let turning = Inputs {
+        spindle_speed: 30.0,
+        ..still
+    };
+    let step = 1e-4;
+    for k in 0..300_u32 {
+        let now = Inputs {
+            spindle_speed: 30.0 * f64::from(k.min(100)) / 100.0,
+            ..turning
+        };
+        run.advance(now, step).expect("goes on");
+    }
+    for _ in 0..5 {
+        let along = rising(1.0);
+        let found = run
+            .step_derivative(turning, Inputs::HELD, step, along)
+            .expect("a derivative");
+        let below = Inputs {
+            tension_setpoint: 1.0,
+            ..Inputs::HELD
+        };
+        let away = Inputs {
+            brake_torque: 0.19,
+            tension_setpoint: 10.2,
+            ..turning
+        };
+        // the same pull below the limit, by the set tension
+        let wanted = run
+            .step_derivative(away, Inputs::HELD, step, below)
+            .expect("a derivative");
+        let [found, wanted] = [found.slopes.wire_tension, 20.0 * wanted.slopes.wire_tension];
+        assert!(
+            (found - wanted).abs() < 0.3 * wanted.abs(),
+            "{found} {wanted}"
+        );
+        run.advance(turning, step).expect("goes on");
+    }
+}

@@ -424,6 +424,28 @@ fn a_nozzle_measured_at_the_start_of_a_step_is_as_late_as_the_page_says() {
     close(lag("false", faster, true), 5.0 * step * step);
 }
 
+/// A carriage that has stopped says so by a derivative of 0. It counted as none, and the nozzle went on for a step.
+#[test]
+fn a_carriage_that_is_told_to_stand_stands() {
+    let step = 1e-3;
+    let mut run = Simulation::new(&fig8(&[("nozzle.position_at_start", "true")])).expect("starts");
+    let start = run.inputs();
+    for k in 0..10_u32 {
+        let now = Inputs {
+            nozzle_position: start.nozzle_position + 0.1 * step * f64::from(k.min(5)),
+            ..start
+        };
+        let rates = Inputs {
+            nozzle_position: if k < 5 { 0.1 } else { Inputs::STILL },
+            ..Inputs::HELD
+        };
+        run.advance_ramped(now, rates, step).expect("goes on");
+        let is = run.outputs().nozzle_y - start.nozzle_position;
+        let meant = 0.1 * step * f64::from((k + 1).min(5));
+        assert!((is - meant).abs() < 1e-12, "step {k}: {is} m, {meant} m");
+    }
+}
+
 /// With inertia in the line and a pulley, a run goes on from its bytes as if it had not stopped.
 #[test]
 fn a_chain_behind_the_nozzle_is_saved_and_goes_on_to_the_bit() {

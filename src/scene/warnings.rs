@@ -209,7 +209,8 @@ impl SceneSettings {
         }
         // (layers of a single turn have no neighbours)
         let side_by_side = || law.held().is_none_or(|turns| turns > self.winding.layers);
-        if let Some(pitch) = law.pitch()
+        if by_law
+            && let Some(pitch) = law.pitch()
             && pitch - wire.diameter > self.defects.gap * wire.diameter
             && side_by_side()
         {

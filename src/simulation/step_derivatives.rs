@@ -99,11 +99,19 @@ impl Simulation {
         dt: f64,
         along: Inputs,
     ) -> Result<Derivative, SimError> {
+        let most = self.scene().tensioner.most_torque();
         let outcome = |by: f64| {
+            let changed = inputs.after(&along, by);
+            // (a brake at its largest torque is judged from below: above it, nothing changes)
+            if changed.brake_torque > most.max(inputs.brake_torque) && inputs.brake_torque <= most {
+                return Err(SimError::setup(
+                    "the brake holds by its largest torque".to_owned(),
+                ));
+            }
             let mut run = self.clone();
             // left to the next step of the method, a change would do nothing in this one
             run.talk.heed_small_changes();
-            run.advance_ramped(inputs.after(&along, by), rates, dt)?;
+            run.advance_ramped(changed, rates, dt)?;
             Ok(Outcome::of(&run))
         };
         let begin = self.outputs().wire_tension;

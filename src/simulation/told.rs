@@ -98,6 +98,15 @@ pub(super) fn as_meant(
         go_on(|i| i.nozzle_offset_x, &mut rates.nozzle_offset_x);
         go_on(|i| i.nozzle_offset_z, &mut rates.nozzle_offset_z);
     }
+    for rate in [
+        &mut rates.nozzle_position,
+        &mut rates.nozzle_offset_x,
+        &mut rates.nozzle_offset_z,
+    ] {
+        if *rate == Inputs::STILL {
+            *rate = 0.0;
+        }
+    }
     (
         with_brake(scene, inputs),
         rates_with_brake(scene, &inputs, rates, dt),

@@ -15,11 +15,11 @@ pub struct FrozenPull {
     pub rest: f64,
     /// angle by which the wire turned at the node after the edge, rad
     pub turned: f64,
-    /// all normal forces on that node when the edge froze, over the tension then
+    /// all normal forces on that node when the edge froze, N
     pub pressed: f64,
-    /// what they are together, as vectors: less where wire lies in a groove, whose walls press from either side
+    /// what they are together, N: less where wire lies in a groove, whose walls press from either side
     pub net: f64,
-    /// the part of it that goes with the tension
+    /// the part of it that goes with the tension, over the tension
     pub drawn: f64,
     /// the part that bending made, N
     pub bent: f64,
@@ -59,10 +59,12 @@ impl FrozenPull {
         }
     }
 
-    /// Splits what presses by the `share` that goes with the tension.
-    pub(super) fn split(&mut self, share: f64) {
-        self.drawn = share * self.pressed;
-        self.bent = (1.0 - share) * self.pressed * self.pulls();
+    /// Splits what presses: tension makes as much of it as turns the wire by `turned_per_force` (1/N), and the wire's stiffness the rest.
+    pub(super) fn split(&mut self, turned_per_force: f64) {
+        let tension = self.pulls();
+        let all = if tension > 0.0 { 1.0 / tension } else { 0.0 };
+        self.drawn = self.pressed * turned_per_force.min(all);
+        self.bent = (self.pressed - self.drawn * tension).max(0.0);
     }
 
     /// Holds the tension that is there `after` the edge, N, whatever friction does: the wire's stiffness may.

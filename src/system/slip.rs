@@ -44,10 +44,7 @@ impl System {
         for i in 0..count {
             let (rod, load) = (&self.state.rod, &self.state.load);
             let tension = load.tension[i];
-            let [pressed, net] = match tension > 0.0 {
-                true => self.normal_force_at(i + 1).map(|force| force / tension),
-                false => [0.0; 2],
-            };
+            let [pressed, net] = self.normal_force_at(i + 1);
             let mut pull = FrozenPull {
                 tension,
                 rest: rod.rest[i],
@@ -58,15 +55,16 @@ impl System {
                 bent: 0.0,
                 apart: 0.0,
             };
-            let share = self.share_by_tension(&pull);
-            pull.split(share);
+            let per_force = self.turned_per_force(&pull);
+            pull.split(per_force);
             pull.hold(load.tension[i + 1].max(0.0), friction);
             self.state.frozen_pulls.push(pull);
         }
     }
 
-    /// Share of what presses on the wire of the last turn, up to this edge, that its tension alone would make; 1 at most.
-    fn share_by_tension(&self, last: &FrozenPull) -> f64 {
+    /// Angle by which the wire of the last turn turns, up to this edge, over all that presses on it, 1/N: what a force there has to do with
+    /// tension.
+    fn turned_per_force(&self, last: &FrozenPull) -> f64 {
         let (mut turned, mut net) = (last.turned, last.net);
         for pull in self.state.frozen_pulls.iter().rev() {
             if turned >= TAU {
@@ -75,10 +73,10 @@ impl System {
             turned += pull.turned;
             net += pull.net;
         }
-        if net > turned { turned / net } else { 1.0 }
+        if net > 0.0 { turned / net } else { 0.0 }
     }
 
-    /// Normal forces of what node `i` touches, N: the sum of what they are, and what they are together.
+    /// Normal forces of what node `i` touches, N: the sum of all, and that of what they are together at each point.
     ///
     /// A point shares its forces out among its nodes.
     fn normal_force_at(&self, i: usize) -> [f64; 2] {
@@ -87,19 +85,21 @@ impl System {
         else {
             return [0.0; 2];
         };
-        let (mut sum, mut together) = (0.0, V3::zeros());
+        let (mut sum, mut together) = (0.0, 0.0);
         let last = 2 * self.state.rod.edges();
         for number in (2 * i).saturating_sub(2).max(1)..(2 * i + 3).min(last) {
             let point = ContactPoint::of_number(number);
             let weights = point.weights();
             let at_node = weights.iter().filter(|(node, _)| *node == i);
             let share: f64 = at_node.map(|(_, weight)| weight).sum();
+            let mut of_point = V3::zeros();
             for force in line.normal_forces(model, number, point.length(&self.state.rod)) {
                 sum += share * force.norm();
-                together += share * force;
+                of_point += force;
             }
+            together += share * of_point.norm();
         }
-        [sum, together.norm()]
+        [sum, together]
     }
 
     /// With which force live wire presses on frozen nodes: their numbers, and the forces, core frame, N, in place of what was in `pushes`.
@@ -123,7 +123,8 @@ impl System {
     pub(crate) fn frozen_way(&self, node: usize) -> (V3, V3) {
         let points = &self.state.frozen.points;
         let next = (node + 1).min(points.len() - 1);
-        let along = (points[next] - points[next - 1]).normalize();
+        let way = points[next] - points[next.saturating_sub(1)];
+        let along = way.try_normalize(0.0).unwrap_or_default();
         let out = self
             .model
             .contact

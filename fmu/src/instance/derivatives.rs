@@ -50,15 +50,17 @@ impl Instance {
         if !references.is_empty() {
             self.end_demonstration();
         }
-        for (reference, value) in references.iter().zip(values) {
+        // (a derivative of 0 is told as well: without one, a place may go on as before)
+        let told = |value: f64| if value == 0.0 { Inputs::STILL } else { value };
+        for (reference, value) in references.iter().zip(values.iter().copied().map(told)) {
             match self
                 .run
                 .as_mut()
                 .filter(|_| self.state == State::StepComplete)
             {
-                Some(run) => write_input(&mut run.rates, *reference, *value),
+                Some(run) => write_input(&mut run.rates, *reference, value),
                 None => {
-                    self.start_rates.insert(*reference, *value);
+                    self.start_rates.insert(*reference, value);
                     self.run = None;
                 }
             }
