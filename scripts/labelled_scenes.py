@@ -18,6 +18,12 @@ PITCH = D * 1.025
 """Distance of neighbouring turns, mm."""
 STEP = 1e-4
 """Communication step of scenes whose tension changes, at 100 rad/s, s."""
+FRICTION = 0.23
+"""Static friction, the default."""
+LOOSE = 0.5
+"""Share of the set tension below which a turn is loose."""
+SLACKENED = 0.15
+"""Share of the set tension that makes turns loose."""
 
 
 @dataclass
@@ -325,7 +331,10 @@ def pulled(kind, core, layers, speed, begin, end, share, labels, follows, made, 
 
 
 def loose(core, layers, speed, begin):
-    return pulled("loose", core, layers, speed, begin, begin + 2.0, 0.15, [Label("loose_turn", begin - 0.2, begin + 2.0)], {"bulge", "gap"},
+    # Wire that lay before slips after the pull, as far back as friction lets it: where half of the tension is left.
+    back = math.log(LOOSE / SLACKENED) / (2.0 * math.pi * FRICTION)
+    label = Label("loose_turn", begin - 0.2 - back, begin + 2.0)
+    return pulled("loose", core, layers, speed, begin, begin + 2.0, SLACKENED, [label], {"bulge", "gap"},
                   f"15 % of the tension from turn {begin + 1:g} to {begin + 3:g}")
 
 
@@ -355,7 +364,8 @@ def bulge(speed, begin, share, wire="table1"):
 
 
 def collision(core, speed):
-    """Turns on each other between flanges that have room for one, below a nozzle with room for four."""
+    """Turns on each other between flanges that have room for one, below a nozzle with room for four. Each pushes those below aside,
+    and takes tension from them."""
     keys, mesh = base(core, 1, speed, turns=1)
     inner = 1.1 * D
     if mesh:
@@ -369,7 +379,7 @@ def collision(core, speed):
              "traverse.mode": "by-angle", "traverse.per_turn_mm": 0.0}
     turn = 4
     return Scene(f"collision-{slug(core)}-{speed:g}", f"no room for turn {turn + 1}", core, turn, speed, keys,
-                 [Label("collision", turn - 0.5, turn + 1.0)], {"double_turn", "overlap", "bulge"}, mesh=mesh)
+                 [Label("collision", turn - 0.5, turn + 1.0)], {"double_turn", "overlap", "bulge", "loose_turn"}, mesh=mesh)
 
 
 def runaway(speed, tension):

@@ -245,6 +245,12 @@ fn a_folder_without_a_whole_run_is_named_with_what_to_do() {
             std::fs::write(&path, half).unwrap();
         }
         refused(name);
+        if name.ends_with("csv") {
+            // cut between two rows: the page told of a run wound to its end
+            let rows: Vec<&[u8]> = whole.split_inclusive(|byte| *byte == b'\n').collect();
+            std::fs::write(&path, rows[..rows.len() / 2].concat()).unwrap();
+            refused(name);
+        }
         std::fs::write(&path, whole).unwrap();
     }
     assert!(!out.join("report.html").exists(), "no half page");

@@ -232,7 +232,7 @@ fn no_other_bytes_are_taken() {
     let mut newer = good.clone();
     newer[0] += 1;
     let error = Simulation::from_bytes(&scene, &newer).expect_err("another version");
-    assert!(error.to_string().contains("version 32"), "{error}");
+    assert!(error.to_string().contains("version 33"), "{error}");
     let wider = fig8(&[("core.width_x_mm", "14")]);
     let error = Simulation::from_bytes(&wider, &good).expect_err("another core");
     assert!(

@@ -61,10 +61,7 @@ impl Winding {
         let limit = HELD_BACK * self.scene.defects.gap * self.scene.wire.diameter;
         let (node, _) = pushes.iter().find(|&&(node, _)| {
             lifts - self.coil.angle_of_node(node) <= WITHIN * TAU
-                && self
-                    .coil
-                    .room_beside_node(node)
-                    .is_none_or(|room| room > limit)
+                && self.coil.room_beside_node(node) > limit
                 && self.way_pushed(pushes, node, friction) > limit
         })?;
         let frozen = self.sys.state.frozen_pulls.len();

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Changes whenever the bytes of the same state do.
-const VERSION: u32 = 32;
+const VERSION: u32 = 33;
 
 /// More turns than any run winds: the stations of that many would take a hundred gigabytes. Of a fault that lies beyond them, the
 /// table of turns would take all memory.

@@ -4,6 +4,7 @@ use super::array::Array;
 use super::error::ReportError;
 use super::options::Options;
 use super::read_vtp::{self, Arrays};
+use crate::measure::STATIONS_PER_TURN;
 use crate::output::vtp::SIDES;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -26,8 +27,8 @@ pub(super) struct Run {
     summary: serde_json::Value,
     /// how far it was wound, in words, where it ended as it was to end
     wound_to: String,
-    history: Option<BTreeMap<&'static str, Array>>,
-    stations: Option<BTreeMap<&'static str, Array>>,
+    history: Option<Columns>,
+    stations: Option<Columns>,
     wire: Option<BTreeMap<&'static str, Array>>,
     core: Option<BTreeMap<&'static str, Array>>,
     frames: Vec<Frame>,
@@ -73,6 +74,25 @@ impl Run {
                 }
             }
         }
+        let [history_path, stations_path] =
+            ["history.csv", "stations.csv"].map(|name| directory.join(name));
+        let (history, ends_at) = history(&history_path)?.unzip();
+        let (stations, rows) = stations(&stations_path)?.unzip();
+        let told = |key: &str| summary[key].as_f64();
+        if let (Some(ends_at), Some(told)) = (ends_at, told("simulated_s"))
+            && (ends_at - told).abs() > ANOTHER * told
+        {
+            let reason = format!("it ends at {ends_at} s, and the run of summary.json at {told} s");
+            return Err(broken(&history_path, reason));
+        }
+        if let (Some(rows), Some(turns)) = (rows, told("turns_settled"))
+            && (rows as f64 - turns * STATIONS_PER_TURN as f64).abs() > 2.0
+        {
+            let reason = format!(
+                "it has {rows} rows, one a degree, and summary.json tells of {turns:.3} turns at rest"
+            );
+            return Err(broken(&stations_path, reason));
+        }
         let place = fs::canonicalize(directory).unwrap_or_else(|_| directory.to_owned());
         Ok(Self {
             name: place
@@ -81,8 +101,8 @@ impl Run {
             wound_to: Options::read(directory)
                 .wound_to(summary["simulated_s"].as_f64().unwrap_or_default()),
             summary,
-            history: history(&directory.join("history.csv"))?,
-            stations: stations(&directory.join("stations.csv"))?,
+            history,
+            stations,
             wire: end.as_ref().map(|wire| wire.arrays(0)),
             core: core(&directory.join("core.vtp"))?,
             frames,
@@ -285,9 +305,15 @@ fn table<const N: usize>(
     Ok(Some(columns))
 }
 
+/// Share of its time by which a run ends elsewhere than its history where that is of another run, or was cut.
+const ANOTHER: f64 = 1e-3;
+
+/// Columns that the page draws.
+type Columns = BTreeMap<&'static str, Array>;
+
 /// Curves over time, thinned in pieces: mean, least and largest tension, the torque that is largest either way, the layer, and the turns
-/// of wire that were wound by then.
-fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
+/// of wire that were wound by then. And when they end, s.
+fn history(path: &Path) -> Result<Option<(Columns, f64)>, ReportError> {
     let names = [
         "time",
         "spindle_angle",
@@ -323,7 +349,8 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
         let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
         piece.iter().copied().fold(0.0, larger)
     };
-    Ok(Some(BTreeMap::from([
+    let end = columns[0].last().copied().unwrap_or(0.0);
+    let curves = BTreeMap::from([
         ("time", thin(0, last)),
         ("angle", thin(1, last)),
         ("speed", thin(2, last)),
@@ -333,11 +360,12 @@ fn history(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportE
         ("torque", thin(6, farthest)),
         ("layer", thin(7, most)),
         ("wound", thin(8, last)),
-    ])))
+    ]);
+    Ok(Some((curves, end)))
 }
 
-/// Measures at every degree of every turn.
-fn stations(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, ReportError> {
+/// Measures at every degree of every turn, and of how many degrees there are.
+fn stations(path: &Path) -> Result<Option<(Columns, usize)>, ReportError> {
     let names = [
         "arc",
         "gap",
@@ -350,7 +378,8 @@ fn stations(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, Report
     let Some([arc, gap, bulge, excess, layer, measured, crosses]) = table(path, names)? else {
         return Ok(None);
     };
-    Ok(Some(BTreeMap::from([
+    let rows = arc.len();
+    let measures = BTreeMap::from([
         ("arc", Array::reals(arc)),
         ("gap", Array::reals(gap)),
         ("bulge", Array::reals(bulge)),
@@ -358,7 +387,8 @@ fn stations(path: &Path) -> Result<Option<BTreeMap<&'static str, Array>>, Report
         ("layer", Array::bytes(layer)),
         ("measured", Array::bytes(measured)),
         ("crosses", Array::bytes(crosses)),
-    ])))
+    ]);
+    Ok(Some((measures, rows)))
 }
 
 #[cfg(test)]
