@@ -181,9 +181,10 @@ mod tests {
         let sys = sim.system();
         let spin = Spin::new(sys.state.spindle.angle);
         let frozen = sys.line_scratch().unwrap().tube.points()[2];
-        // the whole of the live wire onto one place where wire lies already
+        // live wire a turn later onto one place where wire lies already
         let at = spin.to_lab(frozen);
-        for x in &mut sim.system_mut().state.rod.x[4..9] {
+        let middle = sys.state.rod.nodes() / 2;
+        for x in &mut sim.system_mut().state.rod.x[middle..middle + 5] {
             *x = at;
         }
         planted::sees(look(&sim, &mut Measures::default()), Invariant::Crossing);
