@@ -364,8 +364,7 @@ def bulge(speed, begin, share, wire="table1"):
 
 
 def collision(core, speed):
-    """Turns on each other between flanges that have room for one, below a nozzle with room for four. Each pushes those below aside,
-    and takes tension from them."""
+    """Turns on each other between flanges that have room for one, below a nozzle with room for four."""
     keys, mesh = base(core, 1, speed, turns=1)
     inner = 1.1 * D
     if mesh:
@@ -379,7 +378,7 @@ def collision(core, speed):
              "traverse.mode": "by-angle", "traverse.per_turn_mm": 0.0}
     turn = 4
     return Scene(f"collision-{slug(core)}-{speed:g}", f"no room for turn {turn + 1}", core, turn, speed, keys,
-                 [Label("collision", turn - 0.5, turn + 1.0)], {"double_turn", "overlap", "bulge", "loose_turn"}, mesh=mesh)
+                 [Label("collision", turn - 0.5, turn + 1.0)], {"double_turn", "overlap", "bulge"}, mesh=mesh)
 
 
 def runaway(speed, tension):

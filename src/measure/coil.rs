@@ -385,29 +385,6 @@ impl Coil {
         Ok(())
     }
 
-    /// Winding angle of a settled node from the clamp, rad.
-    pub(crate) fn angle_of_node(&self, node: usize) -> f64 {
-        self.nodes.get(node).map_or(0.0, |node| node.angle)
-    }
-
-    /// How far a settled node may be pushed by the next turn, m: to the turn before it or a flange, infinite where there is neither.
-    ///
-    /// Wire of an upper layer lies in a groove, and wire of an earlier pass is pressed on from above: those go nowhere.
-    pub(crate) fn room_beside_node(&self, node: usize) -> f64 {
-        let station = self.nodes.get(node).and_then(|node| {
-            let station = node.stations_before.saturating_sub(1);
-            self.records.get(station)
-        });
-        let Some(Record { station, .. }) = station else {
-            return 0.0;
-        };
-        if station.layer > 1 || station.pass as usize != self.passes() {
-            return 0.0;
-        }
-        let before = station.neighbour.map(|neighbour| neighbour.gap);
-        before.or(station.flange_gap).unwrap_or(f64::INFINITY)
-    }
-
     /// Takes back the last `count` nodes (all, when there are fewer), as if never settled.
     pub fn unsettle(&mut self, count: usize) {
         let keep = self.nodes.len().saturating_sub(count);

@@ -29,7 +29,6 @@ mod older_wire;
 mod outputs;
 mod pool;
 mod product;
-mod pushed_wire;
 mod quasi_static;
 mod rates;
 mod refining;

@@ -59,9 +59,6 @@ impl Winding {
             .run
             .watch
             .due(&self.run.policy, s.angle, s.speed, self.sys.state.time);
-        if due && self.stepper.is_implicit() {
-            self.free_pushed_wire();
-        }
         let freeze = if due { self.nodes_to_freeze() } else { 0 };
         if due {
             self.follow_slip();
@@ -366,11 +363,10 @@ impl Winding {
     /// lift-off, as many as restore it. Half, so that wire does not freeze and thaw in turns.
     fn nodes_to_thaw(&self) -> usize {
         let left: f64 = self.sys.state.rod.rest[..self.lift_off()].iter().sum();
-        let keep = self.keep_length();
-        if left >= 0.5 * keep {
+        if left >= 0.5 * self.run.policy.keep_length {
             return 0;
         }
-        let mut missing = keep - left;
+        let mut missing = self.run.policy.keep_length - left;
         self.sys
             .frozen_lengths()
             .take_while(|length| {
@@ -395,7 +391,7 @@ impl Winding {
     }
 
     /// The last `count` frozen nodes come back to life.
-    pub(super) fn thaw(&mut self, count: usize) {
+    fn thaw(&mut self, count: usize) {
         if let Some(mut l) = self.sys.line_contact() {
             l.go_on(None);
         }
@@ -413,7 +409,7 @@ impl Winding {
 
     /// How many nodes from the clamp lie at least the keep length behind lift-off.
     fn behind_lift_off(&self) -> usize {
-        let mut left = self.keep_length();
+        let mut left = self.run.policy.keep_length;
         let mut i = self.lift_off();
         while i > 0 && left > 0.0 {
             i -= 1;

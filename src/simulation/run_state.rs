@@ -20,22 +20,11 @@ pub(super) struct SlackSince {
     pub(super) place: [f64; 3],
 }
 
-/// Wire at rest that the next turn pushed along the core.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Pushed {
-    /// core angle at which that was seen, rad
-    pub(super) at: f64,
-    /// length behind lift-off that reaches to it, m
-    pub(super) keep: f64,
-}
-
 /// State of a run but for that of wire, coil and method; a saved state holds it as it is.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct RunState {
     pub(super) watch: Watch,
     pub(super) policy: FreezePolicy,
-    /// the last time that the next turn pushed wire at rest along the core
-    pub(super) pushed: Option<Pushed>,
     /// core angle at the start, rad
     pub(super) angle0: f64,
     /// length of the last step of the method, s

@@ -311,7 +311,6 @@ impl Winding {
         let rest = &sys.state.rod.rest;
         let policy = FreezePolicy::of(scene, rest.iter().sum(), inputs.tension_setpoint);
         let run = RunState {
-            pushed: None,
             watch: Watch::new(sys.state.rod.nodes(), sys.state.spindle.angle),
             policy,
             angle0: span.angle,
@@ -355,7 +354,6 @@ impl Winding {
             stepper,
             run,
             behind: Vec::new(),
-            pushes: Vec::new(),
             older_wire: OlderWire::default(),
             ends,
             most_work: u64::MAX,

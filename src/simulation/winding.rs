@@ -6,7 +6,6 @@ use super::run_state::RunState;
 use super::{MotionProfile, SimError};
 use crate::geometry::Surface;
 use crate::integrate::{SolverStatistics, Stepper};
-use crate::math::V3;
 use crate::measure::Coil;
 use crate::scene::Scene;
 use crate::signals::{Event, EventKind, Inputs, Outputs};
@@ -27,8 +26,6 @@ pub struct Winding {
     pub(super) run: RunState,
     /// polar angle from each laid node to lift-off, at the last look, rad
     pub(super) behind: Vec<f64>,
-    /// frozen nodes that live wire pressed on at the last look, and the forces, core frame, N
-    pub(super) pushes: Vec<(usize, V3)>,
     /// work space of a look
     pub(super) older_wire: OlderWire,
     /// between which wire can be wound along y, m
@@ -162,7 +159,6 @@ impl Winding {
             stepper,
             run,
             behind,
-            pushes: _,
             older_wire: _,
             ends: _,
             most_work,

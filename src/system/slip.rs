@@ -102,37 +102,6 @@ impl System {
         [sum, together]
     }
 
-    /// With which force live wire presses on frozen nodes: their numbers, and the forces, core frame, N, in place of what was in `pushes`.
-    pub(crate) fn pushes_on_frozen(&self, pushes: &mut Vec<(usize, V3)>) {
-        pushes.clear();
-        let (Some(model), Some(line)) =
-            (self.model.contact.as_line(), self.state.contact.as_line())
-        else {
-            return;
-        };
-        let frozen = self.state.frozen_pulls.len();
-        for point in ContactPoint::all(self.state.rod.edges()) {
-            let (k, length) = (point.number(), point.length(&self.state.rod));
-            let forces = line.forces_of_wire(model, k, length);
-            let on_frozen = forces.filter(|(node, _)| *node < frozen);
-            pushes.extend(on_frozen.map(|(node, force)| (node, -force)));
-        }
-    }
-
-    /// Which way frozen wire runs at a node, and which way leads off the core there: unit vectors, core frame.
-    pub(crate) fn frozen_way(&self, node: usize) -> (V3, V3) {
-        let points = &self.state.frozen.points;
-        let next = (node + 1).min(points.len() - 1);
-        let way = points[next] - points[next.saturating_sub(1)];
-        let along = way.try_normalize(0.0).unwrap_or_default();
-        let out = self
-            .model
-            .contact
-            .as_line()
-            .map_or(V3::zeros(), |line| line.shape.nearness(points[node]).normal);
-        (along, out)
-    }
-
     /// Takes over how frozen wire slipped in a step: the first live edge is `rest` long unstretched now, m.
     pub(crate) fn slip_frozen(&mut self, slip: &FrozenSlip, rest: f64) {
         let Some(friction) = self.friction_at_rest() else {

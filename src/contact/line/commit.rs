@@ -2,7 +2,7 @@
 
 use super::line_contact::LineContact;
 use super::model::LineModel;
-use super::point::{PointState, SLOTS, WIRE};
+use super::point::{PointState, SLOTS};
 use super::state::LineState;
 use super::touch::TouchState;
 use crate::contact::accepted_touch::{AcceptedTouch, OUTSIDE, TouchOwner, friction_of};
@@ -185,23 +185,6 @@ impl LineState {
                 }
             }
         }
-    }
-
-    /// Frozen wire that point `k`, which stands for `length` (m), touches: a segment near the touch, and the normal force on the point,
-    /// core frame, N.
-    pub(crate) fn forces_of_wire<'a>(
-        &'a self,
-        model: &LineModel,
-        k: usize,
-        length: f64,
-    ) -> impl Iterator<Item = (usize, V3)> + 'a {
-        let onset = model.onset;
-        let k_n = model.law.stiffness * length;
-        let passages = self.points[k].touches().iter().skip(WIRE);
-        passages.filter(|t| t.depth > 0.0).map(move |t| {
-            let force = t.normal * (k_n * NormalLaw::at(t.depth, onset).force);
-            (t.start as usize, force)
-        })
     }
 
     /// Normal force of each touch of point `k` at the last evaluation, which stands for `length` (m), core frame, N: the

@@ -181,10 +181,9 @@ mod tests {
         let sys = sim.system();
         let spin = Spin::new(sys.state.spindle.angle);
         let frozen = sys.line_scratch().unwrap().tube.points()[2];
-        // live wire a turn later onto one place where wire lies already
+        // the whole of the live wire onto one place where wire lies already
         let at = spin.to_lab(frozen);
-        let middle = sys.state.rod.nodes() / 2;
-        for x in &mut sim.system_mut().state.rod.x[middle..middle + 5] {
+        for x in &mut sim.system_mut().state.rod.x[4..9] {
             *x = at;
         }
         planted::sees(look(&sim, &mut Measures::default()), Invariant::Crossing);
