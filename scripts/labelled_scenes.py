@@ -18,12 +18,6 @@ PITCH = D * 1.025
 """Distance of neighbouring turns, mm."""
 STEP = 1e-4
 """Communication step of scenes whose tension changes, at 100 rad/s, s."""
-FRICTION = 0.23
-"""Static friction, the default."""
-LOOSE = 0.5
-"""Share of the set tension below which a turn is loose."""
-SLACKENED = 0.15
-"""Share of the set tension that makes turns loose."""
 
 
 @dataclass
@@ -331,10 +325,7 @@ def pulled(kind, core, layers, speed, begin, end, share, labels, follows, made, 
 
 
 def loose(core, layers, speed, begin):
-    # Wire that lay before slips after the pull, as far back as friction lets it: where half of the tension is left.
-    back = math.log(LOOSE / SLACKENED) / (2.0 * math.pi * FRICTION)
-    label = Label("loose_turn", begin - 0.2 - back, begin + 2.0)
-    return pulled("loose", core, layers, speed, begin, begin + 2.0, SLACKENED, [label], {"bulge", "gap"},
+    return pulled("loose", core, layers, speed, begin, begin + 2.0, 0.15, [Label("loose_turn", begin - 0.2, begin + 2.0)], {"bulge", "gap"},
                   f"15 % of the tension from turn {begin + 1:g} to {begin + 3:g}")
 
 
