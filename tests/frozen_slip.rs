@@ -195,7 +195,7 @@ fn hardly_any_friction_holds_hardly_anything() {
     };
     // with all wire live, 3.98 N
     let first = mean_of_turn(&wind(wound, change, None), 1);
-    assert!(first > 3.8 && first < 4.4, "{first} N");
+    assert!(first > 3.8 && first < 4.6, "{first} N");
 }
 
 /// Two walls of a groove press more than the tension asks for. Stiffness was held to do so, and the second layer kept 12.3 N.

@@ -37,8 +37,8 @@ fn height(settings: &SceneSettings) -> f64 {
 #[test]
 fn fine_wire_on_tight_corners_is_no_bulge() {
     let height = height(&fine_wire(&[]));
-    // at half the spacing; 0.95 at 0.3 mm
-    assert!((height - 0.41).abs() < 0.05, "{height} d");
+    // 0.358 and 0.360 at half and at three fifths of the spacing; 0.95 at 0.3 mm
+    assert!((height - 0.36).abs() < 0.05, "{height} d");
 }
 
 #[test]
