@@ -160,7 +160,7 @@ def test_what_declares_no_dependency_does_not_move_with_the_inputs(slave):
     assert "defect_time" in free and "coil_width" not in free and "turns_wound" not in free
     slave.start(scene__file="fig8")
     size, clean = 4e-3, 0
-    for k in range(40):
+    for k in range(80):
         if k < 12 or k % 3:
             slave.set(spindle_speed=min(100.0, 1e3 * (k + 0.5) * size), nozzle_position=0.7e-3 * slave.get("spindle_angle") / math.tau)
             slave.fmu.doStep(k * size, size)
