@@ -261,8 +261,8 @@ fn driven(settings: &SceneSettings, placement: Placement) -> Vec<([f64; 5], f64)
 
 /// What rounding makes of a coil, diameters.
 const ROUNDED: f64 = 1e-9;
-/// The same where a solve of one of the two takes an iterate more, since its update was next to what counts as close: they part by
-/// 2e-6 diameters there and by a thousand times as much in the second turn.
+/// The same where a solve of one of the two takes an iterate more, since its update was next to what counts as close. They part by
+/// 2e-6 diameters there, and by a thousand times as much in the second turn.
 const ONE_ITERATE_MORE: f64 = 0.01;
 
 /// Winds the scene in both placements: the same coil, and to rounding until wire is bent round the first corner.

@@ -99,9 +99,13 @@ pub(super) fn as_meant(
         go_on(|i| i.nozzle_offset_z, &mut rates.nozzle_offset_z);
     }
     for rate in [
+        &mut rates.spindle_speed,
         &mut rates.nozzle_position,
+        &mut rates.tension_setpoint,
         &mut rates.nozzle_offset_x,
         &mut rates.nozzle_offset_z,
+        &mut rates.brake_torque,
+        &mut rates.tensioner_damping,
     ] {
         if *rate == Inputs::STILL {
             *rate = 0.0;
