@@ -2,43 +2,41 @@
 
 use super::STATIONS_PER_TURN;
 use super::coil::Coil;
-use super::profile::Profile;
-use super::support::Support;
+use super::support::{LaidOn, Support};
 
 /// Stations over which tensions of two rows are compared: half a turn, in which each face of a core comes round, or its twin.
 const COMPARED: usize = STATIONS_PER_TURN / 2;
 
 impl Coil {
-    /// Height at rest of wire with this `tension`, N, at the next station, over its `support`, m. `over_core` is that of
-    /// a loop drawn tight round the core there, m, under the tension that was meant.
+    /// Height over the core, m, at which wire with this `tension`, N, is at rest at the next station, where its own row does not hold
+    /// it up. `over_core` is that of a loop drawn tight round the core there, m, under the tension that was meant.
     ///
     /// A loop drawn round wire lies close on it, since that stands off the core as the loop would alone. A looser one stands
     /// higher: heights go with the root of the tension. Wire may be that loose until its tension makes it a loose turn.
     fn at_rest(&self, over_core: f64, support: &Support, tension: f64) -> f64 {
-        if !support.is_wire {
+        let Some(LaidOn { level, station }) = support.laid_on else {
             return over_core;
-        }
+        };
         let least = self.spec.limits.loose_tension * self.spec.tension;
         let present = self.mean_tension(self.records.len(), tension).max(least);
-        let Some(below) = support.below.filter(|_| present > 0.0) else {
-            return 0.0;
-        };
-        let own = self.records[below].signs.tension_sum - self.tension_before(below);
-        let looser = libm::sqrt(self.mean_tension(below, own) / present) - 1.0;
-        over_core * looser.max(0.0)
+        if present <= 0.0 {
+            return level;
+        }
+        let own = self.records[station].signs.tension_sum - self.tension_before(station);
+        let looser = libm::sqrt(self.mean_tension(station, own) / present) - 1.0;
+        level + over_core * looser.max(0.0)
     }
 
-    /// By how much a `bulge`, m, is more than the height at rest of such wire; none where that of the core is not known.
-    pub(super) fn over_rest(
+    /// The same at the winding angle `angle` (rad) and `y` (m); none where that of the core is not known.
+    pub(super) fn level_at_rest(
         &self,
-        bulge: f64,
         (angle, y): (f64, f64),
         support: &Support,
         tension: f64,
     ) -> Option<f64> {
-        let over_core = |profile: &Profile| profile.at(self.polar_at(angle), y);
         let profile = self.spec.profile.as_ref()?;
-        Some(bulge - self.at_rest(over_core(profile), support, tension))
+        let over_core = profile.at(self.polar_at(angle), y);
+        Some(self.at_rest(over_core, support, tension))
     }
 
     /// Mean tension of the stations up to that at `index`, whose own this `tension` is, N.

@@ -443,7 +443,9 @@ impl Coil {
             crosses: in_crossover,
         };
         let (row, support, rises) = self.row_and_support(pass, &at);
-        let (bulge, stands_off) = (height - support.held, height - support.level);
+        let at_rest = self.level_at_rest((angle, position.y), &support, wire.tension);
+        let bulge = height - support.held;
+        let stands_off = height - support.level.max(at_rest.unwrap_or(0.0));
         let (layer, other_layer) = self.layer_after(support.layer, row);
         let (neighbour, window) = self.neighbour(angle, position, row);
         // Beside a double turn, in the place after it, lies the turn below that one.
@@ -466,7 +468,7 @@ impl Coil {
             time: wire.time,
             height,
             bulge,
-            bulge_excess: self.over_rest(bulge, (angle, position.y), &support, wire.tension),
+            bulge_excess: at_rest.map(|at_rest| height - support.held.max(at_rest)),
             neighbour,
             overlap_depth: 0.0,
             flange_gap: flange.map(|way| way.abs() - 0.5 * self.spec.diameter),

@@ -69,7 +69,7 @@ impl Coil {
     }
 
     /// Diameter minus axial distance where the wire overlaps its neighbour, else 0, m; a diameter where it has changed
-    /// places with it. The wire stands off by so much, m, from what it was laid over.
+    /// places with it. The wire stands off by so much, m, from where it would be at rest over what it was laid on.
     pub(crate) fn overlap_depth(&self, station: &Station, stands_off: f64) -> f64 {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let Some(Neighbour { axial, .. }) = station.neighbour else {

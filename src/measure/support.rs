@@ -32,16 +32,14 @@ pub(super) const PLACE: f64 = 0.75;
 pub(crate) struct Support {
     /// height over the core at which the wire would rest if it were pushed straight down, m
     pub(crate) level: f64,
-    /// it would rest on wire and not on the core
-    pub(crate) is_wire: bool,
     /// it would rest on the top of a wire and not in a groove
     pub(crate) stands_on_wire: bool,
     /// one more than the layer of the wire below, 1 where there is none
     pub(crate) layer: u32,
     /// row of the wire that it would rest on
     pub(crate) row: Option<u32>,
-    /// station of that wire
-    pub(crate) below: Option<usize>,
+    /// the wire that it was laid over; none where it was laid over the core, also where its own row holds it up beside a flange
+    pub(super) laid_on: Option<LaidOn>,
     /// it would rest on the climb of its own row, which it crosses
     pub(super) on_climb: bool,
     /// rise over wire of its own row that it has climbed on, m
@@ -50,6 +48,15 @@ pub(crate) struct Support {
     pub(crate) held: f64,
     /// the same as `level` where wire of its own row carries it too, from below or wedged beside a flange, m
     pub(crate) highest: f64,
+}
+
+/// Wire that another was laid over: of earlier rows, or the climb to its own row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LaidOn {
+    /// height over the core at which that carries it, m
+    pub(super) level: f64,
+    /// its station
+    pub(super) station: usize,
 }
 
 impl Support {
@@ -176,11 +183,10 @@ impl Coil {
         };
         let mut support = Support {
             level: 0.0,
-            is_wire: false,
             stands_on_wire: false,
             layer: 1,
             row: None,
-            below: None,
+            laid_on: None,
             on_climb: false,
             own_row: None,
             held: 0.0,
@@ -240,6 +246,14 @@ impl Coil {
                     on_earlier = on_earlier.max(level);
                 }
                 let carried = on.filter(|_| carries);
+                let laid_on = carried.or(wedge.map(|(level, _)| level).filter(|_| earlier));
+                let lowest = support.laid_on.map_or(0.0, |laid_on| laid_on.level);
+                if let Some(level) = laid_on.filter(|level| *level > lowest) {
+                    support.laid_on = Some(LaidOn {
+                        level,
+                        station: index,
+                    });
+                }
                 // what a flange and another wire hold between them cannot drop, whichever row that is of
                 let held = carried.or(wedge.map(|(level, _)| level));
                 if let Some(level) = on.or(held)
@@ -255,10 +269,8 @@ impl Coil {
                     && level > support.level
                 {
                     support.level = level;
-                    support.is_wire = true;
                     support.stands_on_wire = aside < ON_WIRE;
                     support.on_climb = !earlier && carries;
-                    support.below = Some(index);
                     support.row = (of.number < row || climbing).then_some(of.number);
                 }
             }

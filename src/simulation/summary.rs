@@ -257,7 +257,7 @@ impl Winding {
             false => format!(". With spindle.turns = {ends:.2} the coil ends before"),
         };
         Some(format!(
-            "From {} on the last turn lies on the turn before, which has crossed into its place; no defect within half a turn of the end{remedy}",
+            "From {} on the last turn lies on the turn before, which has crossed into its place; within half a turn of the end that is no defect{remedy}",
             OnTurn::of_station(at)
         ))
     }

@@ -456,7 +456,7 @@ table! {
     tunable(2102, "defects.bulge_excess", defects.bulge_excess, "1", "", 0.0, 100.0, 1.0, "bulge over the quasi-static height allowed, diameters");
     tunable(2103, "defects.bulge_absolute", defects.bulge_absolute, "m", "mm", 0.0, 1.0, 1e-3, "bulge allowed; 0: bulge_excess decides, or one diameter where no quasi-static height is known");
     tunable(2104, "defects.overlap_axial", defects.overlap_axial, "1", "", 0.0, 1.0, 1.0, "axial distance to the neighbour below this many diameters ...");
-    tunable(2105, "defects.overlap_height", defects.overlap_height, "1", "", 0.0, 100.0, 1.0, "... while its bulge is above this many diameters");
+    tunable(2105, "defects.overlap_height", defects.overlap_height, "1", "", 0.0, 100.0, 1.0, "... while it stands this many diameters higher than at rest over what it was laid on");
     tunable(2106, "defects.skip_angle", defects.skip_angle, "rad", "deg", 0.0, 1e3, 1.0, "polar angle after the clamp that is left out");
     tunable(2120, "defects.double_turn", defects.double_turn, "1", "", 0.0, 10.0, 1.0, "fraction of a turn over which wire stands on its own row to be a double turn");
     tunable(2121, "defects.skipped_groove", defects.skipped_groove, "1", "", 0.0, 10.0, 1.0, "fraction of a turn over which a groove of the layer below lies empty beside the wire");

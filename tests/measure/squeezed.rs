@@ -1,7 +1,7 @@
 //! The last turn of a layer in a window that fits exactly, pressed up between the turn before and a flange.
 
 use crate::coils::{D, on_cylinder, spec, wound};
-use coilwind::measure::{Coil, CoilSpec, DefectFlags, DefectKind, SettledNode};
+use coilwind::measure::{Coil, CoilSpec, DefectFlags, DefectKind, Profile, SettledNode};
 use std::f64::consts::TAU;
 
 /// Turns of a layer.
@@ -395,4 +395,39 @@ fn wire_high_over_a_place_beside_the_flange_is_not_in_it() {
     }
     let coil = wound(spec(), &nodes);
     assert!(coil.flags().double_turn, "{:?}", coil.defects());
+}
+
+/// Where the whole layer bows out, a last turn beside the flange that stood hardly higher than at rest was told to ride up, as soon as it
+/// lay a tenth of a diameter too close to a turn that had been pressed lower.
+#[test]
+fn a_last_turn_as_high_as_at_rest_does_not_ride_up() {
+    let (bow, low, aside) = (0.86, 0.48, 0.895);
+    for (over, rides_up) in [(0.13, false), (0.25, false), (0.44, true)] {
+        let places = [
+            (0.0, bow),
+            (1.0, bow),
+            (2.0, low),
+            (2.0 + aside, bow + over),
+        ];
+        let mut nodes = on_cylinder(3.98, 1.0, |angle| {
+            let (y, height) = places[(angle / TAU) as usize];
+            (D * y, D * height)
+        });
+        for node in &mut nodes {
+            let way = 3.5 * D - node.position.y;
+            node.flange = (way < 2.0 * D).then_some(way);
+        }
+        let spec = CoilSpec {
+            profile: Profile::new(vec![bow * D]),
+            full: Some(4.0 * TAU),
+            ..spec()
+        };
+        let coil = wound(spec, &nodes);
+        let told: Vec<_> = coil.defects().iter().map(|d| (d.kind, d.turn)).collect();
+        let rides = told.contains(&(DefectKind::Overlap, 4));
+        assert_eq!(rides, rides_up, "{over}: {told:?}");
+        let last = coil.stations().last().unwrap();
+        let excess = last.bulge_excess.unwrap();
+        assert!((excess - over * D).abs() < 1e-9, "{over}: {}", excess / D);
+    }
 }
