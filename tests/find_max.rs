@@ -200,7 +200,7 @@ fn a_bracket_that_is_free_or_defective_from_end_to_end_is_no_answer() {
         assert_eq!(output.stdout, b"");
         let told = String::from_utf8(output.stderr).unwrap();
         assert!(told.contains(said), "{told}");
-        let trust = "values between the ends were not wound and are taken to be free";
+        let trust = "values between them that were not wound are taken to be free";
         assert_eq!(told.contains(trust), assumes, "{told}");
         let kept = answer(&out);
         assert_eq!(kept["assumes"].is_null(), !assumes);

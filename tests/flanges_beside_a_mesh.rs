@@ -96,6 +96,28 @@ fn a_mesh_that_ends_before_the_flanges_is_refused() {
     }
 }
 
+/// A mesh whose middle is not where the flanges' is was refused with "allowed: at most -0 m".
+#[test]
+fn a_mesh_that_lies_beside_the_flanges_is_told_where_they_stand() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let settings = with_barrel(folder.path(), 20.0);
+    let outline = [[0.0, 6.0], [40.0, 6.0]];
+    write_revolved(&folder.path().join("barrel.stl"), &outline, SIDES);
+    let refused = settings.build().unwrap_err().to_string();
+    let half = 1e3 * 0.5 * settings.core.flange.inner_distance;
+    for word in [
+        "core.flange.inner_distance",
+        "it reaches from 0 to 0.04 m",
+        "a mesh with its middle at y = 0",
+    ] {
+        assert!(refused.contains(word), "{refused}");
+    }
+    assert!(
+        refused.contains("which stand at y = -"),
+        "{half} mm: {refused}"
+    );
+}
+
 /// The room to a flange was that to the outer end of a mesh whose flanges are its own.
 #[test]
 fn the_room_to_a_flange_of_a_mesh_is_that_to_its_inner_face() {

@@ -383,7 +383,7 @@ fn a_last_turn_without_a_place_says_where_the_coil_should_end() {
     let mut sim = started(text);
     let said = |sim: &Simulation| {
         let told = sim.reasons().into_iter();
-        told.filter(|reason| reason.contains("the last turn lies on the turn before"))
+        told.filter(|reason| reason.contains("wire lies on the turn before"))
             .collect::<Vec<_>>()
     };
     wound(&mut sim, 4.25);

@@ -6,8 +6,11 @@ use super::scene::SceneArgs;
 use super::terminal::print;
 use super::waiting::Waiting;
 use clap::Args;
-use coilwind::scene::Bilinear;
+use coilwind::geometry::stl;
+use coilwind::scene::{Bilinear, Core};
 use coilwind::simulation::Simulation;
+use std::fs::File;
+use std::path::Path;
 
 /// Digits of numbers that people read.
 const DIGITS: usize = 6;
@@ -45,8 +48,11 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
     };
     // density and resistivity stay the metal's, where no key gives them
     let curve = match settings.wire.stress_strain.is_empty() {
-        true => "",
-        false => " with a stress-strain curve of its own",
+        true => String::new(),
+        false => format!(
+            " with a stress-strain curve of its own, {} GPa,",
+            rounded(1e-9 * wire.modulus(), DIGITS)
+        ),
     };
     let turns = match scene.spindle.turns {
         1.0 => "1 turn".into(),
@@ -60,6 +66,9 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         rounded(scene.tensioner.tension, DIGITS),
         rounded(scene.spindle.speed, DIGITS),
     ))?;
+    if let Core::Mesh { path, unit, .. } = &scene.core {
+        print(&size_of(path, *unit).unwrap_or_default())?;
+    }
     let Some(laws) = &scene.wire_laws else {
         return Ok(());
     };
@@ -72,5 +81,21 @@ pub(super) fn check(args: &CheckArgs) -> Result<(), Failure> {
         percent(laws.stretch),
         percent(laws.bend),
         percent(laws.twist),
+    ))
+}
+
+/// How large a mesh is along the axes, and between which places along its own, in words; `None` where it is no longer there.
+fn size_of(path: &Path, unit: f64) -> Option<String> {
+    let mesh = stl::read(&mut File::open(path).ok()?, unit).ok()?;
+    let [low, high] = mesh.bounds();
+    let mm = |x: f64| rounded(1e3 * x, DIGITS);
+    let size = high - low;
+    Some(format!(
+        "mesh: {} x {} x {} mm along x, y, z; its axis is y, from {} to {} mm\n",
+        mm(size.x),
+        mm(size.y),
+        mm(size.z),
+        mm(low.y),
+        mm(high.y),
     ))
 }

@@ -12,7 +12,7 @@ use std::path::Path;
 pub(super) const ON_TRUST: &str = "values that were not wound are taken to be free below and not above; a sweep without --find-max shows whether they are";
 
 /// The same where the ends of the bracket are free of defects.
-const FREE_ON_TRUST: &str = "values between the ends were not wound and are taken to be free; a sweep without --find-max shows whether they are";
+const FREE_ON_TRUST: &str = "values between them that were not wound are taken to be free; a sweep without --find-max shows whether they are";
 
 /// What the search came to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

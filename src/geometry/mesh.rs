@@ -107,6 +107,11 @@ impl TriMesh {
         self.triangles[triangle as usize].map(|vertex| self.vertices[vertex as usize])
     }
 
+    /// Its bounding box, m: lowest and highest corner.
+    pub fn bounds(&self) -> [V3; 2] {
+        bounds(&self.vertices, &self.triangles).into()
+    }
+
     /// Enclosed volume, m^3.
     pub fn volume(&self) -> f64 {
         signed_volume(&self.vertices, &self.triangles)

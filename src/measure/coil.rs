@@ -445,7 +445,7 @@ impl Coil {
         let (row, support, rises) = self.row_and_support(pass, &at);
         let at_rest = self.level_at_rest((angle, position.y), &support, wire.tension);
         let bulge = height - support.held;
-        let stands_off = height - support.level.max(at_rest.unwrap_or(0.0));
+        let is_up = self.has_ridden_up(height, at_rest, &support);
         let (layer, other_layer) = self.layer_after(support.layer, row);
         let (neighbour, window) = self.neighbour(angle, position, row);
         // Beside a double turn, in the place after it, lies the turn below that one.
@@ -459,7 +459,7 @@ impl Coil {
         let lifts = !self.is_pressed_up_next()
             && (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))
             && self.may_climb(layer, angle)
-            && stands_off > self.spec.limits.overlap_height * self.spec.diameter;
+            && is_up;
         let steps_up = lifts || self.passes.ends_within(angle, STEP_UP);
         let mut station = Station {
             angle,
@@ -478,7 +478,7 @@ impl Coil {
             out_of_groove: support.stands_on_wire && self.has_grooves_below(number) && !crosses,
             measured: self.is_free_of_clamp(angle) && !steps_up && !self.has_no_place(angle, pass),
         };
-        station.overlap_depth = self.overlap_depth(&station, stands_off);
+        station.overlap_depth = self.overlap_depth(&station, is_up);
         let support = match lifts {
             true => support.without_own_row(),
             false => support,

@@ -30,7 +30,7 @@ impl Coil {
             && room.is_some_and(|room| room < PLACE * self.spec.diameter)
     }
 
-    /// Station from which on the last planned turn lies on the turn before, which has left it no place. None where it has one.
+    /// Station from which on wire lies on the turn before, which has left it no place, up to the last planned turn. None where that has one.
     pub fn without_place_from(&self) -> Option<usize> {
         if self.has_planned_passes() {
             return None;
@@ -52,7 +52,9 @@ impl Coil {
         for index in from..end.min(self.records.len()) {
             so_far = if stands(&index) { so_far + 1 } else { 0 };
             if so_far == least {
-                return Some(index + 1 - least);
+                let begun = index + 1 - least;
+                // it may have begun in the turn before
+                return Some(begun - (0..begun).rev().take_while(stands).count());
             }
         }
         None

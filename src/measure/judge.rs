@@ -6,6 +6,7 @@ use super::crossover::OVER;
 use super::defect::{DefectKind, FALLBACK_BULGE, MEASURED};
 use super::runs::{Run, SHORT_RUN, stations_for};
 use super::station::{Neighbour, Station};
+use super::support::Support;
 
 /// Rise over wire of its own row from which on wire stands on it, diameters: half of a wire on a wire. In the groove of
 /// touching wires it is 0.866, beside them 0.
@@ -68,14 +69,28 @@ impl Coil {
             .any(|run| run.counts(least))
     }
 
-    /// Diameter minus axial distance where the wire overlaps its neighbour, else 0, m; a diameter where it has changed
-    /// places with it. The wire stands off by so much, m, from where it would be at rest over what it was laid on.
-    pub(crate) fn overlap_depth(&self, station: &Station, stands_off: f64) -> f64 {
+    /// Whether wire at `height` over the core, m, stands higher than `at_rest` over what it was laid on, or on wire of its own row. A loop at
+    /// rest stands higher than wound wire, and says nothing of the turn before.
+    pub(crate) fn has_ridden_up(
+        &self,
+        height: f64,
+        at_rest: Option<f64>,
+        support: &Support,
+    ) -> bool {
+        let (d, limits) = (self.spec.diameter, &self.spec.limits);
+        let stands_off = height - support.level.max(at_rest.unwrap_or(0.0));
+        stands_off > limits.overlap_height * d
+            || support.own_row.is_some_and(|rise| rise > STANDS * d)
+    }
+
+    /// Diameter minus axial distance where the wire has ridden up on its neighbour, else 0, m; a diameter where it has changed
+    /// places with it.
+    pub(crate) fn overlap_depth(&self, station: &Station, has_ridden_up: bool) -> f64 {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let Some(Neighbour { axial, .. }) = station.neighbour else {
             return 0.0;
         };
-        let stands_on = axial < limits.overlap_axial * d && stands_off > limits.overlap_height * d;
+        let stands_on = axial < limits.overlap_axial * d && has_ridden_up;
         if stands_on || axial < 0.0 {
             (d - axial).min(d)
         } else {

@@ -66,6 +66,11 @@ impl Section {
         PI * self.bare_diameter * self.bare_diameter / 4.0
     }
 
+    /// Young's modulus, Pa.
+    pub fn modulus(&self) -> f64 {
+        self.ea / (0.25 * PI * self.bare_diameter * self.bare_diameter)
+    }
+
     /// Mass per length, kg/m: metal and enamel.
     pub fn mass_per_length(&self) -> f64 {
         self.metal_per_length() + self.enamel_per_length()

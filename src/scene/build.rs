@@ -161,6 +161,7 @@ impl SceneSettings {
             (&nozzle_law, follows),
         );
         warnings.extend(laws.and_then(|laws| self.rough_laws(&laws)));
+        warnings.extend(self.soft_curve(&wire));
         warnings.extend(self.yielding_exit(&wire, &extent));
 
         let mut scene = Scene {
@@ -304,12 +305,23 @@ impl SceneSettings {
                 let flange = self.flange(problems);
                 let extent = self.mesh_extent(unit)?;
                 let reach = extent.y_max.min(-extent.y_min);
-                if flange.is_some_and(|f| 0.5 * f.inner_distance > reach) {
-                    problems.add(self.impossible(
-                        "core.flange.inner_distance",
-                        "the mesh ends before the flanges",
-                        format!("at most {} m, or 0 for no flanges", si(2.0 * reach)),
-                    ));
+                if let Some(f) = flange.filter(|f| 0.5 * f.inner_distance > reach) {
+                    let (half, [low, high]) =
+                        (0.5 * f.inner_distance, [extent.y_min, extent.y_max]);
+                    let reason = format!(
+                        "the mesh ends before the flanges, which stand at y = -{0} and {0} m: it reaches from {1} to {2} m",
+                        si(half),
+                        si(low),
+                        si(high)
+                    );
+                    let allowed = match 2.0 * half <= high - low {
+                        true => "a mesh with its middle at y = 0, or 0 for no flanges".to_owned(),
+                        false => format!(
+                            "at most {} m, or 0 for no flanges; or the core.unit in which the mesh was written",
+                            si((2.0 * reach).max(0.0))
+                        ),
+                    };
+                    problems.add(self.impossible("core.flange.inner_distance", reason, allowed));
                 }
                 let wire = self.wire.outer_diameter();
                 if let Some(room) = extent.window

@@ -184,19 +184,22 @@ impl SceneSettings {
             ));
         }
         let free = scene.solver.integrator == Integrator::Implicit && self.solver.step == 0.0;
+        let asked = switch(&self.solver.steps_beyond);
         let beyond = decisions.decide(
             "solver.steps_beyond",
-            switch(&self.solver.steps_beyond),
+            asked,
             free,
             [
-                "the method finds its own steps, which need not end at communication points",
+                match asked {
+                    Switch::On => "steps end neither at communication points nor at rows",
+                    _ => "steps need not end at communication points; at rows of the scene's own motion they do",
+                },
                 "steps of a given length end at communication points",
             ],
         );
         scene.solver.features.steps_beyond = beyond && free;
         // rows cost little where the motion is slow, and steps that end there show the tension's ringing
-        scene.solver.features.rows_between =
-            free && switch(&self.solver.steps_beyond) == Switch::On;
+        scene.solver.features.rows_between = free && asked == Switch::On;
         scene.solver.features.coarse_settled = decisions.decide(
             "solver.coarse_settled",
             settled,

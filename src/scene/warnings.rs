@@ -14,6 +14,9 @@ use std::f64::consts::TAU;
 /// yields bit by bit is off by some 12 % at the corner of any bilinear law.
 const ROUGH: f64 = 15.0;
 
+/// Young's modulus below which a curve is taken to be written in other units, Pa. Chosen: a seventh of aluminium's.
+const SOFT: f64 = 10e9;
+
 /// Turns beyond those that the layers hold from which on they are told. Chosen: a step to the next layer takes as many.
 const MORE: f64 = 0.5;
 
@@ -344,6 +347,22 @@ impl SceneSettings {
             }
         }
         warnings
+    }
+
+    /// A curve of a wire as soft as no metal is: its strains are percents, or its stresses MPa.
+    pub(super) fn soft_curve(&self, wire: &Section) -> Option<Warning> {
+        let key = "wire.stress_strain";
+        let modulus = wire.modulus();
+        (!self.wire.stress_strain.is_empty() && modulus < SOFT).then(|| Warning {
+            origin: self.told_origin(key),
+            key,
+            value: self.shown(key),
+            message: format!(
+                "the first point makes a modulus of {:.3} GPa, less than that of any metal that is wound: strains are ratios, 0.001 for \
+                 0.1 %, and stresses are in Pa",
+                1e-9 * modulus
+            ),
+        })
     }
 
     /// A curve that the laws of the mechanics follow badly: stretch is bilinear, as are laws with limits of the scene's own.

@@ -2,6 +2,7 @@
 
 use super::course::Course;
 use super::{SimError, Winding};
+use crate::math::wrap_to_pi;
 use crate::signals::Outputs;
 use std::sync::Arc;
 
@@ -100,13 +101,27 @@ impl Winding {
 
 /// Outputs a `share` of the way from one end of a step to the other: what follows the wire goes evenly, what is counted is that
 /// of the start. The tension rings from step to step, so that a parabola through three ends is off by as much as a line through two.
-pub(super) fn between(start: &Outputs, end: &Outputs, share: f64) -> Outputs {
+///
+/// The spindle has turned by `angle`, rad, there, and winds towards positive angles or negative ones (`winds`, 1 or -1).
+pub(super) fn between(
+    [start, end]: [&Outputs; 2],
+    share: f64,
+    (angle, winds): (f64, f64),
+) -> Outputs {
     let even = |a: f64, b: f64| a + share * (b - a);
     let (a, b) = (start.smooth(), end.smooth());
     let between = start.with_smooth(std::array::from_fn(|k| even(a[k], b[k])));
+    // Where wire lands on the next corner, its place goes far in a step: it goes round with core and wire all the same.
+    let polar = |o: &Outputs| libm::atan2(o.layon_z, o.layon_x);
+    let off = |o: &Outputs| polar(o) + o.spindle_angle - winds * o.layon_angle;
+    let apart = share * wrap_to_pi(off(end) - off(start));
+    let there = off(start) + apart + winds * between.layon_angle - angle;
+    let radius = libm::hypot(between.layon_x, between.layon_z);
     // The next layer begins where the step ends.
     let since = between.turns_wound - start.turns_wound;
     Outputs {
+        layon_x: radius * libm::cos(there),
+        layon_z: radius * libm::sin(there),
         turn_in_layer: (start.turn_in_layer + since).max(0.0),
         ..between
     }

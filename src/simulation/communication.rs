@@ -300,7 +300,9 @@ impl Simulation {
             self.talk.wait = self.talk.waited.max(1);
             let few = went_on < FEW_STEPS * self.now.stepper.next();
             if went_on > MORE_THAN_ONE * dt && (even || few) {
-                self.talk.wait = self.talk.waited;
+                // (without mass the tension jumps with its inputs: a line from before the change says nothing)
+                let least = u32::from(self.now.scene.tensioner.mass == 0.0);
+                self.talk.wait = self.talk.waited.max(least);
                 course = course.as_long_as(went_on);
             }
         }
@@ -336,6 +338,7 @@ impl Simulation {
         }
         let point = served.time;
         let near = ROUNDING * point;
+        let speed_before = served.inputs.spindle_speed;
         loop {
             if let Some(ahead) = self.ahead.take() {
                 if ahead.winding.run.time > point + near {
@@ -360,8 +363,10 @@ impl Simulation {
                 self.talk.served = Some(served);
                 self.settle()?;
                 let winding = self.pool.own(&mut self.now);
-                let both = [told, &winding.run.outputs];
                 let speed = winding.inputs().spindle_speed;
+                winding.run.acceleration = (speed - speed_before) / dt;
+                winding.let_go();
+                let both = [told, &winding.run.outputs];
                 winding.run.rates = rates_of(winding, both, dt, speed);
                 return Ok(());
             }
@@ -392,7 +397,8 @@ impl Simulation {
             inputs.nozzle_position = there.nozzle_position;
         }
         let end = self.ahead.as_ref().map(|ahead| &*ahead.winding);
-        served.read(&self.now, end, &course, inputs);
+        let acceleration = (inputs.spindle_speed - speed_before) / dt;
+        served.read(&self.now, end, &course, (inputs, acceleration));
         let both = [told, &served.outputs];
         served.rates = rates_of(&self.now, both, dt, inputs.spindle_speed);
         self.talk.served = Some(served);

@@ -247,7 +247,7 @@ impl Winding {
         })
     }
 
-    /// From where on the last planned turn lies on the turn before, and how to end the coil there, unless wire rides up sooner.
+    /// From where on wire at the end of the plan lies on the turn before, and how to end the coil there, unless wire rides up sooner.
     fn last_turn_without_place(&self) -> Option<String> {
         let at = self.coil.without_place_from()?;
         // (down, and to half a tenth: wire that is not laid there need not be judged there)
@@ -257,7 +257,7 @@ impl Winding {
             false => format!(". With spindle.turns = {ends:.2} the coil ends before"),
         };
         Some(format!(
-            "From {} on the last turn lies on the turn before, which has crossed into its place; within half a turn of the end that is no defect{remedy}",
+            "From {} on wire lies on the turn before, which has crossed into its place; within half a turn of the end that is no defect{remedy}",
             OnTurn::of_station(at)
         ))
     }

@@ -163,23 +163,27 @@ impl Served {
         raise_as(&mut self.outputs, &winding.run.outputs);
     }
 
-    /// Reads the outputs between the winding and the `end` of the step ahead of it.
+    /// Reads the outputs between the winding and the `end` of the step ahead of it, with the inputs at this point and the mean
+    /// acceleration of the spindle, rad/s2, since the one before.
     pub(super) fn read(
         &mut self,
         now: &Winding,
         end: Option<&Winding>,
         course: &Course,
-        inputs: Inputs,
+        (inputs, acceleration): (Inputs, f64),
     ) {
         let start = &now.run.outputs;
+        let angle = start.spindle_angle + course.turned(now.run.time, self.time);
         let mut outputs = match end {
             Some(end) => {
                 let share = (self.time - now.run.time) / (end.run.time - now.run.time);
-                between(start, &end.until_it_parted(), share)
+                let winds = end.coil.spec().direction;
+                between([start, &end.until_it_parted()], share, (angle, winds))
             }
             None => *start,
         };
-        outputs.spindle_angle = start.spindle_angle + course.turned(now.run.time, self.time);
+        outputs.spindle_angle = angle;
+        outputs.spindle_torque_total = outputs.spindle_torque - outputs.coil_inertia * acceleration;
         self.outputs.meet_tension(outputs.wire_tension);
         outputs.nozzle_y = inputs.nozzle_position;
         keep_told(&mut outputs, &self.outputs);

@@ -28,7 +28,7 @@ impl Winding {
             }
             self.run.traverse = Traverse::new(self.sys.state.support[1].point.y);
             self.tell_of_changes("the core winds the other way round");
-            self.tell_of_other_way(direction);
+            self.tell_of_other_way(-direction);
         }
         let core = turn * self.coil.spec().direction;
         let y = self.sys.state.support[1].point.y;
@@ -54,17 +54,22 @@ impl Winding {
         }
     }
 
-    /// Tells that the core winds the other way round than in this direction, 1 or -1, for which it stood at the start.
-    fn tell_of_other_way(&mut self, stood_for: f64) {
+    /// Tells that the core winds in this direction now, 1 or -1. It stood for one of the two at the start.
+    fn tell_of_other_way(&mut self, now: f64) {
         let axis = |direction: f64| if direction < 0.0 { "-y" } else { "+y" };
         let nozzle = self.sys.state.support[1].point;
         let facing = libm::atan2(-nozzle.z, nozzle.x);
-        let idle = 2.0 * wrap_to_pi(self.run.angle0 - facing).abs().to_degrees();
+        let ahead = wrap_to_pi(self.run.angle0 - facing);
+        if ahead * now > 0.0 {
+            let message = format!("the core winds about {} again, as at the start", axis(now));
+            return self.report(EventKind::Judgement, message);
+        }
+        let idle = 2.0 * ahead.abs().to_degrees();
         let law = match self.run.nozzle_by_law {
             true => ", for which the traverse law does not wait",
             false => "",
         };
-        let (now, stood_for) = (axis(-stood_for), axis(stood_for));
+        let (now, stood_for) = (axis(now), axis(-now));
         self.report(
             EventKind::Judgement,
             format!(

@@ -271,7 +271,7 @@ table! {
     flag(104, defect_gap, "neighbouring turns lie apart by more than allowed");
     flag(105, defect_overlap, "a turn has climbed on its neighbour or changed places with it");
     flag(106, defect_break, "the wire has parted: tension above its strength, or a kink");
-    flag(107, defect_slack, "tension below the weight of half the free span, for a degree of the core or for as long as the tensioner takes to follow");
+    flag(107, defect_slack, "tension below the weight of half the free span, for eight degrees of the core or for as long as the tensioner takes to follow");
     count(Output, 108, defect_code, "bit mask: bulge 1, gap 2, overlap 4, break 8, slack 16, double turn 32, skipped groove 64, early layer jump 128, late layer jump 256, loose turn 512, overstretch 1024, collision 2048, runaway 4096");
     count(Output, 109, defect_count, "defects of coil and wire, of every kind");
     output(110, defect_turn, "1", "", -1e6, 1e6, 1.0, "turn of the last defect, where it was found");
@@ -447,7 +447,7 @@ table! {
     fixed(2001, "freeze.window", freeze.window, "rad", "deg", 1e-3, 100.0, 1.0, "core angle over which motion is judged");
     fixed(2002, "freeze.creep", freeze.creep, "m/rad", "um/rad", 0.0, 1.0, 1e-6, "largest motion of wire at rest per core angle; 0: in proportion to the outer diameter, 2 um/rad for 0.7 mm");
     fixed(2003, "freeze.keep_length", freeze.keep_length, "m", "mm", 0.0, 100.0, 1e-2, "settled wire kept live behind lift-off; 0: 1.75 sqrt(EI/T)");
-    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the wire's surface may be from the core or the layer below up to freeze.patience turns behind lift-off; 0: in proportion to the outer diameter, 5 mm for 0.7 mm");
+    fixed(2004, "freeze.margin", freeze.margin, "m", "mm", 0.0, 1.0, 1e-2, "farthest the centreline may be from a diameter over the core or the layer below, up to freeze.patience turns behind lift-off; 0: in proportion to the outer diameter, 5 mm for 0.7 mm");
     fixed(2005, "freeze.time", freeze.time, "s", "ms", 0.0, 1e6, 1e-2, "time over which motion is judged while the spindle stands; 0: ten periods of the free span's slowest ringing at the start");
     fixed(2006, "freeze.patience", freeze.patience, "1", "", 0.0, 1000.0, 1.0, "turns behind lift-off from which on creep may double each quarter of a turn, up to a twentieth of the diameter in all");
 

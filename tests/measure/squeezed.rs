@@ -431,3 +431,34 @@ fn a_last_turn_as_high_as_at_rest_does_not_ride_up() {
         assert!((excess - over * D).abs() < 1e-9, "{over}: {}", excess / D);
     }
 }
+
+/// Wire that had no place for longer than the last turn was told to have none from the beginning of that turn on. A coil that ended there, as
+/// told, ended with wire on the turn before all the same.
+#[test]
+fn wire_without_a_place_is_told_from_where_it_begins() {
+    let mut nodes = on_cylinder(3.95, 1.0, |angle| match angle / TAU {
+        turned if turned < 1.0 => (0.0, 0.0),
+        turned if turned < 1.7 => (D, 0.0),
+        // crosses too soon, and leaves less than half a place
+        turned if turned < 2.0 => (1.6 * D, 0.0),
+        turned if turned < 2.7 => (2.0 * D, 0.0),
+        turned if turned < 3.0 => (2.0 * D, 0.917 * D),
+        turned if turned < 3.7 => (2.0 * D, D),
+        _ => (2.0 * D, 1.917 * D),
+    });
+    for node in &mut nodes {
+        let way = 2.5 * D - node.position.y;
+        node.flange = (way < 2.0 * D).then_some(way);
+    }
+    let spec = CoilSpec {
+        full: Some(4.0 * TAU),
+        planned: Some(4.0 * TAU),
+        ..spec()
+    };
+    let begins = wound(spec, &nodes).without_place_from();
+    let begins = begins.map(|station| station as f64 / 360.0);
+    assert!(
+        begins.is_some_and(|turns| (turns - 2.7).abs() < 0.02),
+        "{begins:?}"
+    );
+}

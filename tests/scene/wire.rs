@@ -280,3 +280,16 @@ fn the_window_ends_at_its_limit_line() {
     ));
     assert_says(&steep, &["core.window_height", "meets the core"]);
 }
+
+/// A curve with strains in percent is that of wire a hundred times as soft, and passed without a word.
+#[test]
+fn a_curve_in_other_units_is_warned_of() {
+    let told = |points: &str| {
+        let settings = parse(&format!("[wire]\nstress_strain = {points}")).unwrap();
+        let (_, warnings) = settings.build_with_warnings().unwrap();
+        let mut texts = warnings.into_iter().map(|warning| warning.message);
+        texts.any(|text| text.contains("makes a modulus of 1.1") && text.contains("ratios"))
+    };
+    assert!(told("[[0.1, 110e6], [0.5, 140e6], [0.9, 160e6]]"));
+    assert!(!told("[[0.001, 110e6], [0.05, 140e6], [0.2, 160e6]]"));
+}

@@ -193,7 +193,7 @@ const nothing = (title, why) => el("section", { class: "card" }, el("div", { cla
 function layOut(run) {
   if (run.wire) run.view = new View(run);
   const curves = charts(run);
-  const noWire = "The run left no geometry (--no-geometry), or no wire was wound.";
+  const noWire = "The folder has no coil.vtp, as after --no-geometry, or no wire was wound.";
   return el("article", { class: "run" },
     head(run), product(run),
     run.view ? run.view.card() : nothing("Coil", noWire),
