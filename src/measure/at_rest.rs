@@ -11,12 +11,15 @@ impl Coil {
     /// Height over the core, m, at which wire with this `tension`, N, is at rest at the next station, where its own row does not hold
     /// it up. `over_core` is that of a loop drawn tight round the core there, m, under the tension that was meant.
     ///
-    /// A loop drawn round wire lies close on it, since that stands off the core as the loop would alone. A looser one stands
-    /// higher: heights go with the root of the tension. Wire may be that loose until its tension makes it a loose turn.
+    /// A loop drawn round a loop lies close on it, since that stands off the core as the loop would alone. Wound wire below stands lower than
+    /// a loop would, and does not carry the one over it. A looser loop stands higher: heights go with the root of the tension. Wire may be
+    /// that loose until its tension makes it a loose turn.
     fn at_rest(&self, over_core: f64, support: &Support, tension: f64) -> f64 {
         let Some(LaidOn { level, station }) = support.laid_on else {
             return over_core;
         };
+        let below = &self.records[station];
+        let level = level + (below.at_rest - below.station.height).max(0.0);
         let least = self.spec.limits.loose_tension * self.spec.tension;
         let present = self.mean_tension(self.records.len(), tension).max(least);
         if present <= 0.0 {

@@ -94,6 +94,10 @@ pub(crate) struct Record {
     pub(super) flange_side: f64,
     /// it lies on the climb of its own row, which it crosses
     pub(super) on_climb: bool,
+    /// its place along y from that climb's, m, where it passes over it
+    pub(super) beside_climb: Option<f64>,
+    /// height over the core at which it would be at rest, m; 0 where that is not known
+    pub(super) at_rest: f64,
     /// a place left empty beside the flange where its layer begins: stations on end, and the room there beyond the plan, m
     pub(super) left_empty: (u32, f64),
     /// it is on its way to the next row, or is pressed up beside a flange
@@ -503,6 +507,8 @@ impl Coil {
             last_crossing,
             flange_side: flange.map_or(0.0, f64::signum),
             on_climb: support.on_climb,
+            beside_climb: support.beside_climb,
+            at_rest: at_rest.unwrap_or(0.0),
             left_empty,
             rises: rises && self.may_climb(layer, angle),
         }));

@@ -60,11 +60,11 @@ impl Coil {
         None
     }
 
-    /// Whether wire has ridden up on its own row, and come down again, before a station: a coil that ends there is none the better for it.
+    /// Whether wire has ridden up on its own row for long enough to count before a station: a coil that ends there is none the better for it.
     pub fn rides_up_before(&self, station: usize) -> bool {
         [DefectKind::Overlap, DefectKind::DoubleTurn]
             .into_iter()
             .flat_map(|kind| self.counted_runs(kind, 0))
-            .any(|run| run.last < station)
+            .any(|run| run.counts_at < station)
     }
 }

@@ -69,8 +69,8 @@ impl Coil {
             .any(|run| run.counts(least))
     }
 
-    /// Whether wire at `height` over the core, m, stands higher than `at_rest` over what it was laid on, or on wire of its own row. A loop at
-    /// rest stands higher than wound wire, and says nothing of the turn before.
+    /// Whether wire at `height` over the core, m, stands higher than `at_rest` over what it was laid on, or on wire of its own row other
+    /// than the climb that it crosses. A loop at rest stands higher than wound wire, and says nothing of the turn before.
     pub(crate) fn has_ridden_up(
         &self,
         height: f64,
@@ -80,7 +80,7 @@ impl Coil {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let stands_off = height - support.level.max(at_rest.unwrap_or(0.0));
         stands_off > limits.overlap_height * d
-            || support.own_row.is_some_and(|rise| rise > STANDS * d)
+            || !support.on_climb && support.own_row.is_some_and(|rise| rise > STANDS * d)
     }
 
     /// Diameter minus axial distance where the wire has ridden up on its neighbour, else 0, m; a diameter where it has changed

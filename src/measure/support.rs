@@ -1,9 +1,9 @@
 //! What a wire was laid over: the core, wire of earlier rows below it, or the climb to its own row.
 
-use super::STATIONS_PER_TURN;
 use super::below::Lower;
 use super::coil::{Coil, Record, STEP_UP};
 use super::passes::Pass;
+use super::{STATION_STEP, STATIONS_PER_TURN};
 
 use super::row::{Row, RowPlace};
 
@@ -42,6 +42,8 @@ pub(crate) struct Support {
     pub(super) laid_on: Option<LaidOn>,
     /// it would rest on the climb of its own row, which it crosses
     pub(super) on_climb: bool,
+    /// its place along y from that climb's, m, where it passes over it
+    pub(super) beside_climb: Option<f64>,
     /// rise over wire of its own row that it has climbed on, m
     pub(crate) own_row: Option<f64>,
     /// the same as `level` where wire of its own row and a flange hold it between them as well, m
@@ -70,6 +72,14 @@ impl Support {
 }
 
 impl Coil {
+    /// Whether wire that passes over the climb of its own row, `beside` that (m) along y, goes across it fast enough to be over its top within
+    /// a climb's length.
+    fn goes_across_climb(&self, beside: f64) -> bool {
+        let before = self.records.last().and_then(|last| last.beside_climb);
+        let least = 2.0 * ON_WIRE * self.spec.diameter * STATION_STEP / STEP_UP;
+        before.is_some_and(|before| (beside - before).abs() >= least)
+    }
+
     /// Row of the next station in this pass, what lies below it, and whether it is pressed up beside a flange or on its way to the next row.
     pub(crate) fn row_and_support(&self, pass: Pass, at: &RowPlace) -> (Row, Support, bool) {
         let RowPlace { angle, y, .. } = *at;
@@ -188,6 +198,7 @@ impl Coil {
             row: None,
             laid_on: None,
             on_climb: false,
+            beside_climb: None,
             own_row: None,
             held: 0.0,
             highest: 0.0,
@@ -212,8 +223,13 @@ impl Coil {
                 let earlier = of.number < row;
                 let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
                 let climbing = of.number > 1 && station.angle < of.from + climb;
+                let passes = climbing && one_turn_back && aside <= 1.0 && rise > 0.0;
+                if passes {
+                    support.beside_climb = Some(y - lower.y);
+                }
+                let goes_across = passes && self.goes_across_climb(y - lower.y);
                 // what lies along the climb of its own row, and not across it, has ridden up
-                let crossed = climbing && (at.crosses || aside >= ON_WIRE);
+                let crossed = climbing && (at.crosses || aside >= ON_WIRE || goes_across);
                 let carries = earlier || (one_turn_back && crossed);
                 let wedge = wedged(&lower);
                 // pressed up between a flange and the turn before, it is in its place there as long as that is a place and it lies in it
@@ -238,8 +254,12 @@ impl Coil {
                     let side = &mut groove[usize::from(lower.y > y)];
                     *side = station.layer.max(*side);
                 }
-                // it leans on the climb from the side as long as it touches it
-                let leans = comes_down && !earlier && carries;
+                // it leans on the climb from the side as long as it touches it, on bowed faces also where it still rises over the core
+                let away = passes
+                    && last.is_some_and(|last| {
+                        last.on_climb && last.beside_climb.is_some_and(|was| was.abs() <= aside * d)
+                    });
+                let leans = (comes_down || away) && !earlier && carries;
                 let reach = if leans { 1.0 } else { BELOW };
                 let on = (aside <= reach).then(|| lower.height + d * (1.0 - aside * aside).sqrt());
                 if let (true, Some(level)) = (earlier, on) {

@@ -250,8 +250,10 @@ impl Winding {
     /// From where on wire at the end of the plan lies on the turn before, and how to end the coil there, unless wire rides up sooner.
     fn last_turn_without_place(&self) -> Option<String> {
         let at = self.coil.without_place_from()?;
-        // (down, and to half a tenth: wire that is not laid there need not be judged there)
-        let ends = (20.0 * at as f64 / STATIONS_PER_TURN as f64).floor() / 20.0;
+        // (down, and to half a tenth: wire that is not laid there need not be judged there; it is laid ahead of the core)
+        let o = self.outputs();
+        let ahead = (o.turns_wound - o.spindle_angle.abs() / TAU).max(0.0);
+        let ends = (20.0 * (at as f64 / STATIONS_PER_TURN as f64 - ahead)).floor() / 20.0;
         let remedy = match self.coil.rides_up_before(at) {
             true => String::new(),
             false => format!(". With spindle.turns = {ends:.2} the coil ends before"),

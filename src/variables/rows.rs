@@ -374,7 +374,7 @@ table! {
     fixed(1200, "nozzle.distance", nozzle.distance, "m", "mm", 1e-3, 10.0, 0.1, "nozzle exit from the core axis, on +x");
     fixed(1201, "nozzle.y_start", nozzle.y_start, "m", "mm", -10.0, 10.0, 1e-2, "nozzle along the core axis at the start; not set, with layers planned between flanges: where the first turn lies beside its flange");
     fixed(1202, "nozzle.exit_friction", nozzle.exit_friction, "1", "", 0.0, 2.0, 0.1, "friction at the exit, share of tension per rad of deflection");
-    switch(1203, "nozzle.position_at_start", nozzle.position_at_start, "what a place of the nozzle means that comes without its rate; false: where the nozzle is at the end of the step; true: where it is at the start, from where it goes on as between the last two places");
+    switch(1203, "nozzle.position_at_start", nozzle.position_at_start, "where the nozzle is by nozzle_position without a rate; false: there at the end of the step; true: there at its start, as in a recording, and on from there as fast as between the last two places");
     fixed(1204, "nozzle.outer_diameter", nozzle.outer_diameter, "m", "mm", 0.0, 1.0, 1e-3, "outer diameter of the nozzle's body, a round rod from the exit outwards along +x; 0: the nozzle is a point");
     fixed(1205, "nozzle.length", nozzle.length, "m", "mm", 0.0, 10.0, 1e-2, "length of the nozzle's body; 0: without end");
     fixed(1206, "nozzle.edge_radius", nozzle.edge_radius, "m", "mm", 0.0, 0.5, 1e-3, "radius of the outer rim of the nozzle's body, at its exit and at its end");
@@ -407,7 +407,7 @@ table! {
 
     fixed(1600, "traverse.per_turn", traverse.per_turn, "m", "mm", -1.0, 1.0, 1e-3, "by-angle: nozzle travel per revolution; the sign is its direction along y");
     fixed(1601, "traverse.lead", traverse.lead, "m", "mm", -1.0, 1.0, 1e-3, "constant lead of the nozzle over the traverse law; in layers, in the direction of each");
-    fmu_text("by-input", 1602, "traverse.mode", (traverse.mode), ["by-input", "by-angle", "orthocyclic", "helical", "table"], "nozzle travel: as nozzle_position says; even with the core's angle, as without inputs too; layers with a straight part and a crossover in each turn; layers of even travel; from a table");
+    fmu_text("by-input", 1602, "traverse.mode", (traverse.mode), ["by-input", "by-angle", "orthocyclic", "helical", "table"], "nozzle travel; by-input: as nozzle_position says, without inputs as by-angle; by-angle: even with the core's angle; orthocyclic: layers with a straight part and a crossover in each turn; helical: layers of even travel; table: from a file");
     fixed(1603, "traverse.crossover", traverse.crossover, "rad", "deg", 0.01, 6.0, 1.0, "orthocyclic: core angle of the crossover to the next turn");
     fixed(1604, "traverse.dwell_turns", traverse.dwell_turns, "1", "", 0.0, 10.0, 1.0, "helical: least revolutions that the nozzle stands at the end of a layer; it stays until the layer has its turns");
     text(1605, "traverse.file", (traverse.file), [], "table: CSV file of angle and nozzle position, relative to the scene file, set in the FMU relative to its resources or as given");

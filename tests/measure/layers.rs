@@ -7,17 +7,17 @@ use coilwind::measure::{
 use std::f64::consts::TAU;
 
 /// Turns of a layer of the coils here.
-const TURNS: f64 = 5.0;
+pub(crate) const TURNS: f64 = 5.0;
 
 /// Rise from layer to layer in grooves, m.
-fn step() -> f64 {
+pub(crate) fn step() -> f64 {
     0.75f64.sqrt() * D
 }
 
 /// Place of wire `angle` after the clamp in a coil of layers in grooves: y and height over the core.
 ///
 /// Straight over most of a turn, a step to the next groove in the rest, as orthocyclic winding has it.
-fn orthocyclic(angle: f64) -> (f64, f64) {
+pub(crate) fn orthocyclic(angle: f64) -> (f64, f64) {
     let turn = (angle / TAU).floor();
     let within = angle / TAU - turn;
     let layer = (turn / TURNS).floor();

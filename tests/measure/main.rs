@@ -1,5 +1,6 @@
 //! Measures of made coils whose gaps, heights and places are known beforehand.
 
+mod bowed;
 mod changes;
 mod coils;
 mod crossovers;
