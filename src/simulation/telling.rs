@@ -313,7 +313,7 @@ mod tests {
             let turn = f64::from(k) / 72.0;
             let rise = match turn {
                 turn if turn < 4.0 => 0.0,
-                turn if (4.4..4.5).contains(&turn) => 1.3,
+                turn if (4.4..4.5).contains(&turn) => 2.0,
                 turn => (1.0 - (1.0 - lean(turn)).powi(2)).sqrt(),
             };
             node.height = d * rise;
