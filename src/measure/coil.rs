@@ -449,7 +449,6 @@ impl Coil {
         let (row, support, rises) = self.row_and_support(pass, &at);
         let at_rest = self.level_at_rest((angle, position.y), &support, wire.tension);
         let bulge = height - support.held;
-        let is_up = self.has_ridden_up(height, at_rest, &support);
         let (layer, other_layer) = self.layer_after(support.layer, row);
         let (neighbour, window) = self.neighbour(angle, position, row);
         // Beside a double turn, in the place after it, lies the turn below that one.
@@ -459,6 +458,8 @@ impl Coil {
         };
         let neighbour = neighbour.filter(|_| !after_double());
         let crosses = in_crossover && !self.is_hole(neighbour);
+        let gap = neighbour.map(|neighbour| neighbour.gap);
+        let is_up = self.has_ridden_up((height, gap), at_rest, &support);
         // The nozzle turns here or the flange is near, and the wire leaves its row.
         let lifts = !self.is_pressed_up_next()
             && (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))

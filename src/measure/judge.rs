@@ -12,6 +12,9 @@ use super::support::Support;
 /// touching wires it is 0.866, beside them 0.
 const STANDS: f64 = 0.5;
 
+/// The same from which on wire lies more on the turn before than beside it, diameters: it touches it at 45 degrees.
+const MORE_ON_THAN_BESIDE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+
 impl Coil {
     /// The last station up to the next one at which wire crosses, when the next one lies at `y`, m.
     pub(crate) fn last_crossing(&self, y: f64) -> Option<usize> {
@@ -69,18 +72,21 @@ impl Coil {
             .any(|run| run.counts(least))
     }
 
-    /// Whether wire at `height` over the core, m, stands higher than `at_rest` over what it was laid on, or on wire of its own row other
-    /// than the climb that it crosses. A loop at rest stands higher than wound wire, and says nothing of the turn before.
+    /// Whether wire at `height` over the core, m, stands higher than `at_rest` over what it was laid on, or on the turn before, `gap` (m) from
+    /// it, where that is no climb that it crosses. A loop at rest stands higher than wound wire, and says nothing of the turn before.
     pub(crate) fn has_ridden_up(
         &self,
-        height: f64,
+        (height, gap): (f64, Option<f64>),
         at_rest: Option<f64>,
         support: &Support,
     ) -> bool {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let stands_off = height - support.level.max(at_rest.unwrap_or(0.0));
-        stands_off > limits.overlap_height * d
-            || !support.on_climb && support.own_row.is_some_and(|rise| rise > STANDS * d)
+        let touches = gap.is_some_and(|gap| gap <= limits.loose_height * d);
+        let stands = support
+            .own_row
+            .is_some_and(|rise| rise > MORE_ON_THAN_BESIDE * d);
+        stands_off > limits.overlap_height * d || stands && touches && !support.on_climb
     }
 
     /// Diameter minus axial distance where the wire has ridden up on its neighbour, else 0, m; a diameter where it has changed

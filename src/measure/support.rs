@@ -15,6 +15,9 @@ pub(super) const BELOW: f64 = 0.866_025_403_784_438_6;
 /// turns of it, a wire is as far from them as that is wide.
 const CLIMBED: f64 = 0.5;
 
+/// Way aside from one station to the next that is rounding, diameters.
+const JITTER: f64 = 1e-9;
+
 /// Rise over a wire from which on another lies in the layer above it, diameters: half of a wire on a wire. In the
 /// groove of touching wires it is 0.866.
 pub(super) const NEXT_LAYER: f64 = 0.5;
@@ -206,9 +209,8 @@ impl Coil {
         // layers of the highest wire of its own row below it, towards -y and +y
         let mut groove = [0; 2];
         // wire that has crossed the climb of its own row comes down from it, on a long face for longer than that counts as one
-        let last = self.records.last();
-        let comes_down = last.is_some_and(|last| last.on_climb && height < last.station.height);
-        let climb = if comes_down { 2.0 } else { 1.0 } * STEP_UP;
+        let last = self.records.last().filter(|last| last.on_climb);
+        let comes_down = last.is_some_and(|last| height < last.station.height);
         // height at which wire of earlier rows alone carries it, m
         let mut on_earlier = f64::NEG_INFINITY;
         for bin in bucket.1 - 1..=bucket.1 + 1 {
@@ -222,6 +224,12 @@ impl Coil {
                 let (aside, rise) = ((y - lower.y).abs() / d, height - lower.height);
                 let earlier = of.number < row;
                 let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
+                // on a bowed face without coming nearer to the core
+                let beside = last.and_then(|last| last.beside_climb).map(f64::abs);
+                let away = one_turn_back
+                    && beside.is_some_and(|beside| (beside..d).contains(&(aside * d - JITTER * d)));
+                let comes_down = comes_down || away;
+                let climb = if comes_down { 2.0 } else { 1.0 } * STEP_UP;
                 let climbing = of.number > 1 && station.angle < of.from + climb;
                 let passes = climbing && one_turn_back && aside <= 1.0 && rise > 0.0;
                 if passes {
@@ -254,12 +262,8 @@ impl Coil {
                     let side = &mut groove[usize::from(lower.y > y)];
                     *side = station.layer.max(*side);
                 }
-                // it leans on the climb from the side as long as it touches it, on bowed faces also where it still rises over the core
-                let away = passes
-                    && last.is_some_and(|last| {
-                        last.on_climb && last.beside_climb.is_some_and(|was| was.abs() <= aside * d)
-                    });
-                let leans = (comes_down || away) && !earlier && carries;
+                // it leans on the climb from the side as long as it touches it
+                let leans = comes_down && !earlier && carries;
                 let reach = if leans { 1.0 } else { BELOW };
                 let on = (aside <= reach).then(|| lower.height + d * (1.0 - aside * aside).sqrt());
                 if let (true, Some(level)) = (earlier, on) {

@@ -128,6 +128,9 @@ pub struct PenetrationSummary {
     pub at_rest_over_d: f64,
 }
 
+/// How far the place where wire is laid goes at once where it lands on the next corner of a box, turns; on other cores no farther.
+const FROM_CORNER: f64 = 0.25;
+
 impl Winding {
     /// Energy balance up to now.
     pub fn energy(&self) -> EnergySummary {
@@ -250,9 +253,14 @@ impl Winding {
     /// From where on wire at the end of the plan lies on the turn before, and how to end the coil there, unless wire rides up sooner.
     fn last_turn_without_place(&self) -> Option<String> {
         let at = self.coil.without_place_from()?;
-        // (down, and to half a tenth: wire that is not laid there need not be judged there; it is laid ahead of the core)
+        // (down, and to half a tenth: wire that is not laid there need not be judged there; it is laid ahead of the core, and on one with
+        // corners by up to a quarter of a turn more than now)
         let o = self.outputs();
-        let ahead = (o.turns_wound - o.spindle_angle.abs() / TAU).max(0.0);
+        let swing = match self.scene.core {
+            Core::Cylinder { .. } => 0.0,
+            _ => FROM_CORNER,
+        };
+        let ahead = o.turns_wound - o.spindle_angle.abs() / TAU + swing;
         let ends = (20.0 * (at as f64 / STATIONS_PER_TURN as f64 - ahead)).floor() / 20.0;
         let remedy = match self.coil.rides_up_before(at) {
             true => String::new(),

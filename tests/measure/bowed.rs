@@ -82,12 +82,30 @@ fn wire_that_crosses_its_climb_slowly_does_not_ride_up() {
 /// Wire that leaned on the climb was told to ride up where the face under both rose towards its middle.
 #[test]
 fn wire_that_leans_on_its_climb_on_a_bowed_face_does_not_ride_up() {
-    let bow = |turns: f64| 2.0 * D * libm::sin(TAU * turns.fract().min(0.5));
+    let bow = |turns: f64| 2.0 * D * (1.0 - (2.0 * turns.fract() - 1.0).abs());
+    // for longer than a quarter of a turn
     let leaves = |turns: f64| {
-        (0.0..0.2)
+        (0.0..0.35)
             .contains(&turns)
-            .then_some(0.7 + 0.28 * turns / 0.2)
+            .then_some(0.7 + 0.28 * turns / 0.35)
     };
     let coil = over_the_climb(bow, leaves);
     assert!(!coil.flags().overlap, "{:?}", coil.defects());
+}
+
+/// Wire that stands off beside and over the turn before, lower than at rest and with air between the two, was told to ride up on it.
+#[test]
+fn wire_that_does_not_touch_the_turn_before_has_not_ridden_up() {
+    for (rise, rides_up) in [(1.0, false), (0.81, true)] {
+        let place = |angle: f64| match angle / TAU {
+            turns if turns < 1.0 => (0.0, 0.5 * D),
+            _ => (0.6 * D, (0.5 + rise) * D),
+        };
+        let spec = CoilSpec {
+            profile: Profile::new(vec![2.2 * D]),
+            ..spec()
+        };
+        let coil = wound(spec, &on_cylinder(1.95, 1.0, place));
+        assert_eq!(coil.flags().overlap, rides_up, "{:?}", coil.defects());
+    }
 }
