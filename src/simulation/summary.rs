@@ -264,7 +264,9 @@ impl Winding {
         let ends = (20.0 * (at as f64 / STATIONS_PER_TURN as f64 - ahead)).floor() / 20.0;
         let remedy = match self.coil.rides_up_before(at) {
             true => String::new(),
-            false => format!(". With spindle.turns = {ends:.2} the coil ends before"),
+            false => format!(
+                ". With spindle.turns = {ends:.2}, or inputs that end there, the coil ends before"
+            ),
         };
         Some(format!(
             "From {} on wire lies on the turn before, which has crossed into its place; within half a turn of the end that is no defect{remedy}",
