@@ -307,7 +307,8 @@ mod tests {
                 let edge = FirstEdge { rest, ..edge(&pulls, &law, &state) };
                 let length = length_of(way);
                 let twin = slow_twin(&edge, length);
-                prop_assume!(twin < 55.0);
+                // (the twin does not yield, neither drawn nor pushed)
+                prop_assume!(twin.abs() < 55.0);
                 let s = edge.stretched(length, length);
                 prop_assert!((s.tension - twin).abs() < 1e-6 * (1.0 + twin.abs()), "{s:?} {twin}");
                 let (tensions, given) = by_hand(&pulls, edge.friction, twin);
