@@ -8,8 +8,8 @@ use super::support::{LaidOn, Support};
 const COMPARED: usize = STATIONS_PER_TURN / 2;
 
 impl Coil {
-    /// Height over the core, m, at which wire with this `tension`, N, is at rest at the next station, where its own row does not hold
-    /// it up. `over_core` is that of a loop drawn tight round the core there, m, under the tension that was meant.
+    /// Height over the core, m, at which wire with this `tension`, N, is at rest at the next station. Its own row may hold it higher.
+    /// `over_core` is that of a loop drawn tight round the core there, m, under the tension that was meant.
     ///
     /// A loop drawn round a loop lies close on it, since that stands off the core as the loop would alone. Wound wire below stands lower than
     /// a loop would, and does not carry the one over it. A looser loop stands higher: heights go with the root of the tension. Wire may be

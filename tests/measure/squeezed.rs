@@ -397,8 +397,8 @@ fn wire_high_over_a_place_beside_the_flange_is_not_in_it() {
     assert!(coil.flags().double_turn, "{:?}", coil.defects());
 }
 
-/// Where the whole layer bows out, a last turn beside the flange that stood hardly higher than at rest was told to ride up, as soon as it
-/// lay a tenth of a diameter too close to a turn that had been pressed lower.
+/// Where the whole layer bows out, a last turn beside the flange was told to ride up, though it stood hardly higher than at rest. It was so as
+/// soon as it lay a tenth of a diameter too close to a turn that had been pressed lower.
 #[test]
 fn a_last_turn_as_high_as_at_rest_does_not_ride_up() {
     let (bow, low, aside) = (0.86, 0.48, 0.895);
