@@ -318,6 +318,19 @@ fn same_input_same_output() {
     assert_eq!(a.outputs(), c.outputs());
 }
 
+/// A long coil was to be wound a second time for a gap of its turn 2.
+#[test]
+fn a_doubt_of_an_early_gap_asks_for_few_turns() {
+    let words = |turns: f64| {
+        let sim = wind(&fig8(&[]), turns);
+        let reasons = sim.reasons();
+        let doubt = reasons.iter().find(|text| text.contains("the tolerance"));
+        doubt.expect("a gap near its limit").clone()
+    };
+    assert!(words(5.0).ends_with("; 3.5 turns are enough for that"));
+    assert!(!words(2.5).contains("enough"));
+}
+
 /// Steps damp the shaking that lays wire beside its neighbour: the default tells gaps that finer steps do not.
 #[test]
 fn a_gap_near_its_limit_is_told_to_be_in_doubt() {

@@ -458,8 +458,7 @@ impl Coil {
         };
         let neighbour = neighbour.filter(|_| !after_double());
         let crosses = in_crossover && !self.is_hole(neighbour);
-        let gap = neighbour.map(|neighbour| neighbour.gap);
-        let is_up = self.has_ridden_up((height, gap), at_rest, &support);
+        let is_up = self.has_ridden_up((height, neighbour), at_rest, &support);
         // The nozzle turns here or the flange is near, and the wire leaves its row.
         let lifts = !self.is_pressed_up_next()
             && (row.is_over_in(pass) || at.has_no_room_in(row, self.spec.diameter))

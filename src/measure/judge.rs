@@ -72,21 +72,25 @@ impl Coil {
             .any(|run| run.counts(least))
     }
 
-    /// Whether wire at `height` over the core, m, stands higher than `at_rest` over what it was laid on, or on the turn before, `gap` (m) from
-    /// it, where that is no climb that it crosses. A loop at rest stands higher than wound wire, and says nothing of the turn before.
+    /// Whether wire at `height` over the core, m, stands higher than `at_rest` over what it was laid on, or on the turn before, its
+    /// `neighbour`, where that is no climb that it crosses. A loop at rest stands higher than wound wire, and says nothing of the turn
+    /// before. Wire that touches nothing and hangs more beside the turn before than over it bulges.
     pub(crate) fn has_ridden_up(
         &self,
-        (height, gap): (f64, Option<f64>),
+        (height, neighbour): (f64, Option<Neighbour>),
         at_rest: Option<f64>,
         support: &Support,
     ) -> bool {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let stands_off = height - support.level.max(at_rest.unwrap_or(0.0));
-        let touches = gap.is_some_and(|gap| gap <= limits.loose_height * d);
+        let touches = |neighbour: Neighbour| neighbour.gap <= limits.loose_height * d;
+        let hangs_beside = neighbour
+            .is_some_and(|turn| !touches(turn) && turn.axial >= MORE_ON_THAN_BESIDE * d);
         let stands = support
             .own_row
             .is_some_and(|rise| rise > MORE_ON_THAN_BESIDE * d);
-        stands_off > limits.overlap_height * d || stands && touches && !support.on_climb
+        stands_off > limits.overlap_height * d && !hangs_beside
+            || stands && neighbour.is_some_and(touches) && !support.on_climb
     }
 
     /// Diameter minus axial distance where the wire has ridden up on its neighbour, else 0, m; a diameter where it has changed

@@ -243,9 +243,12 @@ impl Winding {
         // (pressed turns take a sixteenth)
         let share = if presses { 1.0 / 16.0 } else { 0.25 };
         most.filter(|_| hangs && near).map(|most| {
+            let gaps = defects.iter().filter(|d| d.kind == DefectKind::Gap);
+            let last = gaps.map(|d| d.turn).max().unwrap_or(0);
             format!(
-                "Gaps within {most} d of their limit may come of the tolerance: see whether they stay with solver.tolerance = {:.2e}",
-                share * self.scene.solver.tolerance
+                "Gaps within {most} d of their limit may come of the tolerance: see whether they stay with solver.tolerance = {:.2e}{}",
+                share * self.scene.solver.tolerance,
+                self.turns_that_show(last)
             )
         })
     }
@@ -288,10 +291,20 @@ impl Winding {
         let hides = self.verdict() <= Verdict::Marginal && self.shakes_unseen();
         (hides && (0.0..GAP_HIDDEN).contains(&short)).then(|| {
             format!(
-                "The gap of turn 2 is {short:.3} d below its limit of {limit} d, which it may pass at a finer tolerance: see whether it does with solver.tolerance = {:.2e}",
-                0.25 * self.scene.solver.tolerance
+                "The gap of turn 2 is {short:.3} d below its limit of {limit} d, which it may pass at a finer tolerance: see whether it does with solver.tolerance = {:.2e}{}",
+                0.25 * self.scene.solver.tolerance,
+                self.turns_that_show(2)
             )
         })
+    }
+
+    /// That winding less than this run has wound shows all of `turn`, in words. Wire comes to rest within a turn and a half.
+    fn turns_that_show(&self, turn: u32) -> String {
+        let enough = f64::from(turn) + 1.5;
+        match enough < self.outputs().turns_wound - 1.0 {
+            true => format!("; {enough} turns are enough for that"),
+            false => String::new(),
+        }
     }
 
     /// Whether the free span shakes faster than the tolerance lets the steps follow, so that gaps hang on it: on a core with corners.

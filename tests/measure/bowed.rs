@@ -109,3 +109,21 @@ fn wire_that_does_not_touch_the_turn_before_has_not_ridden_up() {
         assert_eq!(coil.flags().overlap, rides_up, "{:?}", coil.defects());
     }
 }
+
+/// Loose wire that hung in the air beside the turn before, 0.85 d from it along the axis, was told to ride up on it as well as to bulge.
+#[test]
+fn loose_wire_that_hangs_beside_the_turn_before_bulges_and_does_not_overlap() {
+    for (axial, rides_up) in [(0.85, false), (0.6, true)] {
+        let place = |angle: f64| match angle / TAU {
+            turns if turns < 1.0 => (0.0, 0.5 * D),
+            _ => (axial * D, 2.5 * D),
+        };
+        let spec = CoilSpec {
+            profile: Profile::new(vec![0.5 * D]),
+            ..spec()
+        };
+        let coil = wound(spec, &on_cylinder(1.95, 1.0, place));
+        assert_eq!(coil.flags().overlap, rides_up, "{:?}", coil.defects());
+        assert!(coil.flags().bulge, "{:?}", coil.defects());
+    }
+}
