@@ -503,16 +503,26 @@ def cluster_of(args):
     dask.config.set({"distributed.scheduler.allowed-failures": DEATHS})
     with contextlib.ExitStack() as stack:
         if args.scheduler is None:
-            cluster = LocalCluster(
+            cluster = begun(lambda: LocalCluster(
                 n_workers=args.workers, threads_per_worker=1, processes=True, dashboard_address=None, silence_logs=logging.CRITICAL,
                 preload=[DEAF],
-            )
+            ))
             stack.callback(cluster.close)
             client = Client(cluster)
         else:
             client = connect(args.scheduler)
         stack.callback(client.close, timeout=ANSWER)
         yield client
+
+
+def begun(cluster):
+    """The workers of this machine. Where one dies as they start, they start again, as often as the worker of a run may die."""
+    for _ in range(DEATHS):
+        try:
+            return cluster()
+        except RuntimeError as error:
+            died = error
+    raise Stuck(f"the workers did not start: {died}; try fewer with --workers")
 
 
 if __name__ == "__main__":

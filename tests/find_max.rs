@@ -48,7 +48,7 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
     assert!(33.0 < free && not_free == free + 5.0, "{free} {not_free}");
     // A result is told also where progress is not.
     let says = format!(
-        "{name} = {free} is the highest value without a defect; {not_free} is not free of them\n"
+        "{name} = {free} is the highest value found without a defect; {not_free} is not free of them\n"
     );
     assert_eq!(told, says);
     // three looks of the bisection, and one at the lowest value
@@ -56,7 +56,15 @@ fn the_maximum_is_that_of_a_sweep_through_everything() {
     let answer = answer(&some);
     assert_eq!(answer["outcome"], "found");
     let assumes = answer["assumes"].as_str().unwrap();
-    assert!(assumes.contains("free below"), "{assumes}");
+    let below = ((free - 33.0) / 5.0).round() as usize;
+    let wound = looked
+        .iter()
+        .filter(|row| row[name].parse::<f64>().unwrap() < free);
+    let says = format!(
+        "of the {below} values below {} were wound; the others",
+        wound.count() / 2
+    );
+    assert!(assumes.starts_with(&says), "{assumes}");
     assert_eq!(
         (answer["value"].as_f64(), answer["unit"].as_str()),
         (Some(free), Some("N"))

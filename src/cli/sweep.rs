@@ -5,7 +5,7 @@ use super::folder;
 use super::runs_bar::runs_bar;
 use super::scene::SceneArgs;
 use super::shell::quoted;
-use super::sweep_answer::{Answer, ON_TRUST, Seen};
+use super::sweep_answer::{Answer, Seen};
 use super::sweep_files as files;
 use super::sweep_find_max::Look;
 use super::sweep_grid::Grid;
@@ -108,6 +108,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
     if let Some(answer) = &answer {
         answer.write(&args.out).map_err(stuck)?;
     }
+    let assumes = answer.as_ref().and_then(|answer| answer.assumes.as_deref());
     let answer = answer.as_ref().map(Answer::words).transpose();
     if args.quiet {
         // A result is no progress.
@@ -141,7 +142,7 @@ pub(super) fn sweep(args: &SweepArgs) -> Result<(), Failure> {
         );
     }
     let found = match &answer {
-        Ok(Some(words)) => format!("{words}\n{ON_TRUST}\n"),
+        Ok(Some(words)) => format!("{words}\n{}\n", assumes.unwrap_or_default()),
         _ => String::new(),
     };
     let map = match mapped {

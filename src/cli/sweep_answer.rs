@@ -8,8 +8,12 @@ use coilwind::output::write_summary;
 use serde::Serialize;
 use std::path::Path;
 
-/// What `--find-max` does not know.
-pub(super) const ON_TRUST: &str = "values that were not wound are taken to be free below and not above; a sweep without --find-max shows whether they are";
+/// What `--find-max` does not know, where so many of the values below the answer were wound.
+fn on_trust(wound: usize, below: usize) -> String {
+    format!(
+        "of the {below} values below {wound} were wound; the others are taken to be free, and those above not; a sweep without --find-max shows whether they are"
+    )
+}
 
 /// The same where the ends of the bracket are free of defects.
 const FREE_ON_TRUST: &str = "values between them that were not wound are taken to be free; a sweep without --find-max shows whether they are";
@@ -58,7 +62,7 @@ pub(super) struct Answer {
     /// the answer in words, or why there is none and what to do
     words: String,
     /// what an answer takes on trust
-    assumes: Option<&'static str>,
+    pub(super) assumes: Option<String>,
     /// the lowest and the highest value that could be chosen
     bracket: [f64; 2],
     /// how many there are, evenly from end to end
@@ -115,13 +119,18 @@ impl Answer {
             (None, Some(free), Some(defect)) => (
                 Outcome::Found,
                 format!(
-                    "{name} = {free} is the highest value without a defect; {defect} is not free of them"
+                    "{name} = {free} is the highest value found without a defect; {defect} is not free of them"
                 ),
             ),
         };
         let assumed = match outcome {
-            Outcome::Found => Some(ON_TRUST),
-            Outcome::AllFree if looks.len() < range.count as usize => Some(FREE_ON_TRUST),
+            Outcome::Found => {
+                let below = |seen: &&Seen| free.is_some_and(|free| seen.value < free);
+                Some(on_trust(looks.iter().filter(below).count(), limit.free - 1))
+            }
+            Outcome::AllFree if looks.len() < range.count as usize => {
+                Some(FREE_ON_TRUST.to_owned())
+            }
             _ => None,
         };
         Self {
@@ -153,7 +162,7 @@ impl Answer {
         match self.outcome {
             Outcome::Found => Ok(&self.words),
             outcome => Err(Failure::NoMaximum {
-                reason: match self.assumes {
+                reason: match &self.assumes {
                     Some(trust) => format!("{}; {trust}", self.words),
                     None => self.words.clone(),
                 },

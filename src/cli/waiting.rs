@@ -16,7 +16,9 @@ impl Waiting {
     /// For all that comes before the first step: says so on standard error where that takes long.
     pub(super) fn for_start() -> Self {
         Self::tell(PATIENCE, || {
-            eprintln!("still reading the scene and its core: a fine mesh takes long ...");
+            eprintln!(
+                "still reading the scene and its core, which takes long where that is a fine mesh ..."
+            );
         })
     }
 

@@ -59,16 +59,33 @@ impl LayerContour {
     }
 }
 
-/// The median height in each sector, m; none where there is hardly any of the layer, which only begins or ends there.
-fn sectors(places: &[(usize, f64)]) -> [Option<f64>; SECTORS] {
-    let mut heights = [const { Vec::new() }; SECTORS];
+/// The median height of a layer's turns at each degree, m; none where it has no wire.
+fn by_degree(places: &[(usize, f64)]) -> Vec<Option<f64>> {
+    let mut heights = vec![Vec::new(); STATIONS_PER_TURN];
     for &(station, height) in places {
-        heights[station * SECTORS / STATIONS_PER_TURN].push(height);
+        heights[station].push(height);
     }
-    heights.map(|mut heights| {
-        heights.sort_by(f64::total_cmp);
-        (2 * SECTORS * heights.len() >= places.len()).then(|| median(&heights))
-    })
+    heights.into_iter().map(median_of).collect()
+}
+
+/// The least rise of a layer over another, both as the heights at each degree (m), in a sector: the median of its degrees. Beside a
+/// corner heights change fast, so only those at the same degree are compared. Sectors of which half or less is known are left out.
+fn least_rise(over: &[Option<f64>], under: &[Option<f64>]) -> Option<f64> {
+    let rises: Vec<Option<f64>> = (over.iter().zip(under))
+        .map(|(over, under)| Some((*over)? - (*under)?))
+        .collect();
+    let sectors = rises.chunks(STATIONS_PER_TURN / SECTORS);
+    let known = sectors.map(|degrees| degrees.iter().flatten().copied().collect::<Vec<f64>>());
+    known
+        .filter(|rises| 2 * SECTORS * rises.len() > STATIONS_PER_TURN)
+        .filter_map(median_of)
+        .reduce(f64::min)
+}
+
+/// The middle of values in any order.
+fn median_of(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    (!values.is_empty()).then(|| median(&values))
 }
 
 /// The middle of values in order, one at least.
@@ -98,12 +115,10 @@ impl Coil {
             places.entry(station.layer).or_default().push(place);
         }
         let mut contour: Vec<LayerContour> = Vec::new();
-        let mut first: Option<[Option<f64>; SECTORS]> = None;
+        let mut first: Option<Vec<Option<f64>>> = None;
         for (layer, places) in places {
-            let now = sectors(&places);
-            let rises = now.iter().zip(first.get_or_insert(now));
-            let rises = rises.filter_map(|(a, b)| Some((*a)? - (*b)?));
-            let rise = rises.reduce(f64::min).unwrap_or(0.0);
+            let now = by_degree(&places);
+            let rise = least_rise(&now, first.get_or_insert_with(|| now.clone())).unwrap_or(0.0);
             contour.push(LayerContour::of(layer, &places, contour.first(), rise));
         }
         contour

@@ -84,8 +84,8 @@ impl Coil {
         let (d, limits) = (self.spec.diameter, &self.spec.limits);
         let stands_off = height - support.level.max(at_rest.unwrap_or(0.0));
         let touches = |neighbour: Neighbour| neighbour.gap <= limits.loose_height * d;
-        let hangs_beside = neighbour
-            .is_some_and(|turn| !touches(turn) && turn.axial >= MORE_ON_THAN_BESIDE * d);
+        let hangs_beside =
+            neighbour.is_some_and(|turn| !touches(turn) && turn.axial >= MORE_ON_THAN_BESIDE * d);
         let stands = support
             .own_row
             .is_some_and(|rise| rise > MORE_ON_THAN_BESIDE * d);

@@ -53,6 +53,7 @@ pub use planned_start::LayerStart;
 pub use profile::Profile;
 pub use state::Worst;
 pub use station::{Neighbour, Station};
+pub(crate) use turn::ALIGNED_RMS;
 pub use turn::{TurnMeasures, Verdict};
 pub use words::{
     UNJUDGED, interrupted, left_out, reasons, reasons_doubted, reasons_unjudged, unfinished,

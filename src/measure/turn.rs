@@ -13,7 +13,7 @@ const ALIGNED_GAP: f64 = 0.10;
 /// ... at this share of the stations ...
 const ALIGNED_SHARE: f64 = 0.95;
 /// ... and its root mean square below this many diameters.
-const ALIGNED_RMS: f64 = 0.05;
+pub(crate) const ALIGNED_RMS: f64 = 0.05;
 /// Share of a turn that may stand on wire of the layer below. Chosen: a sixth, as much again as a long crossover takes, for the wire
 /// before and after it.
 const OUT_OF_GROOVE: f64 = 1.0 / 6.0;

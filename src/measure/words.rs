@@ -200,7 +200,7 @@ fn without_defect(
         }
         Verdict::Single => "No defect, and no turn with a neighbour to be judged by".to_owned(),
         Verdict::Aligned => {
-            "No defect; every judged turn lies beside its neighbour within 0.10 d at 95 % of its angles"
+            "No defect; every judged turn lies beside its neighbour within 0.10 d at 95 % of its angles, crossovers not counted"
                 .to_owned()
         }
         _ => {
@@ -214,7 +214,7 @@ fn without_defect(
                 return off_grooves.is_none().then_some(other);
             };
             format!(
-                "No defect, but wire lies less evenly than an aligned coil: the gap of turn {} is {:.3} mm rms ({:.2} d)",
+                "No defect, but wire lies less closely than in an aligned coil: the gap of turn {} is {:.3} mm rms ({:.2} d)",
                 turn.turn,
                 1e3 * rms,
                 rms / diameter

@@ -4,6 +4,9 @@ use crate::measure::LayerStart;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+/// Travel of a crossover over that of a nozzle that goes evenly, at least: it takes less than half a turn.
+const STEEP: f64 = 2.0;
+
 /// A stretch of even travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
@@ -30,8 +33,8 @@ pub struct NozzleLaw {
     held: Option<f64>,
     /// way from turn to turn of a layer, m, where layers are planned
     pitch: Option<f64>,
-    /// angle in which each turn steps to its next place, rad, where it does so in steps
-    crossover: Option<f64>,
+    /// way (m) and angle (rad) in which each turn steps to its next place, where it does so in steps
+    crossover: Option<[f64; 2]>,
     /// where each layer begins between flanges, where it is known
     layer_starts: Arc<[LayerStart]>,
 }
@@ -139,8 +142,35 @@ impl NozzleLaw {
     /// The same law, in which each turn steps by a pitch (m) to its next place within so much of the core's angle (rad).
     pub(super) fn with_crossovers(self, pitch: f64, angle: f64) -> Self {
         Self {
-            crossover: Some(angle),
+            crossover: Some([pitch, angle]),
             ..self.with_pitch(pitch)
+        }
+    }
+
+    /// The law of a table, which plans so many `turns` a pitch (m) apart. Its steps are crossovers where at least half of the turns
+    /// step: by half a pitch to one and a half, more than [`STEEP`] times as fast as a nozzle that goes evenly. The angle is that of the
+    /// middle one.
+    pub(super) fn with_steps_as_crossovers(self, pitch: f64, turns: f64) -> Self {
+        let mut steps: Vec<f64> = Vec::new();
+        let (mut angle, mut way) = (0.0, 0.0);
+        for pair in self.pieces.windows(2) {
+            let (length, travel) = (pair[1].from - pair[0].from, pair[0].travel);
+            if travel.abs() * TAU > STEEP * pitch {
+                angle += length;
+                way += length * travel;
+                continue;
+            }
+            if (0.5..=1.5).contains(&(way.abs() / pitch)) {
+                steps.push(angle);
+            }
+            (angle, way) = (0.0, 0.0);
+        }
+        steps.sort_by(f64::total_cmp);
+        let most = 2.0 * steps.len() as f64 >= turns;
+        let middle = steps.get(steps.len() / 2).filter(|_| most);
+        Self {
+            crossover: middle.map(|angle| [pitch, *angle]),
+            ..self
         }
     }
 
@@ -164,8 +194,7 @@ impl NozzleLaw {
 
     /// Step (m) and angle (rad) of the crossover of each turn; none where turns do not cross in steps.
     pub fn crossover(&self) -> Option<[f64; 2]> {
-        let (step, angle) = self.pitch.zip(self.crossover)?;
-        Some([step, angle])
+        self.crossover
     }
 
     /// Angles between which wire is meant to climb to the next layer, rad; none where layers are not planned.
@@ -273,5 +302,40 @@ impl NozzleLaw {
     /// The same law for so many turns.
     pub(super) fn for_turns(self, turns: f64) -> Self {
         Self { turns, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PITCH: f64 = 0.6e-3;
+
+    /// A coil by the table of its orthocyclic law had gaps where the law itself had crossovers.
+    #[test]
+    fn a_table_that_steps_has_crossovers() {
+        let places = [0.0, 1.0, 2.0, 3.0, 2.5, 1.5, 0.5];
+        let table = |step: f64| {
+            let mut points = vec![[0.0, 0.0]];
+            for (turn, pair) in places.windows(2).enumerate() {
+                let end = (turn + 1) as f64;
+                // a step that begins and ends gently, as a drive makes it
+                for share in [0.0, 0.2, 0.8, 1.0] {
+                    let way = [0.0, 0.05, 0.95, 1.0][(3.0 * share + 0.5) as usize];
+                    let y = pair[0] + way * (pair[1] - pair[0]);
+                    points.push([end - (1.0 - share) * step, PITCH * y]);
+                }
+            }
+            let law = NozzleLaw::through(&points);
+            law.with_steps_as_crossovers(PITCH, places.len() as f64)
+        };
+        let [step, angle] = table(1.0 / 6.0).crossover().expect("crossovers");
+        assert_eq!(step, PITCH);
+        assert!((angle - 0.6 / 6.0 * TAU).abs() < 1e-9, "{angle}");
+        // most of a turn is no crossover, nor is even travel
+        assert_eq!(table(0.9).crossover(), None);
+        let even = NozzleLaw::through(&[[0.0, 0.0], [7.0, 7.0 * PITCH], [14.0, 0.0]]);
+        let even = even.with_steps_as_crossovers(PITCH, 14.0);
+        assert_eq!(even.crossover(), None);
     }
 }

@@ -164,7 +164,8 @@ impl SceneSettings {
                     0.0 => law,
                     _ => {
                         let stacked = self.layers(diameter, extent, problems)?;
-                        law.with_layers(&stacked.jumps(0.0, 0.0), stacked.turns(), stacked.turns())
+                        law.with_steps_as_crossovers(stacked.pitch, stacked.turns())
+                            .with_layers(&stacked.jumps(0.0, 0.0), stacked.turns(), stacked.turns())
                             .with_layer_starts(stacked.starts(diameter, extent, true))
                     }
                 }

@@ -6,6 +6,7 @@ use super::impossible::{si, si_down};
 use super::without_effect::Reader;
 use super::{Core, Integrator, NozzleLaw, Solver, Window};
 use crate::geometry::{Crossing, Place};
+use crate::measure::ALIGNED_RMS;
 use crate::rod::{RoundLaws, Section, Twist};
 use crate::settings::{NozzleFollows, SceneSettings};
 use std::f64::consts::TAU;
@@ -214,18 +215,26 @@ impl SceneSettings {
         let side_by_side = || law.held().is_none_or(|turns| turns > self.winding.layers);
         if by_law
             && let Some(pitch) = law.pitch()
-            && pitch - wire.diameter > self.defects.gap * wire.diameter
+            && pitch > (1.0 + ALIGNED_RMS) * wire.diameter
             && side_by_side()
         {
             let key = match self.winding.pitch {
                 0.0 => "winding.turns_per_layer",
                 _ => "winding.pitch",
             };
+            let gap = pitch / wire.diameter - 1.0;
+            let what = match gap > self.defects.gap {
+                true => format!(
+                    "which are judged as defects; set defects.gap to more than {gap:.2} if they are meant"
+                ),
+                false => format!(
+                    "{gap:.3} diameters: in an aligned coil they are {ALIGNED_RMS} at most, so turns will be marginal"
+                ),
+            };
             let message = format!(
-                "turns {} m apart leave gaps of {} m, which are judged as defects; set defects.gap to more than {:.2} if they are meant",
+                "turns {} m apart leave gaps of {} m, {what}",
                 si(pitch),
-                si(pitch - wire.diameter),
-                pitch / wire.diameter - 1.0
+                si(pitch - wire.diameter)
             );
             warn(key, message);
         }

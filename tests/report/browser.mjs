@@ -189,7 +189,10 @@ async function look(scheme) {
 
   const colour = run.locator("select.colour").first();
   const shots = new Map();
-  for (const key of ["tension", "plastic_strain", "gap", "bulge", "layer", "defect"]) {
+  const keys = await colour.locator("option").evaluateAll((options) => options.map((option) => option.value));
+  const wanted = ["tension", "plastic_strain", "gap", "bulge", "layer", "defect"];
+  check(`${scheme}: what the wire is coloured by`, `${keys}` === `${wanted}`, `${keys}`);
+  for (const key of keys) {
     await colour.selectOption(key);
     shots.set(key, await shot());
     check(`${scheme}: legend of ${key}`, (await run.locator(".view .legend").first().innerText()).length > 4);
@@ -248,6 +251,8 @@ async function look(scheme) {
         input.value = 0;
         input.dispatchEvent(new Event("input"));
       });
+      const named = () => run.locator(".view .place").first().innerText();
+      check(`${scheme}: a place that is not wound yet is not named`, (await named()) === "", await named());
       await row.dispatchEvent("click");
       check(`${scheme}: and shows the wire that has it`, await time.evaluate((input) => input.value === input.max));
     }

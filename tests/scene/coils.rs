@@ -1,7 +1,7 @@
 //! Scenes of whole coils: flanges, turns in layers, nozzle ways from a table, and what cannot be wound.
 
 use crate::common::{assert_says, parse, refused};
-use coilwind::scene::{Core, Flange, NozzleLaw, Scene};
+use coilwind::scene::{Core, Flange, NozzleLaw, Scene, Warning};
 use coilwind::settings::SceneSettings;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -412,17 +412,19 @@ fn turns_beyond_the_layers_of_a_nozzle_that_leads_are_told() {
 /// Turns that are planned apart are judged as gaps, and the verdict came as a surprise.
 #[test]
 fn turns_planned_apart_are_told() {
-    let told = |pitch: &str| -> bool {
+    let told = |pitch: &str, words: &str| -> bool {
         let text = BOBBIN.replace(
             "[winding]\n",
             &format!("[winding]\n{pitch}\nturns_per_layer = 5\n"),
         );
         let text = format!("{text}mode = 'helical'\n");
         let (_, warnings) = parse(&text).unwrap().build_with_warnings().unwrap();
-        warnings.iter().any(|w| w.message.contains("leave gaps"))
+        let told = |w: &Warning| w.message.contains("leave gaps") && w.message.contains(words);
+        warnings.iter().any(told)
     };
-    assert!(told("pitch_mm = 1"));
-    assert!(!told("pitch_mm = 0.75"));
+    assert!(told("pitch_mm = 1", "judged as defects"));
+    assert!(told("pitch_mm = 0.75", "will be marginal"));
+    assert!(!told("pitch_mm = 0.73", ""));
 }
 
 /// The scene that a run keeps has every key. `check` told of seventeen of them that they had no effect.

@@ -122,6 +122,20 @@ def test_another_sweep_is_not_overwritten_without_a_word(scene, fmu, command, sc
     assert len(list(csv.DictReader(other.open(encoding="utf-8")))) == 1
 
 
+def test_workers_that_die_as_they_start_start_again(sweep_dask):
+    tries = []
+
+    def dies(times):
+        tries.append(times)
+        if len(tries) <= times:
+            raise RuntimeError("Nanny failed to start.")
+        return "a cluster"
+
+    assert sweep_dask.begun(lambda: dies(2)) == "a cluster" and len(tries) == 3
+    with pytest.raises(sweep_dask.Stuck, match="the workers did not start: Nanny failed"):
+        sweep_dask.begun(lambda: dies(1000))
+
+
 def test_killed_workers_change_nothing(alone, sweep_dask, tasks, fmu, tmp_path):
     import dask
     from distributed import Client, LocalCluster

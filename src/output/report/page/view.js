@@ -37,7 +37,7 @@ class View {
     this.mark = new Vendor.Mesh(new Vendor.SphereGeometry(1, 24, 16),
       new Vendor.MeshBasicMaterial({ transparent: true, opacity: 0.28, depthWrite: false }));
     this.mark.scale.setScalar(1.25 * run.diameter * SCALE);
-    this.mark.visible = false;
+    this.marked = null;
     this.scene.add(this.mark);
     if (run.core) {
       this.surface = new CoreSurface(run.core);
@@ -64,6 +64,7 @@ class View {
       this.scene.add(this.wire);
     }
     this.shown = wire;
+    this.showMark();
     this.peel(this.upTo);
     this.colour(this.key);
   }
@@ -162,8 +163,8 @@ class View {
     const narrow = Math.min(1, this.camera.aspect);
     const distance = (1.12 * SCALE * radius) / Math.sin((0.5 * this.camera.fov * Math.PI) / 180) / narrow;
     this.move(target, new Vendor.Vector3(x, y, z).normalize().multiplyScalar(distance).add(target), !this.sized);
-    this.mark.visible = false;
-    this.place.textContent = "";
+    this.marked = null;
+    this.showMark();
     this.run.choose(null);
     this.peel(null);
   }
@@ -182,9 +183,16 @@ class View {
     const distance = Math.max(22 * SCALE * this.run.diameter, 0.5 * SCALE * this.run.extent.radius);
     this.move(target, out.normalize().multiplyScalar(distance).add(target));
     this.mark.position.copy(target);
-    this.mark.visible = true;
-    this.place.textContent = words;
+    this.marked = { words, time };
+    this.showMark();
     this.bringIntoSight();
+  }
+
+  /** Shows the place that was gone to, if any, where its wire is wound at the frame. */
+  showMark() {
+    const there = this.marked && (this.frame == null || this.run.frames[this.frame].time * (1 + SAME) >= (this.marked.time ?? 0));
+    this.mark.visible = Boolean(there);
+    this.place.textContent = there ? this.marked.words : "";
   }
 
   /** Scrolls the page by as little as shows all of the view; not at all where it is in sight. */
@@ -218,7 +226,9 @@ class View {
   card() {
     const pick = (names, chosen, change) => el("select", { onchange: (event) => change(event.target.value) },
       ...Object.entries(names).map(([key, text]) => el("option", { value: key, selected: key === chosen }, text)));
-    const names = Object.fromEntries(Object.entries(QUANTITIES).map(([key, { label }]) => [key, label]));
+    // The map has quantities that the files of the coil do not have.
+    const onWire = Object.entries(QUANTITIES).filter(([key]) => this.shown?.[key]);
+    const names = Object.fromEntries(onWire.map(([key, { label }]) => [key, label]));
     const cores = { solid: "solid", ...(this.run.faces ? { bare: "without flanges" } : {}), glass: "see-through", hidden: "hidden" };
     const sides = { corner: [1, 0.42, 0.8], x: [1, 0.02, 0], z: [0, 0.02, 1], axis: [0.02, 1, 0] };
     const bar = el("div", { class: "bar" }, el("h2", {}, "Coil"),
