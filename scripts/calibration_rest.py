@@ -51,7 +51,8 @@ class Rest:
         if self.turn < LEVEL:
             yield (
                 f"{curve.column} looks as if its angle were some {abs(np.degrees(self.zero)):.0f} deg too {'large' if self.zero > 0.0 else 'small'} "
-                f"(noise does so with a chance of {self.turn:.1g}), and {wrong}: check where the angle is zero, or fit that with --fit-angle-zero"
+                f"(noise does so with a chance of {self.turn:.1g}), and {wrong}: check where the angle is zero, or fit that with --fit-angle-zero; "
+                "where it is right, the search has ended beside the best values: begin at others with --fit NAME=START"
             )
         if self.repeats < LEVEL:
             yield (
