@@ -122,9 +122,11 @@ impl Winding {
 
     /// A live edge has parted under tension: in its middle, as far as the mesh tells.
     pub(super) fn note_parted(&mut self, edge: usize) {
-        let rest = &self.sys.state.rod.rest;
-        let half = 0.5 * rest[edge];
-        let before_nozzle = rest[edge..].iter().sum::<f64>() - half;
+        let rod = &self.sys.state.rod;
+        let half = 0.5 * rod.rest[edge];
+        // (as it is, stretched)
+        let lengths = rod.x[edge..].windows(2).map(|ends| (ends[1] - ends[0]).norm());
+        let before_nozzle = lengths.sum::<f64>() - 0.5 * (rod.x[edge + 1] - rod.x[edge]).norm();
         let text = format!(
             "the wire broke {:.1} mm before the nozzle: {} N is above its strength of {} N; lower the tension (tensioner.tension, or the inputs tension_setpoint and brake_torque) or {}",
             1e3 * before_nozzle,
