@@ -83,7 +83,7 @@ const QUIET: f64 = 1e-6;
 
 /// Time to which communication steps add up before the solver takes a step, s.
 ///
-/// It is the solver's own shortest step. In less time, wire at 5000 rpm moves by 20 nm at most, and
+/// About the solver's shortest step for wire of 0.7 mm. In less time, wire at 5000 rpm moves by 20 nm at most, and
 /// rounding errors dominate the solution.
 const WORTH_A_STEP: f64 = 1e-9;
 
