@@ -2,9 +2,7 @@
 
 use super::{REMESH_STEPS, SimError, Winding};
 use crate::geometry::FrozenNode;
-use crate::math::Spin;
-use crate::math::turn_about_y;
-use crate::math::{polar_angle, wrap_to_pi};
+use crate::math::{Spin, polar_angle, turn_about_y, wrap_to_pi};
 use crate::measure::DefectKind;
 use crate::scene::LiveContact;
 use crate::system::HALF_TURN;
@@ -27,8 +25,8 @@ const SHORTEST_BENT: f64 = 0.1;
 /// turns by more from edge to edge is folded.
 const WELL_BENT: f64 = 4.0 * BENT;
 
-/// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within 0.6 rad of a
-/// turn back.
+/// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within `WINDOW` of the search for
+/// pairs, 0.6 rad, of a turn back, and within half of what their segment takes up more.
 const WHOLE: f64 = 0.85;
 
 /// Wire that has passed the nozzle over what core and way can have taken up at most, from which on it runs away.
@@ -208,13 +206,12 @@ impl Winding {
     /// flat can land at once, so the pairs are watched from half a turn on.
     fn watch_live_wire(&mut self) {
         // wire too stiff for its tension stands off and touches nothing: there all of a turn counts
-        let turn = TAU;
         let whole = self.sys.state.rod.nodes() - 1;
         let watched = match self.scene.solver.features.live_contact {
             LiveContact::Always => true,
             LiveContact::WhenHalfATurnIsLive => {
-                self.angle_of_wire(self.lift_off()) > 0.5 * turn
-                    || self.angle_of_wire(whole) > WHOLE * turn
+                self.angle_of_wire(self.lift_off()) > 0.5 * TAU
+                    || self.angle_of_wire(whole) > WHOLE * TAU
             }
             LiveContact::Never => false,
         };
