@@ -180,24 +180,24 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             slope = Slope::of(work);
         }
         let (update, node, rolls) = largest_update(model, work);
-        let stuck = |far| NewtonFailure {
+        let failure = |far| NewtonFailure {
             node,
             update,
             steps: step,
             far,
         };
         if !update.is_finite() {
-            return Err(stuck(None));
+            return Err(failure(None));
         }
         if step == 1 {
             let way = work.mean_update();
             if way > limits.far {
-                return Err(stuck(Some(way)));
+                return Err(failure(Some(way)));
             }
         }
         let mut share = limits.share(work, update, model.diameter);
         if circle.closes(update, share == 1.0) && limits.may_shorten() {
-            return Err(stuck(None));
+            return Err(failure(None));
         }
         work.keep_start();
         // (the next evaluation fills in all of the stretch)
@@ -254,7 +254,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
                 limits.line_search_halvings
             };
             if line_search_halvings > most {
-                return Err(stuck(None));
+                return Err(failure(None));
             }
             share *= 0.5;
         }

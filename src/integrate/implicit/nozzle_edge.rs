@@ -146,7 +146,7 @@ impl NozzleEdge {
         let way = self.way(length);
         let grip = match way {
             Way::Out(grip) | Way::Back(grip) => grip,
-            Way::Held => return self.stuck(length),
+            Way::Held => return self.stretched_held(length),
         };
         let free = self.free(length, way);
         if self.grip == 1.0 && self.longer == 0.0 {
@@ -156,13 +156,13 @@ impl NozzleEdge {
         // the potential goes on where wire begins to pass
         let end = self.start * (self.set + grip * self.line_at_start() / self.ea);
         Stretched {
-            energy: free.energy - self.free(end, way).energy + self.stuck(end).energy,
+            energy: free.energy - self.free(end, way).energy + self.stretched_held(end).energy,
             ..free
         }
     }
 
     /// The edge while friction lets no wire pass.
-    fn stuck(&self, length: f64) -> Stretched {
+    fn stretched_held(&self, length: f64) -> Stretched {
         let tension = self.held(length);
         Stretched {
             tension,

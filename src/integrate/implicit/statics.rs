@@ -78,9 +78,9 @@ impl Implicit {
             let mut model = model_at_rest(sys);
             model.flat = self.flat;
             let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, limits);
-            let steps = solved.map_err(|stuck| {
+            let steps = solved.map_err(|failure| {
                 self.statistics.newton_failures += 1;
-                StepError::at(LONG, &stuck)
+                StepError::at(LONG, &failure)
             })?;
             taken = taken.max(steps);
             work.guess.clone_from(&work.q);

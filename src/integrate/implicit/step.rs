@@ -98,11 +98,11 @@ impl Implicit {
                     let factor = self.length_factor(step.error * way);
                     h * factor.clamp(0.3, 0.8)
                 }
-                Err(stuck) => {
+                Err(failure) => {
                     self.statistics.newton_failures += 1;
                     failures += 1;
                     if h <= self.shortest || self.fixed.is_some() {
-                        return Err(StepError::at(h, &stuck));
+                        return Err(StepError::at(h, &failure));
                     }
                     0.4 * h
                 }

@@ -29,7 +29,7 @@ pub(super) fn solve_linear<const D: usize, U: Unknowns<D>>(
     let nodes = work.q.len();
     load_gradient(work);
     for look in 0.. {
-        work.matrix.factor().map_err(|loose| loose.node)?;
+        work.matrix.factor().map_err(|pivot| pivot.node)?;
         work.update.clone_from(&work.load);
         work.beyond.take(model.line.as_ref(), model.held);
         work.solve_factored(0.5 * model.diameter);
