@@ -28,18 +28,19 @@ impl Implicit {
         let mut h = self.first_length(sys, most);
         let mut failures = 0;
         loop {
+            let may_shorten = h > self.shortest && self.fixed.is_none();
             let step = step_of(sys, self.scheme, h);
             let spindle = sys.state.spindle.after(step.share * h);
             let support = moved(&sys.state.support, step.share * h);
             let nozzle = work.prepare(sys, &step, &spindle, &support, true);
             let share = work.share_of_way(sys);
-            if share < 1.0 && h > self.shortest && self.fixed.is_none() {
+            if share < 1.0 && may_shorten {
                 h = (share * h).max(self.shortest);
                 continue;
             }
             sys.begin_attempt(&work.guess);
             let share = sys.share_to_turn(&work.guess, MOST_TURN, self.tolerance);
-            if share < 1.0 && h > self.shortest && self.fixed.is_none() {
+            if share < 1.0 && may_shorten {
                 if let Some(mut line) = sys.line_contact() {
                     line.undo_attempt();
                 }
@@ -54,7 +55,7 @@ impl Implicit {
                 CLOSE * self.tolerance * self.share_of_wanted(h),
                 newton::NewtonLimits::of_step(
                     failures > 2 || h < SHORT * self.shortest || self.fixed.is_some(),
-                    if h > self.shortest && self.fixed.is_none() {
+                    if may_shorten {
                         self.tolerance / step.error
                     } else {
                         f64::INFINITY
@@ -72,7 +73,7 @@ impl Implicit {
             let missed = line.and_then(|line| line.pairs.missed(&sys.state.past.q[0], &work.q));
             let retry = match solved {
                 // farther than the pairs of wire were looked for
-                Ok(_) if missed.is_some() && h > self.shortest && self.fixed.is_none() => {
+                Ok(_) if missed.is_some() && may_shorten => {
                     self.statistics.rejects += 1;
                     0.5 * h
                 }
@@ -82,7 +83,7 @@ impl Implicit {
                         .max(feed_difference(sys, &step, nozzle, &work.q));
                     let error = step.error * difference;
                     let factor = self.length_factor(error.max(1e-30));
-                    if error <= self.tolerance || h <= self.shortest || self.fixed.is_some() {
+                    if error <= self.tolerance || !may_shorten {
                         self.commit(work, sys, &step, spindle, &support, nozzle);
                         self.statistics.steps += 1;
                         let forced = error > self.tolerance && self.fixed.is_none();
@@ -101,7 +102,7 @@ impl Implicit {
                 Err(failure) => {
                     self.statistics.newton_failures += 1;
                     failures += 1;
-                    if h <= self.shortest || self.fixed.is_some() {
+                    if !may_shorten {
                         return Err(StepError::at(h, &failure));
                     }
                     0.4 * h
