@@ -42,7 +42,7 @@ impl Implicit {
         );
         let turning = sys.state.turning;
         w.unknowns.hand_over(sys, self.scheme, step);
-        let fed = self::feed(sys, step, nozzle, &w.q);
+        let fed = feed_after(sys, step, nozzle, &w.q);
         let grown = fed.map_or(0.0, |(_, grown)| grown);
         for i in 0..nodes {
             let x = spin.to_lab(w.q[i]);
@@ -165,7 +165,7 @@ impl Implicit {
 }
 
 /// The feed after the step and how much wire came in.
-pub(super) fn feed(
+pub(super) fn feed_after(
     sys: &System,
     step: &StepFormula,
     nozzle: Option<NozzleEdge>,

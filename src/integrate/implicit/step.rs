@@ -1,6 +1,6 @@
 //! One step: guess, solve, estimate the error, commit or try again.
 
-use super::commit::feed;
+use super::commit::feed_after;
 use super::model::Model;
 use super::nozzle_edge::NozzleEdge;
 use super::predictor::{moved, step_of};
@@ -120,7 +120,7 @@ impl Implicit {
 /// How far the places of pulley and tensioner after the step are from where their ways lead, m.
 fn feed_difference(sys: &System, step: &StepFormula, nozzle: Option<NozzleEdge>, q: &[V3]) -> f64 {
     let spec = sys.model.feed.as_ref().zip(sys.state.feed.as_ref());
-    let next = feed(sys, step, nozzle, q);
+    let next = feed_after(sys, step, nozzle, q);
     spec.zip(next).map_or(0.0, |((spec, feed), (next, _))| {
         tensioner::difference(spec, feed, &sys.state.past, step.share * step.h, &next)
     })
