@@ -3,7 +3,7 @@
 use super::pairs::{Pair, SelfContact};
 use super::scratch::{PairScratch, Reached, Unpaired};
 use crate::contact::friction::FrictionLimit;
-use crate::contact::own_wire::own_wire;
+use crate::contact::own_wire::{SAME_PASSAGE, own_wire};
 use crate::contact::stencil::ContactPoint;
 use crate::math::{V3, polar_angle, wrap_to_pi};
 use std::f64::consts::TAU;
@@ -15,8 +15,6 @@ const SKIN: f64 = 0.25;
 const FOLLOW: f64 = 1.5;
 /// How far from whole turns back along the wire a partner may lie, rad, beside half of what its segment takes up.
 const WINDOW: f64 = 0.6;
-/// Pairs of one point whose segments are nearer along the wire than this are one pair at successive steps.
-const SAME_PASSAGE: u32 = 6;
 
 impl SelfContact {
     /// Lists the pairs for a step from `q` that is expected to lead to `guess`, places of the nodes in the core frame, m.
