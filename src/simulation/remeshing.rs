@@ -2,6 +2,7 @@
 
 use super::{REMESH_STEPS, SimError, Winding};
 use crate::geometry::FrozenNode;
+use crate::integrate::NOZZLE_TURN;
 use crate::math::{Spin, polar_angle, turn_about_y, wrap_to_pi};
 use crate::measure::DefectKind;
 use crate::scene::LiveContact;
@@ -16,7 +17,7 @@ const STRAIGHT: f64 = 0.99995;
 
 /// Angle between edges from which on the longer one is halved, rad. Chosen: from 0.3 rad on, a split made as much energy as
 /// slack wire has. A look comes after the step in which an edge bends beyond it, so halved edges bend by more.
-pub(super) const BENT: f64 = 0.05;
+pub(super) const BENT: f64 = NOZZLE_TURN;
 
 /// Share of the spacing below which an edge of bent wire goes back into the nozzle whole. The chord then loses a 22nd of the spacing
 /// times the square of the angle; steps take a quarter of the edge each.

@@ -18,7 +18,7 @@ const LEAST_SHARE: f64 = 1e-4;
 /// Angle by which the nozzle's own motion may turn the edge there in a step, rad. The nozzle's work is booked by the
 /// forces at both ends of the step. If the edge swings further, these two forces have little to do with each other. It is the angle
 /// from which on edges are halved, too: a long edge that bends by more before anyone looks gives energy when it is halved.
-const NOZZLE_TURN: f64 = 0.05;
+pub const NOZZLE_TURN: f64 = 0.05;
 
 /// How far the normal of a touch may turn in a step. A step takes touches by their normals at its end; of a shoulder that wire
 /// meets early and is past then, it would see nothing. Wire that lies on the shoulder already goes round it more slowly: with
