@@ -429,7 +429,7 @@ impl Winding {
         let drive = course.drive(self.run.time, duration);
         match course.is_by_law() {
             true => self.follow_by_law(&drive),
-            false => self.follow(&drive),
+            false => self.go_through(&drive),
         }
     }
 
@@ -437,7 +437,7 @@ impl Winding {
     fn go_along_scene(&mut self, duration: f64) -> Result<(), SimError> {
         let (profile, start) = (self.motion_profile.clone(), self.run.time);
         let mut drives = profile.drives(start, start + duration, self.sys.state.set_tension);
-        drives.try_for_each(|drive| self.follow(&drive))
+        drives.try_for_each(|drive| self.go_through(&drive))
     }
 
     /// The scene's own motion from the winding's time to its next kink or its end, where the inputs are those of `now`.

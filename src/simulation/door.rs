@@ -103,7 +103,7 @@ impl Winding {
                 let drive = self.drive_of(*inputs, rates, [dt, span], owed);
                 match self.run.nozzle_by_law {
                     true => self.follow_by_law(&drive),
-                    false => self.follow(&drive),
+                    false => self.go_through(&drive),
                 }
             }
             Source::Profile => {
@@ -111,7 +111,7 @@ impl Winding {
                 let end = self.run.time + (dt - self.run.time_lost);
                 let (profile, tension) = (self.motion_profile.clone(), self.sys.state.set_tension);
                 let mut drives = profile.drives(start, end, tension);
-                drives.try_for_each(|drive| self.follow(&drive))
+                drives.try_for_each(|drive| self.go_through(&drive))
             }
         };
         if gone.is_err() {
@@ -135,7 +135,7 @@ impl Winding {
     }
 
     /// Goes through the interval of one drive.
-    pub(super) fn follow(&mut self, drive: &Drive) -> Result<(), SimError> {
+    pub(super) fn go_through(&mut self, drive: &Drive) -> Result<(), SimError> {
         self.begin_drive(drive);
         self.through(drive)
     }

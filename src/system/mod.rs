@@ -73,7 +73,7 @@ impl System {
     }
 
     /// Takes over the state of another system of the same model, and keeps its own work space.
-    pub(crate) fn follow(&mut self, other: &Self) {
+    pub(crate) fn take_over_from(&mut self, other: &Self) {
         self.state.copy_from(&other.state);
         self.scratch.contact.serve(&other.scratch.contact);
     }
