@@ -9,7 +9,7 @@ use crate::system::{Drive, NozzleDrive};
 
 /// Where the motion of the machine over a communication step comes from.
 #[derive(Clone, Copy, Debug)]
-enum Source {
+enum StepMotion {
     /// inputs at the start of the step and their rates, per s
     Inputs { inputs: Inputs, rates: Inputs },
     /// the scene's own motion profile at this time of the run
@@ -24,20 +24,20 @@ impl Winding {
         rates: Inputs,
         dt: f64,
     ) -> Result<(), SimError> {
-        self.advance_by(Source::Inputs { inputs, rates }, dt)
+        self.advance_by(StepMotion::Inputs { inputs, rates }, dt)
     }
 
     /// See [`super::Simulation::advance_profile`].
     pub(super) fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
-        self.advance_by(Source::Profile, dt)
+        self.advance_by(StepMotion::Profile, dt)
     }
 
     /// Advances by `dt`, s, with the motion that `source` gives the machine: the one way through a step.
     ///
     /// Where its inputs send the nozzle into the core, winding ends when it gets there.
-    fn advance_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
+    fn advance_by(&mut self, source: StepMotion, dt: f64) -> Result<(), SimError> {
         self.check_step(dt)?;
-        let Source::Inputs { inputs, rates } = source else {
+        let StepMotion::Inputs { inputs, rates } = source else {
             return self.go_by(source, dt);
         };
         let end = inputs.after(&rates, dt);
@@ -67,7 +67,7 @@ impl Winding {
             ),
             ..inputs
         };
-        let source = |inputs: Inputs| Source::Inputs { inputs, rates };
+        let source = |inputs: Inputs| StepMotion::Inputs { inputs, rates };
         self.go_by(source(until), before)?;
         self.note_circle_met(&end);
         let told = self.run.outputs;
@@ -81,7 +81,7 @@ impl Winding {
     }
 
     /// See [`Self::advance_by`].
-    fn go_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
+    fn go_by(&mut self, source: StepMotion, dt: f64) -> Result<(), SimError> {
         let span = self.run.owed + dt;
         if span < WORTH_A_STEP {
             self.run.owed = span;
@@ -96,7 +96,7 @@ impl Winding {
         }
         self.reset_extremes();
         let gone = match &source {
-            Source::Inputs { inputs, rates } => {
+            StepMotion::Inputs { inputs, rates } => {
                 // (its mean over the step)
                 self.sys
                     .damp_tensioner(inputs.after(rates, 0.5 * dt).tensioner_damping);
@@ -106,7 +106,7 @@ impl Winding {
                     false => self.go_through(&drive),
                 }
             }
-            Source::Profile => {
+            StepMotion::Profile => {
                 let start = self.run.time - owed;
                 let end = self.run.time + (dt - self.run.time_lost);
                 let (profile, tension) = (self.motion_profile.clone(), self.sys.state.set_tension);
@@ -119,7 +119,7 @@ impl Winding {
             return gone;
         }
         self.sys.end_drive();
-        if let Source::Inputs { inputs, rates } = &source {
+        if let StepMotion::Inputs { inputs, rates } = &source {
             let end = inputs.after(rates, dt);
             self.sys.state.spindle.speed = end.spindle_speed;
             self.sys.state.set_tension = end.tension_setpoint;
@@ -162,16 +162,16 @@ impl Winding {
     }
 
     /// Whether a step of `dt`, s, from this source moves anything or changes an input.
-    fn is_moved_by(&self, source: &Source, dt: f64) -> bool {
+    fn is_moved_by(&self, source: &StepMotion, dt: f64) -> bool {
         match source {
-            Source::Inputs { inputs, rates } => {
+            StepMotion::Inputs { inputs, rates } => {
                 let end = inputs.after(rates, dt);
                 *rates != Inputs::HELD
                     || inputs.spindle_speed != 0.0
                     || self.nozzle_at_end(&end) != self.sys.state.support[1].point
                     || inputs.tension_setpoint != self.sys.state.set_tension
             }
-            Source::Profile => true,
+            StepMotion::Profile => true,
         }
     }
 
