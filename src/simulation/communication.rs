@@ -455,7 +455,7 @@ impl Winding {
         self.sys.state.set_tension = point.inputs.tension_setpoint;
         self.sys.state.support[1].point.y = point.inputs.nozzle_position;
         self.put_aside(&point.inputs);
-        self.finish();
+        self.update_at_point();
         let mut told = *point;
         told.outputs.meet_tension(self.run.outputs.wire_tension);
         keep_told(&mut self.run.outputs, &told.outputs);
