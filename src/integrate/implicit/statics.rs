@@ -15,6 +15,8 @@ use crate::system::{System, line_contact};
 
 /// Time over which forces act in a static solve, s: inertia is then 1e-10 of the softest wire's stiffness.
 const LONG: f64 = 1e3;
+/// Largest move of an edge's end against its start in one Newton step, over its length. Chosen.
+const MOST_TURN_AT_REST: f64 = 0.4;
 /// Solves of one increment: the last ones turn plastic curvature along with what the first one found.
 const PASSES: usize = 3;
 
@@ -62,13 +64,10 @@ impl Implicit {
         let limits = NewtonLimits {
             steps: U::STATIC_STEPS,
             longest: f64::INFINITY,
-            turn: 0.4,
-            far: f64::INFINITY,
-            line_search_halvings: 12,
+            turn: MOST_TURN_AT_REST,
             guess: CLOSE * self.tolerance,
             chord: 0.0,
-            slides: NewtonLimits::STEP.slides,
-            promise: NewtonLimits::STEP.promise,
+            ..NewtonLimits::STEP
         };
         let mut taken = 0;
         for _ in 0..PASSES {
