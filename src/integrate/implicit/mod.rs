@@ -48,6 +48,7 @@ pub use step_control::NOZZLE_TURN;
 use places::Places;
 use places_and_rolls::PlacesAndRolls;
 use serde::{Deserialize, Serialize};
+use std::mem::take;
 use work::Work;
 
 /// Newton's update at which a solve is done, over the tolerance.
@@ -84,6 +85,14 @@ impl SolverStatistics {
     /// Steps tried, taken or not.
     pub fn tried(&self) -> u64 {
         self.steps + self.rejects + self.newton_failures
+    }
+
+    /// Takes over what was counted since the last time.
+    fn take_from<const D: usize, U>(&mut self, work: &mut Work<D, U>) {
+        self.evaluations += take(&mut work.evaluations);
+        self.solves += take(&mut work.solves);
+        self.line_search_halvings += take(&mut work.line_search_halvings);
+        self.cg_iterations += take(&mut work.conjugate.cg_iterations);
     }
 }
 

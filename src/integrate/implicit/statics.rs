@@ -85,9 +85,7 @@ impl Implicit {
             work.guess.clone_from(&work.q);
         }
         self.statistics.steps += 1;
-        self.statistics.evaluations += std::mem::take(&mut work.evaluations);
-        self.statistics.solves += std::mem::take(&mut work.solves);
-        self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
+        self.statistics.take_from(work);
         for (x, q) in sys.state.rod.x.iter_mut().zip(&work.q) {
             *x = spin.to_lab(*q);
         }

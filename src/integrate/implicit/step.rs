@@ -65,10 +65,7 @@ impl Implicit {
                     self.scheme == Scheme::Bdf2 && self.fixed.is_none(),
                 ),
             );
-            self.statistics.evaluations += std::mem::take(&mut work.evaluations);
-            self.statistics.solves += std::mem::take(&mut work.solves);
-            self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
-            self.statistics.cg_iterations += std::mem::take(&mut work.conjugate.cg_iterations);
+            self.statistics.take_from(work);
             let line = sys.line_scratch();
             let missed = line.and_then(|line| line.pairs.missed(&sys.state.past.q[0], &work.q));
             let retry = match solved {
