@@ -48,7 +48,7 @@ pub(super) fn out_of_balance_with<const D: usize, U: Unknowns<D>>(
     let step = still(sys);
     let (spindle, support) = (sys.state.spindle, sys.state.support);
     work.prepare(sys, &step, &spindle, &support, false);
-    let mut model = model_at_rest(sys);
+    let mut model = model_at_rest(sys, &step);
     model.held = [[false; 3]; 2];
     newton::expect_nothing(&model, work);
     // the tensions that are there are no surprise

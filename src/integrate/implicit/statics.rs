@@ -11,7 +11,7 @@ use super::unknowns::Unknowns;
 use super::work::Work;
 use super::{CLOSE, Implicit, StepError};
 use crate::math::{Spin, V3};
-use crate::system::{System, line_contact};
+use crate::system::System;
 
 /// Time over which forces act in a static solve, s: inertia is then 1e-10 of the softest wire's stiffness.
 const LONG: f64 = 1e3;
@@ -74,7 +74,7 @@ impl Implicit {
             work.q.clone_from(&work.guess);
             let ends = (&spindle, &support);
             work.unknowns.follow(sys, ends, &work.guess);
-            let mut model = model_at_rest(sys);
+            let mut model = model_at_rest(sys, &step);
             model.flat = self.flat;
             let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, limits);
             let steps = solved.map_err(|failure| {
@@ -113,31 +113,15 @@ pub(super) fn still(sys: &mut System) -> StepFormula {
     }
 }
 
-pub(super) fn model_at_rest(sys: &mut System) -> Model<'_> {
-    let held = [sys.state.support[0].hold, sys.state.support[1].hold];
+/// What a solve of the step that [`still`] returned needs besides the iterate: no wire is fed and none slips.
+pub(super) fn model_at_rest<'a>(sys: &'a mut System, step: &StepFormula) -> Model<'a> {
     if let Some(mut line) = sys.line_contact() {
         line.begin_solve();
     }
+    let (spindle, support) = (sys.state.spindle, sys.state.support);
     Model {
         first: None,
-        last: &sys.state.past.q[0],
-        rod: &sys.state.rod,
-        laws: &sys.model.laws,
-        line: line_contact(
-            &sys.model.contact,
-            &mut sys.state.contact,
-            &mut sys.scratch.contact,
-        ),
-        loads: &sys.model.loads,
-        tension: &sys.state.load.tension,
-        nozzle: None,
-        grown: 0.0,
-        gamma: LONG,
         elapsed: f64::INFINITY,
-        diameter: sys.model.section.diameter,
-        arc0: sys.state.arc0,
-        back: Spin::new(sys.state.spindle.angle),
-        held,
-        flat: false,
+        ..Model::of_step(sys, step, &spindle, &support, None)
     }
 }
