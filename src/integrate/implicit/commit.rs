@@ -28,9 +28,8 @@ impl Implicit {
         w.force.clone_from(&sys.state.load.force);
         let spin = Spin::new(spindle.angle);
         let nodes = sys.state.rod.nodes();
-        let (x0, v0) = (&mut w.start, &mut w.guess);
-        x0.clone_from(&sys.state.rod.x);
-        v0.clone_from(&sys.state.rod.v);
+        w.before[0].clone_from(&sys.state.rod.x);
+        w.before[1].clone_from(&sys.state.rod.v);
         let numerical = sys.state.balance.numerical;
         let kinetic = sys.kinetic();
         let momentum = sys.momentum_about_core();
@@ -52,8 +51,9 @@ impl Implicit {
                     sys.state.rod.v[i] = (x - w.star[0][i]) / step.gamma;
                 }
                 Scheme::Midpoint => {
-                    sys.state.rod.x[i] = x * 2.0 - w.start[i];
-                    sys.state.rod.v[i] = (x - w.start[i]) * (4.0 / h) - w.guess[i];
+                    let [x0, v0] = &w.before;
+                    sys.state.rod.x[i] = x * 2.0 - x0[i];
+                    sys.state.rod.v[i] = (x - x0[i]) * (4.0 / h) - v0[i];
                 }
             }
         }
@@ -130,7 +130,8 @@ impl Implicit {
         let mut work = 0.0;
         for i in sys.free_nodes() {
             work += 0.5
-                * (sys.state.load.force[i] + w.force[i]).dot(&(sys.state.rod.x[i] - w.start[i]));
+                * (sys.state.load.force[i] + w.force[i])
+                    .dot(&(sys.state.rod.x[i] - w.before[0][i]));
         }
         work += w.unknowns.work(sys);
         let gained = if feeds {
@@ -143,8 +144,9 @@ impl Implicit {
         work -= sys.state.load.beyond;
         sys.state.balance.numerical += work - held - (carried.kinetic - kinetic - gained);
         let past = &mut sys.state.past;
-        std::mem::swap(&mut past.x, &mut w.start);
-        std::mem::swap(&mut past.v, &mut w.guess);
+        let [x0, v0] = &mut w.before;
+        std::mem::swap(&mut past.x, x0);
+        std::mem::swap(&mut past.v, v0);
         past.q.rotate_right(1);
         past.q[0].clear();
         let spin = Spin::new(sys.state.spindle.angle);

@@ -45,7 +45,7 @@ pub(super) fn solve_linear<const D: usize, U: Unknowns<D>>(
             update,
             load,
             matrix,
-            force: there,
+            there,
             ..
         } = work;
         let move_of = |point: usize| {
