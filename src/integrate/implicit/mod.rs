@@ -43,7 +43,7 @@ mod work;
 
 pub use error::StepError;
 pub use scheme::Scheme;
-pub use step_control::NOZZLE_TURN;
+pub use step_control::{NOZZLE_TURN, PATIENCE};
 
 use places::Places;
 use places_and_rolls::PlacesAndRolls;

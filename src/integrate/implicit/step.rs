@@ -5,7 +5,10 @@ use super::model::Model;
 use super::nozzle_edge::NozzleEdge;
 use super::predictor::{moved, step_of};
 use super::scheme::StepFormula;
-use super::step_control::{MOST_TURN, SHORT};
+use super::step_control::{
+    AFTER_FAILURE, AFTER_MISSED_PAIRS, MOST_TURN, PATIENCE, SHORT, SHORTER,
+    SHORTER_BY_FIRST_UPDATE, WITHIN,
+};
 use super::unknowns::Unknowns;
 use super::work::Work;
 use super::{CLOSE, Implicit, Scheme, StepError, newton, tensioner};
@@ -44,7 +47,7 @@ impl Implicit {
                 if let Some(mut line) = sys.line_contact() {
                     line.undo_attempt();
                 }
-                h = (0.9 * share * h).max(self.shortest);
+                h = (WITHIN * share * h).max(self.shortest);
                 continue;
             }
             let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
@@ -54,7 +57,7 @@ impl Implicit {
                 work,
                 CLOSE * self.tolerance * self.share_of_wanted(h),
                 newton::NewtonLimits::of_step(
-                    failures > 2 || h < SHORT * self.shortest || self.fixed.is_some(),
+                    failures >= PATIENCE || h < SHORT * self.shortest || self.fixed.is_some(),
                     if may_shorten {
                         self.tolerance / step.error
                     } else {
@@ -72,7 +75,7 @@ impl Implicit {
                 // farther than the pairs of wire were looked for
                 Ok(_) if missed.is_some() && may_shorten => {
                     self.statistics.rejects += 1;
-                    0.5 * h
+                    AFTER_MISSED_PAIRS * h
                 }
                 Ok(_) => {
                     let difference = work
@@ -89,12 +92,14 @@ impl Implicit {
                         return Ok(h);
                     }
                     self.statistics.rejects += 1;
-                    h * factor.clamp(0.2, 0.8)
+                    let [least, largest] = SHORTER;
+                    h * factor.clamp(least, largest)
                 }
                 Err(newton::NewtonFailure { far: Some(way), .. }) => {
                     self.statistics.rejects += 1;
                     let factor = self.length_factor(step.error * way);
-                    h * factor.clamp(0.3, 0.8)
+                    let [least, largest] = SHORTER_BY_FIRST_UPDATE;
+                    h * factor.clamp(least, largest)
                 }
                 Err(failure) => {
                     self.statistics.newton_failures += 1;
@@ -102,7 +107,7 @@ impl Implicit {
                     if !may_shorten {
                         return Err(StepError::at(h, &failure));
                     }
-                    0.4 * h
+                    AFTER_FAILURE * h
                 }
             };
             h = retry.max(self.shortest);
