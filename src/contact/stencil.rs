@@ -129,6 +129,24 @@ impl NodeWeights {
         q[a] * self.weights[0] + q[b] * self.weights[1] + q[c] * self.weights[2]
     }
 
+    /// Adds to `sum` the way of the place in `x`, which has `D` numbers a node, first its way.
+    #[inline]
+    pub(crate) fn add_way<const D: usize>(&self, x: &[f64], sum: &mut V3) {
+        for (n, w) in self.iter() {
+            *sum += V3::new(x[D * n], x[D * n + 1], x[D * n + 2]) * w;
+        }
+    }
+
+    /// Adds the force or gradient `f` on the place to `y`, which has `D` numbers a node.
+    #[inline]
+    pub(crate) fn add_to<const D: usize>(&self, f: &V3, y: &mut [f64]) {
+        for (n, w) in self.iter() {
+            for a in 0..3 {
+                y[D * n + a] += w * f[a];
+            }
+        }
+    }
+
     /// Adds the force or gradient `f` on the place to the nodes' `out`.
     #[inline(always)]
     pub fn spread(&self, f: &V3, out: &mut [V3]) {

@@ -49,11 +49,10 @@ pub(super) fn solve_linear<const D: usize, U: Unknowns<D>>(
             ..
         } = work;
         let move_of = |point: usize| {
-            let mut d = V3::zeros();
-            for (i, w) in ContactPoint::of_number(point).weights().iter() {
-                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * w;
-            }
-            d
+            let mut way = V3::zeros();
+            let weights = ContactPoint::of_number(point).weights();
+            weights.add_way::<D>(update, &mut way);
+            way
         };
         let mut correct = |place: &NodeWeights, stiffness: &Block, gradient: &V3| {
             place.spread_block(stiffness, matrix);
