@@ -3,6 +3,7 @@
 use crate::linalg::Banded;
 use crate::math::{Block, V3, scaled_block};
 use crate::rod::Rod;
+use std::ops::RangeInclusive;
 
 /// A contact point of the wire: one at each inner node and one at the middle of each edge.
 ///
@@ -38,6 +39,18 @@ impl ContactPoint {
             Self::Node(i) => 2 * i,
             Self::Edge(j) => 2 * j + 1,
         }
+    }
+
+    /// The node of a point of this number, or the one before it.
+    #[inline]
+    pub fn node_before(number: usize) -> usize {
+        number / 2
+    }
+
+    /// Numbers of the points at a node and at the middles of its edges.
+    #[inline]
+    pub fn around(node: usize) -> RangeInclusive<usize> {
+        (2 * node).saturating_sub(1)..=2 * node + 1
     }
 
     /// All points of a wire of so many edges, clamp first.

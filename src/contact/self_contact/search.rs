@@ -61,7 +61,7 @@ impl SelfContact {
         }
         for contact_point in ContactPoint::all(q.len() - 1) {
             let point = contact_point.number() as u32;
-            let i = point as usize / 2;
+            let i = ContactPoint::node_before(contact_point.number());
             let at = match contact_point {
                 ContactPoint::Node(i) => angle[i],
                 ContactPoint::Edge(i) => 0.5 * (angle[i] + angle[i + 1]),
@@ -245,7 +245,7 @@ impl PairScratch {
                 let other = shaping(near.other as usize, q.len());
                 way + farthest_way(other, |node| (now[node] - q[node]).norm()) > near.room
             })
-            .map(|near| near.point as usize / 2)
+            .map(|near| ContactPoint::node_before(near.point as usize))
     }
 }
 
