@@ -19,11 +19,11 @@ mod landings;
 mod largest;
 mod lengths;
 mod minimal_residual;
-mod model;
 mod newton;
 mod nozzle_edge;
 mod places;
 mod places_and_rolls;
+mod potential;
 mod predictor;
 #[cfg(feature = "lab")]
 mod probe;

@@ -4,8 +4,8 @@
 //! are those of a time step. Plastic state, frames and anchors move on only where an increment has
 //! converged.
 
-use super::model::Model;
 use super::newton::{self, NewtonLimits};
+use super::potential::Potential;
 use super::scheme::StepFormula;
 use super::unknowns::Unknowns;
 use super::work::Work;
@@ -74,9 +74,9 @@ impl Implicit {
             work.q.clone_from(&work.guess);
             let ends = (&spindle, &support);
             work.unknowns.follow(sys, ends, &work.guess);
-            let mut model = model_at_rest(sys, &step);
-            model.flat = self.flat;
-            let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, limits);
+            let mut potential = potential_at_rest(sys, &step);
+            potential.flat = self.flat;
+            let solved = newton::solve(&mut potential, work, CLOSE * self.tolerance, limits);
             let steps = solved.map_err(|failure| {
                 self.statistics.newton_failures += 1;
                 StepError::at(LONG, &failure)
@@ -113,15 +113,15 @@ pub(super) fn still(sys: &mut System) -> StepFormula {
     }
 }
 
-/// What a solve of the step that [`still`] returned needs besides the iterate: no wire is fed and none slips.
-pub(super) fn model_at_rest<'a>(sys: &'a mut System, step: &StepFormula) -> Model<'a> {
+/// The potential of the step that [`still`] returned: no wire is fed and none slips.
+pub(super) fn potential_at_rest<'a>(sys: &'a mut System, step: &StepFormula) -> Potential<'a> {
     if let Some(mut line) = sys.line_contact() {
         line.begin_solve();
     }
     let (spindle, support) = (sys.state.spindle, sys.state.support);
-    Model {
+    Potential {
         first: None,
         elapsed: f64::INFINITY,
-        ..Model::of_step(sys, step, &spindle, &support, None)
+        ..Potential::of_step(sys, step, &spindle, &support, None)
     }
 }

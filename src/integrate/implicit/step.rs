@@ -1,8 +1,8 @@
 //! One step: guess, solve, estimate the error, commit or try again.
 
 use super::commit::feed_after;
-use super::model::Model;
 use super::nozzle_edge::NozzleEdge;
+use super::potential::Potential;
 use super::predictor::{moved, step_of};
 use super::scheme::StepFormula;
 use super::step_control::{
@@ -50,10 +50,10 @@ impl Implicit {
                 h = (WITHIN * share * h).max(self.shortest);
                 continue;
             }
-            let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
-            model.flat = self.flat;
+            let mut potential = Potential::of_step(sys, &step, &spindle, &support, nozzle);
+            potential.flat = self.flat;
             let solved = newton::solve(
-                &mut model,
+                &mut potential,
                 work,
                 CLOSE * self.tolerance * self.share_of_wanted(h),
                 newton::NewtonLimits::of_step(
