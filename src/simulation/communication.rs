@@ -9,11 +9,11 @@
 use super::ahead::Ahead;
 use super::course::{Course, Given, Likeness};
 use super::door::check_finite;
+use super::master_inputs::{MasterInputs, as_meant};
 use super::motion_profile::ROUNDING;
 use super::outputs::keep_told;
 use super::rates::rates_of;
-use super::talk::{LONGEST_WAIT, Served};
-use super::told::{Told, as_meant};
+use super::talk::{CommunicationPoint, LONGEST_WAIT};
 use super::{SimError, Simulation, WORTH_A_STEP, Winding};
 use crate::signals::{Inputs, Outputs};
 use std::sync::Arc;
@@ -66,12 +66,12 @@ impl Simulation {
         if dt.is_finite() {
             check_finite(&inputs.after(&rates, dt), self.time())?;
         }
-        let told = Told::new(inputs, &rates, dt);
-        let before = self.talk.told.replace(told);
+        let given = MasterInputs::new(inputs, &rates, dt);
+        let before = self.talk.given.replace(given);
         let meant = as_meant(self.scene(), inputs, rates, dt, before.as_ref());
         let gone = self.advance_as_meant(meant, dt);
         if gone.is_err() {
-            self.talk.told = before;
+            self.talk.given = before;
         }
         gone
     }
@@ -137,7 +137,7 @@ impl Simulation {
         let of_scene = self.talk.course.is_some_and(|course| course.is_of_scene());
         if !of_scene || !self.finds_its_own_steps() {
             self.settle()?;
-            (self.talk.course, self.talk.travel, self.talk.told) = (None, None, None);
+            (self.talk.course, self.talk.travel, self.talk.given) = (None, None, None);
         }
         if !self.finds_its_own_steps() || dt.is_nan() || dt <= 0.0 {
             return self.step_to_the_point(|winding| winding.advance_profile(dt));
@@ -331,7 +331,10 @@ impl Simulation {
         told: &Outputs,
         dt: f64,
     ) -> Result<(), SimError> {
-        let mut served = self.talk.served.unwrap_or_else(|| Served::at(&self.now));
+        let mut served = self
+            .talk
+            .served
+            .unwrap_or_else(|| CommunicationPoint::at(&self.now));
         served.begin(dt, &self.now);
         if !self.now.run.over {
             served.outputs.meet_tension(told.wire_tension);
@@ -449,7 +452,7 @@ impl Winding {
     }
 
     /// Takes a communication point for the present instant.
-    fn stand_at(&mut self, point: &Served) {
+    fn stand_at(&mut self, point: &CommunicationPoint) {
         (self.run.time, self.run.time_lost) = (point.time, point.time_lost);
         self.sys.state.spindle.speed = point.inputs.spindle_speed;
         self.sys.state.set_tension = point.inputs.tension_setpoint;

@@ -21,6 +21,7 @@ mod io;
 mod judgement;
 mod layon;
 mod machine;
+mod master_inputs;
 mod motion_profile;
 mod nozzle_by_law;
 mod nozzle_place;
@@ -47,7 +48,6 @@ mod talk;
 mod tapered;
 mod telling;
 mod thinned;
-mod told;
 #[cfg(feature = "lab")]
 mod trail;
 #[cfg(feature = "lab")]

@@ -2,9 +2,9 @@
 
 use super::ahead::Ahead;
 use super::door::check_finite;
+use super::master_inputs::{MasterInputs, with_brake};
 use super::pool::Pool;
 use super::talk::Talk;
-use super::told::{Told, with_brake};
 use super::{SimError, Winding};
 use crate::scene::Scene;
 use crate::signals::{Event, Inputs, Outputs};
@@ -81,7 +81,7 @@ impl Simulation {
 
     fn started(winding: Winding, inputs: Inputs) -> Self {
         let mut run = Self::from(winding);
-        run.talk.told = Some(Told::new(inputs, &Inputs::HELD, 0.0));
+        run.talk.given = Some(MasterInputs::new(inputs, &Inputs::HELD, 0.0));
         run
     }
 
@@ -140,8 +140,8 @@ impl Simulation {
     pub fn inputs(&self) -> Inputs {
         let served = self.talk.served.as_ref();
         let inputs = served.map_or_else(|| self.now.inputs(), |served| served.inputs);
-        match &self.talk.told {
-            Some(told) => told.pull_of(inputs),
+        match &self.talk.given {
+            Some(given) => given.pull_of(inputs),
             None => inputs,
         }
     }
