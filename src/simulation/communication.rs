@@ -96,7 +96,7 @@ impl Simulation {
         let goes_on = self.goes_on_as(&given, self.talk.newest(), ALIKE);
         if dt < WORTH_A_STEP && !goes_on {
             // what moves in a step that is too short to solve for moves in the next one
-            self.settle()?;
+            self.catch_up()?;
             (self.talk.course, self.talk.travel) = (None, None);
             return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
         }
@@ -136,7 +136,7 @@ impl Simulation {
     pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
         let of_scene = self.talk.course.is_some_and(|course| course.is_of_scene());
         if !of_scene || !self.finds_its_own_steps() {
-            self.settle()?;
+            self.catch_up()?;
             (self.talk.course, self.talk.travel, self.talk.given) = (None, None, None);
         }
         if !self.finds_its_own_steps() || dt.is_nan() || dt <= 0.0 {
@@ -154,7 +154,7 @@ impl Simulation {
     /// # Errors
     ///
     /// If the method gives up on the way.
-    pub fn settle(&mut self) -> Result<(), SimError> {
+    pub fn catch_up(&mut self) -> Result<(), SimError> {
         if let Some(dropped) = self.ahead.take() {
             self.pool.give(dropped.winding);
         }
@@ -184,16 +184,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// A copy whose winding stands at the communication point ([`Self::settle`]). No flag stops it on the way.
+    /// A copy whose winding stands at the communication point ([`Self::catch_up`]). No flag stops it on the way.
     ///
     /// # Errors
     ///
     /// If the method gives up on the way.
-    pub fn settled(&self) -> Result<Self, SimError> {
+    pub fn caught_up(&self) -> Result<Self, SimError> {
         let mut copy = self.clone();
         if copy.time() > copy.now.run.time {
             Arc::make_mut(&mut copy.now).stop = None;
-            copy.settle()?;
+            copy.catch_up()?;
         }
         Ok(copy)
     }
@@ -204,7 +204,7 @@ impl Simulation {
         step: impl FnOnce(&mut Winding) -> Result<(), SimError>,
     ) -> Result<(), SimError> {
         let told = self.told_tension();
-        self.settle()?;
+        self.catch_up()?;
         let winding = self.pool.own(&mut self.now);
         winding.run.events.clear();
         let gone = step(winding);
@@ -277,7 +277,7 @@ impl Simulation {
             self.talk.turned = Some(course);
             return Ok(());
         }
-        self.settle()?;
+        self.catch_up()?;
         self.talk.course = Some(course);
         Ok(())
     }
@@ -306,7 +306,7 @@ impl Simulation {
                 course = course.as_long_as(went_on);
             }
         }
-        self.settle()?;
+        self.catch_up()?;
         self.talk.course = Some(course);
         Ok(())
     }
@@ -364,7 +364,7 @@ impl Simulation {
             }
             if self.now.run.over {
                 self.talk.served = Some(served);
-                self.settle()?;
+                self.catch_up()?;
                 let winding = self.pool.own(&mut self.now);
                 let speed = winding.inputs().spindle_speed;
                 winding.run.acceleration = (speed - speed_before) / dt;

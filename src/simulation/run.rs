@@ -103,7 +103,7 @@ impl Simulation {
     }
 
     /// Lets steps of the implicit method reach beyond the communication point, as long as inputs go on as they did. Then a fine
-    /// communication step costs little, and the coil may be a step of the method behind; see [`Self::settle`].
+    /// communication step costs little, and the coil may be a step of the method behind; see [`Self::catch_up`].
     pub fn step_beyond(&mut self, on: bool) {
         self.steps_beyond = on;
     }
@@ -184,7 +184,7 @@ impl Simulation {
     ///
     /// If the method gives up on the way to the communication point, from which on they hold.
     pub fn retune(&mut self, scene: &Scene) -> Result<(), SimError> {
-        self.settle()?;
+        self.catch_up()?;
         let winding = Arc::make_mut(&mut self.now);
         winding.run.events.clear();
         winding.retune(scene);
