@@ -17,6 +17,7 @@ mod drawn_loop;
 mod faults;
 mod freezing;
 mod frozen_tension;
+mod health;
 mod io;
 mod judgement;
 mod layon;
