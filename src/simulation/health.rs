@@ -98,7 +98,7 @@ impl Winding {
             if a.dot(&b) > cosine * a.norm() * b.norm() {
                 return None;
             }
-            let angle = a.angle(&b);
+            let angle = libm::acos((a.dot(&b) / (a.norm() * b.norm())).clamp(-1.0, 1.0));
             (angle > most).then(|| (i, own / angle))
         })
     }
