@@ -457,7 +457,7 @@ impl SceneSettings {
         // free span saves little there and costs a refinement front
         let s = &self.solver;
         let given = |x: f64, otherwise: f64| if x > 0.0 { x } else { otherwise };
-        let implicit = integrator == Integrator::Implicit;
+        let implicit = integrator.is_implicit();
         let (near, refine) = if implicit {
             let near =
                 spacing_for(s.tolerance_for(diameter), diameter, cylinder).min(8.0 * diameter);
