@@ -59,7 +59,7 @@ fn wound(start: &Simulation, step: f64, beyond: bool) -> Result<Wound, Box<dyn E
         sim.advance_ramped(inputs, rates, step)?;
     }
     let cpu = began.elapsed().as_secs_f64();
-    sim.settle()?;
+    sim.catch_up()?;
     Ok(Wound { sim, cpu })
 }
 

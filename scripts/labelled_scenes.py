@@ -4,7 +4,6 @@ import csv
 import math
 import random
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import solids
 

@@ -270,7 +270,7 @@ fn stepping_to_the_next_change_leaves_the_wire_where_it_was() {
             }
             sim.advance(inputs, dt).expect("goes on");
         }
-        *sim.settled().expect("goes on").outputs()
+        *sim.caught_up().expect("goes on").outputs()
     };
     let (coarse, fine) = (run(1e-4), run(2e-5));
     let near = |a: f64, b: f64, most: f64| assert!((a - b).abs() < most, "{a} and {b}");

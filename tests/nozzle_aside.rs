@@ -40,8 +40,8 @@ fn an_even_way_aside_takes_no_step_of_its_own() {
     let [of_long, of_short] = [&long, &short].map(|sim| sim.statistics().steps);
     println!("{of_long} {of_short}");
     assert!(10 * of_short < 12 * of_long, "{of_short} for {of_long}");
-    let settled = short.settled().expect("goes on");
-    let nozzle = settled.system().state.support[1].point;
+    let there = short.caught_up().expect("goes on");
+    let nozzle = there.system().state.support[1].point;
     let distance = long.scene().nozzle.distance;
     assert!(
         (nozzle.x - distance - 0.02 * 0.12).abs() < 1e-12,
@@ -60,7 +60,7 @@ fn an_even_way_aside_takes_no_step_of_its_own() {
 #[test]
 fn a_nozzle_that_creeps_aside_gets_there() {
     let sim = wound([0.0, 1e-4], 1e-5, 0.02, true);
-    let nozzle = sim.settled().expect("goes on").system().state.support[1].point;
+    let nozzle = sim.caught_up().expect("goes on").system().state.support[1].point;
     assert!((nozzle.z - 2e-6).abs() < 1e-15, "{nozzle}");
     let there = sim.inputs().nozzle_offset_z;
     assert!((there - 2e-6).abs() < 1e-15, "{there}");

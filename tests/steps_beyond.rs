@@ -42,13 +42,13 @@ fn wound(count: u32, beyond: bool) -> Simulation {
 fn held_inputs_give_the_same_bits_in_steps_of_any_length() {
     let one = {
         let mut sim = wound(2, true);
-        sim.settle().expect("a step");
+        sim.catch_up().expect("a step");
         sim
     };
     for count in [16, 160, 1600, 16_000] {
         let mut fine = wound(count, true);
         assert!((fine.time() - END).abs() < 1e-15);
-        fine.settle().expect("a step");
+        fine.catch_up().expect("a step");
         let (a, b) = (one.centreline(), fine.centreline());
         assert_eq!(one.statistics(), fine.statistics(), "{count} steps");
         let far = a.points.iter().zip(&b.points).map(|(a, b)| (a - b).norm());
@@ -94,10 +94,10 @@ fn outputs_between_steps_are_those_of_short_steps() {
         for k in 0..20 {
             step(&mut fine, t + 1e-6 * f64::from(k), 1e-6);
         }
-        let mut settled = coarse.clone();
-        settled.settle().expect("a step");
+        let mut there = coarse.clone();
+        there.catch_up().expect("a step");
         let read = values(coarse.outputs());
-        let exact = [values(settled.outputs()), values(fine.outputs())];
+        let exact = [values(there.outputs()), values(fine.outputs())];
         for k in 0..4 {
             for twin in 0..2 {
                 let off = (read[k] - exact[twin][k]).abs();
@@ -291,7 +291,7 @@ fn what_inputs_did_is_kept_when_they_change() {
     let (mut ahead, mut plain) = (start(true), start(false));
     shaken(&mut ahead, 0, 400);
     shaken(&mut plain, 0, 400);
-    ahead.settle().expect("a step");
+    ahead.catch_up().expect("a step");
     let (a, b) = (ahead.outputs(), plain.outputs());
     assert!((a.spindle_angle - b.spindle_angle).abs() < 1e-12);
     assert!((ahead.inputs().nozzle_position - plain.inputs().nozzle_position).abs() < 1e-15);
@@ -384,7 +384,7 @@ fn rows_change_nothing_along_the_scenes_own_motion() {
         for count in [7, 300, 3000] {
             let (mut rows, tension) = along_the_scene(&scene, end, count, true);
             assert_eq!(tension, extremes, "{name}, {count} rows");
-            rows.settle().expect("a step");
+            rows.catch_up().expect("a step");
             assert_eq!(one.statistics(), rows.statistics(), "{name}, {count} rows");
             let (a, b) = (one.centreline(), rows.centreline());
             let far = a.points.iter().zip(&b.points).map(|(a, b)| (a - b).norm());
@@ -427,7 +427,7 @@ fn a_saved_state_within_the_scenes_own_motion_goes_on_to_the_bit() {
     assert!(behind > 10, "{behind}");
 }
 
-/// Inputs begin where the scene's own motion ended, and a settled copy leaves the run as it is.
+/// Inputs begin where the scene's own motion ended, and a copy that caught up leaves the run as it is.
 #[test]
 fn inputs_go_on_from_the_point_of_the_scenes_own_motion() {
     let mut sim = Simulation::new(&fig8(&[])).expect("starts");
@@ -438,7 +438,7 @@ fn inputs_go_on_from_the_point_of_the_scenes_own_motion() {
     }
     let (time, inputs, angle) = (sim.time(), sim.inputs(), sim.outputs().spindle_angle);
     assert!(sim.winding().time() < time, "no step reaches beyond");
-    let there = sim.settled().expect("a step");
+    let there = sim.caught_up().expect("a step");
     assert_eq!(there.winding().time(), time);
     assert!((there.outputs().spindle_angle - angle).abs() < 1e-9);
     assert!(sim.winding().time() < time);

@@ -4,6 +4,8 @@
 mod arrows;
 #[path = "tidy/manifests.rs"]
 mod manifests;
+#[path = "tidy/numbers.rs"]
+mod numbers;
 #[path = "tidy/sources/mod.rs"]
 mod sources;
 #[path = "tidy/texts.rs"]

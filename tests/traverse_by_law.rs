@@ -203,7 +203,7 @@ fn fine_steps_by_law_cost_no_solves() {
     let end = 800.0 * STEP;
     let mut runs = [STEP, STEP / 8.0, STEP / 64.0].map(|step| told_in(&scene, step, end, true));
     for run in &mut runs {
-        run.settle().expect("a step");
+        run.catch_up().expect("a step");
     }
     let steps = runs.each_ref().map(|run| run.statistics().steps);
     println!("{steps:?} steps of the method");

@@ -13,6 +13,7 @@
 //! | `instance` | what the calls mean, in safe Rust |
 //! | `parameters`, `clock`, `recording` | parts of an instance |
 //! | `state` | a saved state in memory and as bytes |
+//! | `saved_files` | files that a scene names: where they were saved, and are found again |
 //! | `scalar`, `resources` | variables by type, the folder of the unpacked FMU |
 //!
 //! # Invariants
@@ -30,8 +31,6 @@
 #![deny(unsafe_op_in_unsafe_fn, clippy::undocumented_unsafe_blocks)]
 
 mod clock;
-#[cfg(test)]
-mod contract;
 mod error;
 pub mod exports;
 pub mod ffi;
@@ -40,21 +39,13 @@ mod guard;
 mod instance;
 mod lifecycle;
 mod logger;
-#[cfg(test)]
-mod masters;
 mod message;
 mod parameters;
 mod pointers;
 mod recording;
 mod resources;
 mod saved_files;
-#[cfg(test)]
-mod saving;
 mod scalar;
-#[cfg(test)]
-mod sequences;
 mod state;
 #[cfg(test)]
-mod told;
-#[cfg(test)]
-mod written_start_values;
+mod tests;

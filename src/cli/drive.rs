@@ -239,7 +239,7 @@ impl Drive {
                 let mut gone = simulation.advance_profile(next - time);
                 if next == *end {
                     // the last row is what the results tell of
-                    gone = gone.and_then(|()| simulation.settle());
+                    gone = gone.and_then(|()| simulation.catch_up());
                 }
                 Some(gone.map(|()| next))
             }

@@ -76,7 +76,7 @@ impl Frames {
         let due = (share * count).floor().min(count) as u32;
         if due > self.written.last().map_or(0, |&(number, _)| number) {
             // (the wire may be a step of the method behind; where none leads on, it is drawn where it is)
-            let there = simulation.settled();
+            let there = simulation.caught_up();
             let shown = there.as_ref().unwrap_or(simulation);
             snapshot.write_frame(&self.directory.join(name(due)), shown)?;
             self.written.push((due, simulation.time()));

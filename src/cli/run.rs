@@ -213,7 +213,7 @@ pub(super) fn wind_one(args: &RunArgs, stop: &StopFlags) -> Result<Judged, Failu
     simulation.stop_on(Arc::clone(&stop.overdue));
     let mut ended = record.wind(&mut simulation, &mut drive, stop, args.resume.is_none());
     // The coil of the last row. The checkpoint is of before, so that a run which goes on knows nothing of it.
-    match simulation.settled() {
+    match simulation.caught_up() {
         Ok(there) => simulation = there,
         Err(reason) => ended = ended.and(Err(Stop::Solver(reason))),
     }

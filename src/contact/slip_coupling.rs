@@ -22,11 +22,7 @@ impl SlipCoupling {
     pub fn add_product<const D: usize>(&self, x: &[f64], y: &mut [f64]) {
         let gradient = block_times(&self.block, &self.way::<D>(x));
         for at in std::iter::once(&self.point).chain(&self.foot) {
-            for (n, w) in at.iter() {
-                for a in 0..3 {
-                    y[D * n + a] += w * gradient[a];
-                }
-            }
+            at.add_to::<D>(&gradient, y);
         }
     }
 
@@ -40,9 +36,7 @@ impl SlipCoupling {
     fn way<const D: usize>(&self, x: &[f64]) -> V3 {
         let mut sum = V3::zeros();
         for at in std::iter::once(&self.point).chain(&self.foot) {
-            for (n, w) in at.iter() {
-                sum += V3::new(x[D * n], x[D * n + 1], x[D * n + 2]) * w;
-            }
+            at.add_way::<D>(x, &mut sum);
         }
         sum
     }

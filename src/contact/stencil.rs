@@ -3,6 +3,7 @@
 use crate::linalg::Banded;
 use crate::math::{Block, V3, scaled_block};
 use crate::rod::Rod;
+use std::ops::RangeInclusive;
 
 /// A contact point of the wire: one at each inner node and one at the middle of each edge.
 ///
@@ -38,6 +39,18 @@ impl ContactPoint {
             Self::Node(i) => 2 * i,
             Self::Edge(j) => 2 * j + 1,
         }
+    }
+
+    /// The node of a point of this number, or the one before it.
+    #[inline]
+    pub fn node_before(number: usize) -> usize {
+        number / 2
+    }
+
+    /// Numbers of the points at a node and at the middles of its edges.
+    #[inline]
+    pub fn around(node: usize) -> RangeInclusive<usize> {
+        (2 * node).saturating_sub(1)..=2 * node + 1
     }
 
     /// All points of a wire of so many edges, clamp first.
@@ -127,6 +140,24 @@ impl NodeWeights {
     pub fn sum(&self, q: &[V3]) -> V3 {
         let [a, b, c] = self.nodes;
         q[a] * self.weights[0] + q[b] * self.weights[1] + q[c] * self.weights[2]
+    }
+
+    /// Adds to `sum` the way of the place in `x`, which has `D` numbers a node, first its way.
+    #[inline]
+    pub(crate) fn add_way<const D: usize>(&self, x: &[f64], sum: &mut V3) {
+        for (n, w) in self.iter() {
+            *sum += V3::new(x[D * n], x[D * n + 1], x[D * n + 2]) * w;
+        }
+    }
+
+    /// Adds the force or gradient `f` on the place to `y`, which has `D` numbers a node.
+    #[inline]
+    pub(crate) fn add_to<const D: usize>(&self, f: &V3, y: &mut [f64]) {
+        for (n, w) in self.iter() {
+            for a in 0..3 {
+                y[D * n + a] += w * f[a];
+            }
+        }
     }
 
     /// Adds the force or gradient `f` on the place to the nodes' `out`.

@@ -132,6 +132,25 @@ pub struct Feed {
     pub damping: f64,
 }
 
+/// A step of the feed, and the last edge in it.
+#[derive(Clone, Copy, Debug)]
+pub struct EdgeStep<'a> {
+    /// length of the step, s
+    pub dt: f64,
+    /// the tensioner's pull, N
+    pub set: f64,
+    /// unstretched length of the edge before the step, m
+    pub rest: f64,
+    /// its length after the step, m
+    pub length: f64,
+    /// plastic stretch of the edge and of wire that comes out
+    pub plastic: [f64; 2],
+    /// angle at the exit, rad
+    pub deflection: f64,
+    /// how the line's wire yields
+    pub yields: &'a LineYield,
+}
+
 impl Feed {
     /// At rest with the line loaded to `tension`.
     pub fn at_rest(spec: &FeedSpec, tension: f64) -> Self {
@@ -167,25 +186,17 @@ impl Feed {
         spec.damping + self.damping
     }
 
-    /// Advances by `dt` with the last edge of unstretched length `rest` now `length` long; returns the unstretched
-    /// length added to it, m.
-    ///
-    /// - `set`: the tensioner's pull, N
-    /// - `plastic`: plastic stretch of the edge and of wire that comes out
-    /// - `deflection`: angle at the exit, rad
-    /// - `yields`: how the line's wire yields
-    pub fn step(
-        &mut self,
-        spec: &FeedSpec,
-        stretch: &Law,
-        set: f64,
-        dt: f64,
-        rest: f64,
-        length: f64,
-        plastic: [f64; 2],
-        deflection: f64,
-        yields: &LineYield,
-    ) -> f64 {
+    /// Advances by a step; returns the unstretched length added to the last edge, m.
+    pub fn step(&mut self, spec: &FeedSpec, stretch: &Law, step: &EdgeStep) -> f64 {
+        let &EdgeStep {
+            set,
+            dt,
+            rest,
+            length,
+            plastic,
+            deflection,
+            yields,
+        } = step;
         // friction at the exit holds back whichever way the wire moves
         let grip =
             libm::exp(spec.exit_friction * deflection * if self.rate >= 0.0 { 1.0 } else { -1.0 });
@@ -282,17 +293,16 @@ mod tests {
         let mut t = 0.0;
         while t < end {
             length += speed(t) * dt;
-            rest += feed.step(
-                spec,
-                &l,
-                15.0,
+            let step = EdgeStep {
                 dt,
+                set: 15.0,
                 rest,
                 length,
-                [0.0; 2],
-                0.0,
-                &LineYield::default(),
-            );
+                plastic: [0.0; 2],
+                deflection: 0.0,
+                yields: &LineYield::default(),
+            };
+            rest += feed.step(spec, &l, &step);
             // keep the edge short: drop whole wire behind it at the same strain
             let drop = rest - 1e-3;
             rest -= drop;
@@ -359,17 +369,16 @@ mod tests {
         for longer in [-1e-6, 1e-6] {
             let mut feed = Feed::at_rest(&s, 15.0);
             let length = rest * (1.02 + 15.0 / l.modulus) + longer;
-            let grown = feed.step(
-                &s,
-                &l,
-                15.0,
-                1e-6,
+            let step = EdgeStep {
+                dt: 1e-6,
+                set: 15.0,
                 rest,
                 length,
                 plastic,
-                0.0,
-                &LineYield::default(),
-            );
+                deflection: 0.0,
+                yields: &LineYield::default(),
+            };
+            let grown = feed.step(&s, &l, &step);
             let passing = if longer > 0.0 { 0.0 } else { 0.02 };
             let free = rest * 1.02 + grown * (1.0 + passing);
             let tension = l.modulus * (length - free) / (rest + grown);

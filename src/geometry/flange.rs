@@ -3,7 +3,7 @@
 //! Each plate is convex, so its distance is C1 outside. Wire in the corner between core and flange touches both,
 //! and each of the two distances stays smooth there; that of the union has a ridge.
 
-use super::shape::{Nearness, Outline, Shape};
+use super::shape::{Nearness, Outline, Shape, beyond_both};
 use crate::math::V3;
 
 /// A pair of flanges, the same on both sides of y = 0. Core frame, lengths in m.
@@ -40,14 +40,7 @@ impl Flanges {
         // beyond the rim and beyond a face, each counted from where the edge begins to be round
         let rim = outline.distance - self.height + self.edge_radius;
         let face = from_middle.abs() - 0.5 * self.thickness + self.edge_radius;
-        let (reach, across, along) = if rim > 0.0 && face > 0.0 {
-            let reach = (rim * rim + face * face).sqrt();
-            (reach, rim / reach, face / reach)
-        } else if rim > face {
-            (rim, 1.0, 0.0)
-        } else {
-            (face, 0.0, 1.0)
-        };
+        let (reach, across, along) = beyond_both(rim, face);
         let Outline { x, z, .. } = outline;
         let along = along.copysign(p.y * from_middle);
         Nearness {

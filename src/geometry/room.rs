@@ -14,13 +14,14 @@ const OPEN: f64 = 0.1;
 /// Sections that are tried where the given one lies between no flanges.
 const SECTIONS: usize = 64;
 
-/// Halvings of the height of a flange.
+/// Halvings of the interval in which a flange ends: its height is found to a four-thousandth of the mesh's radius.
 const HALVINGS: u32 = 12;
 
-/// Heights up to the middle of a wire at which it is looked for what it meets.
+/// Heights, up to the middle of a wire on the core, at which faces are looked for that its side meets.
 const ROUND: u32 = 8;
 
-/// What facets and chords may add to how much nearer such a face is, as a share.
+/// A face of 45 degrees is nearer to the side of a wire than to its middle by the difference in height. Facets and chords may add
+/// this share to that; a face that is nearer still is another one.
 const SAME_FACE: f64 = 0.05;
 
 /// Part of a normal along y below which a face is taken to be radial, as a rim that is rounded by an STL file's numbers.

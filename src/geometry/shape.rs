@@ -198,19 +198,24 @@ fn circle(radius: f64, p: V3) -> Outline {
     }
 }
 
-/// Distance from the prism over an outline: past its rim both parts count, else the larger.
+/// Distance, m, from what is bounded by two surfaces at right angles that are `a` and `b` (m) away, and how much of each is in its
+/// gradient: beyond both, both count, else the larger.
+#[inline]
+pub(super) fn beyond_both(a: f64, b: f64) -> (f64, f64, f64) {
+    if a > 0.0 && b > 0.0 {
+        let distance = (a * a + b * b).sqrt();
+        (distance, a / distance, b / distance)
+    } else if a > b {
+        (a, 1.0, 0.0)
+    } else {
+        (b, 0.0, 1.0)
+    }
+}
+
+/// Distance from the prism over an outline.
 #[inline]
 fn extrude(outline: Outline, half_y: f64, p: V3) -> Nearness {
-    let side = outline.distance;
-    let end = p.y.abs() - half_y;
-    let (distance, across, along) = if side > 0.0 && end > 0.0 {
-        let distance = (side * side + end * end).sqrt();
-        (distance, side / distance, end / distance)
-    } else if side > end {
-        (side, 1.0, 0.0)
-    } else {
-        (end, 0.0, 1.0)
-    };
+    let (distance, across, along) = beyond_both(outline.distance, p.y.abs() - half_y);
     Nearness {
         distance,
         normal: V3::new(

@@ -30,7 +30,7 @@ impl Stepper {
     }
 
     /// Goes on as another stepper of the same method would, and keeps its own work space.
-    pub fn follow(&mut self, other: &Self) {
+    pub fn take_over_from(&mut self, other: &Self) {
         match (self, other) {
             (Self::Implicit(to), Self::Implicit(from)) => {
                 (to.next, to.wanted) = (from.next, from.wanted);

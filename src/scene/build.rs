@@ -13,9 +13,9 @@ use super::{
 };
 use crate::geometry::stl::{self, StlError};
 use crate::geometry::{Crossing, Room, Surface, TriMesh};
-use crate::math::V3;
+use crate::math::{V3, scaled};
 use crate::rod::Twist;
-use crate::settings::{BY_INPUT, NozzleFollows, Origin, SceneSettings, SolverSettings, Spindle};
+use crate::settings::{BY_INPUT, NozzleFollows, Origin, SceneSettings, Spindle};
 use std::path::{Path, PathBuf};
 
 /// How far beside the clamp the core is looked at too, diameters. Chosen: far above the rounding of an STL file's numbers.
@@ -457,11 +457,11 @@ impl SceneSettings {
         // free span saves little there and costs a refinement front
         let s = &self.solver;
         let given = |x: f64, otherwise: f64| if x > 0.0 { x } else { otherwise };
-        let implicit = integrator == Integrator::Implicit;
+        let implicit = integrator.is_implicit();
         let (near, refine) = if implicit {
             let near =
                 spacing_for(s.tolerance_for(diameter), diameter, cylinder).min(8.0 * diameter);
-            (near, SolverSettings::with_wire(3e-3, diameter))
+            (near, scaled(3e-3, diameter))
         } else {
             (0.5e-3, 6e-3)
         };

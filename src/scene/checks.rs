@@ -154,7 +154,7 @@ impl SceneSettings {
             ("tensioner.pulley_friction", t.pulley_friction > 0.0),
         ];
         for (key, _) in keys.into_iter().filter(|(_, there)| *there) {
-            let lacking = if integrator != Integrator::Implicit {
+            let lacking = if !integrator.is_implicit() {
                 "the explicit methods have nothing between tensioner and nozzle"
             } else if t.mass == 0.0 {
                 "without tensioner.mass the pull acts at the nozzle"
@@ -267,7 +267,7 @@ impl SceneSettings {
                 "1e-9 to 0.001 m, or 0: in proportion to the outer diameter",
             ));
         }
-        if solver.tolerance > most * (1.0 + 1e-9) && solver.integrator == Integrator::Implicit {
+        if solver.tolerance > most * (1.0 + 1e-9) && solver.integrator.is_implicit() {
             problems.add(self.impossible(
                 "solver.tolerance",
                 "steps may be wrong by more than a tenth of the wire's diameter",

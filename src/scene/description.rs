@@ -202,6 +202,13 @@ pub enum Integrator {
     Implicit,
 }
 
+impl Integrator {
+    /// Whether it is the implicit method, which has contact along the wire and finds its own steps.
+    pub fn is_implicit(self) -> bool {
+        self == Self::Implicit
+    }
+}
+
 /// The program's decision on a setting that is `auto`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Decision {

@@ -104,7 +104,7 @@ impl SceneSettings {
         wire: &Section,
         decisions: &mut Decisions,
     ) -> Result<Twist, SceneError> {
-        let implicit = integrator == Integrator::Implicit;
+        let implicit = integrator.is_implicit();
         match self.solver.twist.as_str() {
             "off" => Ok(Twist::Off),
             "dynamic" => Ok(Twist::Dynamic),
@@ -150,7 +150,7 @@ impl SceneSettings {
         scene: &mut Scene,
         decisions: &mut Decisions,
     ) -> Result<(), SceneError> {
-        let implicit = scene.solver.integrator == Integrator::Implicit;
+        let implicit = scene.solver.integrator.is_implicit();
         let s = &self.solver;
         let rubs = scene.friction.static_ > 0.0 || scene.friction.kinetic > 0.0;
         let rubs = decisions.decide(
@@ -183,7 +183,7 @@ impl SceneSettings {
                 "auto or off; on with solver.integrator = implicit",
             ));
         }
-        let free = scene.solver.integrator == Integrator::Implicit && self.solver.step == 0.0;
+        let free = scene.solver.integrator.is_implicit() && self.solver.step == 0.0;
         let asked = switch(&self.solver.steps_beyond);
         let beyond = decisions.decide(
             "solver.steps_beyond",

@@ -37,7 +37,7 @@ fn rounded_away(x: f64, side: f64) -> f64 {
     if side * (digits - x) >= 0.0 {
         return digits;
     }
-    let unit = 10f64.powi(digits.abs().log10().floor() as i32 - 5);
+    let unit = 10f64.powi(libm::log10(digits.abs()).floor() as i32 - 5);
     digits + side * unit
 }
 

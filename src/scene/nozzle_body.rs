@@ -26,7 +26,7 @@ impl SceneSettings {
                 format!("more than {} m, or 0: not said", si(wire.diameter)),
             ));
         }
-        if n.exit_radius > 0.0 && integrator != Integrator::Implicit {
+        if n.exit_radius > 0.0 && !integrator.is_implicit() {
             let reason = "the explicit methods do not bend wire over the exit";
             problems.add(self.impossible("nozzle.exit_radius", reason, "0"));
         }

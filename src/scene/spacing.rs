@@ -1,8 +1,8 @@
 //! How near nodes lie to each other near the core.
 
 use super::Core;
+use crate::math::scaled;
 use crate::rod::Section;
-use crate::settings::SolverSettings;
 use std::f64::consts::FRAC_PI_4;
 
 /// Radius of a cylinder, in diameters, from which on edges get longer: there a chord is 0.2 % of the diameter off it.
@@ -33,9 +33,9 @@ pub(super) const COARSEST: f64 = 10.0;
 /// On a wide cylinder of this radius, m, chords of that spacing lie on the core as none of the rest needs it. There they
 /// may be off it by as much as on one of [`WIDE`] diameters, and at most twice as long.
 pub(super) fn spacing_for(tolerance: f64, diameter: f64, cylinder: f64) -> f64 {
-    let with_wire = |usual: f64| SolverSettings::with_wire(usual, diameter);
     let wide = (cylinder / (WIDE * diameter)).sqrt().clamp(1.0, 2.0);
-    with_wire(0.3e-3) * wide * libm::cbrt((tolerance / with_wire(2e-6)).max(1.0))
+    let over = tolerance / scaled(2e-6, diameter);
+    scaled(0.3e-3, diameter) * wide * libm::cbrt(over.max(1.0))
 }
 
 /// Spacing near the core that resolves how its corners bend this wire under this `tension` (N), m; a mesh does not tell.

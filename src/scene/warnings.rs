@@ -4,7 +4,7 @@ use super::error::Warning;
 use super::extent::{Extent, ROUNDING};
 use super::impossible::{si, si_down};
 use super::without_effect::Reader;
-use super::{Core, Integrator, NozzleLaw, Solver, Window};
+use super::{Core, NozzleLaw, Solver, Window};
 use crate::geometry::{Crossing, Place};
 use crate::measure::ALIGNED_RMS;
 use crate::rod::{RoundLaws, Section, Twist};
@@ -313,10 +313,7 @@ impl SceneSettings {
             );
             warn("tensioner.tension", message);
         }
-        if solver.twist == Twist::Off
-            && solver.integrator == Integrator::Implicit
-            && wire.m_y.is_finite()
-        {
+        if solver.twist == Twist::Off && solver.integrator.is_implicit() && wire.m_y.is_finite() {
             let message = "the set of wire that yields turns with its roll; without twist its bends do not come to \
                            rest, and the method adds energy where they are sharp"
                 .to_owned();

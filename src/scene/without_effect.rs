@@ -181,7 +181,7 @@ const KEYS_OF_PARTS: &[KeysOfPart] = &[
     },
     KeysOfPart {
         keys: &["solver.step_share"],
-        lacks: |r| r.integrator == Integrator::Implicit,
+        lacks: |r| r.integrator.is_implicit(),
         why: "the implicit method has no stability limit; set solver.tolerance for shorter steps, or solver.integrator = rk4 or verlet",
     },
     KeysOfPart {
@@ -191,7 +191,7 @@ const KEYS_OF_PARTS: &[KeysOfPart] = &[
     },
     KeysOfPart {
         keys: &["solver.tolerance"],
-        lacks: |r| r.integrator != Integrator::Implicit,
+        lacks: |r| !r.integrator.is_implicit(),
         why: "the explicit methods estimate no error; set solver.step_share",
     },
 ];

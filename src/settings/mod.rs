@@ -9,6 +9,7 @@ pub use sections::{
     Winding,
 };
 
+use crate::math::scaled;
 use crate::measure::DefectLimits;
 use crate::rod::{ENAMEL_DENSITY, Material};
 use crate::signals::Inputs;
@@ -175,21 +176,13 @@ pub struct SolverSettings {
     pub steps_beyond: String,
 }
 
-/// Diameter of the paper's wire, m: what lengths that go with the wire are told for.
-const USUAL: f64 = 0.7e-3;
-
 impl SolverSettings {
-    /// A length, m, that is so long for wire of 0.7 mm, for wire of `diameter`, m.
-    pub(crate) fn with_wire(usual: f64, diameter: f64) -> f64 {
-        usual * (diameter / USUAL)
-    }
-
     /// The error, m, that a step may have with wire of this outer diameter, m.
     pub fn tolerance_for(&self, diameter: f64) -> f64 {
         if self.tolerance > 0.0 {
             self.tolerance
         } else {
-            Self::with_wire(2e-6, diameter)
+            scaled(2e-6, diameter)
         }
     }
 }

@@ -6,7 +6,7 @@
 //! when the node's share of the curvature is spread over its neighbours.
 
 use super::Winding;
-use crate::math::{Spin, V3};
+use crate::math::{Spin, V3, scaled};
 use crate::rod::turning;
 
 /// Longest joined edge over the spacing near the core.
@@ -14,7 +14,7 @@ const LONGEST: f64 = 4.0;
 /// Height of an arc over the joined edge, in wire diameters: contact and frozen wire see a spline that
 /// cuts the polygon's corners by this much.
 const CUT: f64 = 0.005;
-/// The same for wire that touches, in m: a hundredth of the depth over which contact sets in.
+/// The same for wire that touches, in m for wire of 0.7 mm: a hundredth of the depth over which contact sets in.
 const CUT_TOUCHING: f64 = 1e-8;
 /// Wire this share of the keep length behind lift-off may be coarsened ...
 const BEHIND: f64 = 0.6;
@@ -77,7 +77,7 @@ impl Winding {
                 let off = off.sqrt().max((here - spread).norm());
                 // a surface that the wire lies on would push the chord out again, and tighten it
                 let cut = if (i - 1..=i + 1).any(|k| self.sys.touches(k)) {
-                    CUT_TOUCHING
+                    scaled(CUT_TOUCHING, wire.diameter)
                 } else {
                     CUT * wire.diameter
                 };

@@ -9,11 +9,11 @@
 use super::ahead::Ahead;
 use super::course::{Course, Given, Likeness};
 use super::door::check_finite;
+use super::master_inputs::{MasterInputs, as_meant};
 use super::motion_profile::ROUNDING;
 use super::outputs::keep_told;
 use super::rates::rates_of;
-use super::talk::{LONGEST_WAIT, Served};
-use super::told::{Told, as_meant};
+use super::talk::{CommunicationPoint, LONGEST_WAIT};
 use super::{SimError, Simulation, WORTH_A_STEP, Winding};
 use crate::signals::{Inputs, Outputs};
 use std::sync::Arc;
@@ -66,12 +66,12 @@ impl Simulation {
         if dt.is_finite() {
             check_finite(&inputs.after(&rates, dt), self.time())?;
         }
-        let told = Told::new(inputs, &rates, dt);
-        let before = self.talk.told.replace(told);
+        let given = MasterInputs::new(inputs, &rates, dt);
+        let before = self.talk.given.replace(given);
         let meant = as_meant(self.scene(), inputs, rates, dt, before.as_ref());
         let gone = self.advance_as_meant(meant, dt);
         if gone.is_err() {
-            self.talk.told = before;
+            self.talk.given = before;
         }
         gone
     }
@@ -96,7 +96,7 @@ impl Simulation {
         let goes_on = self.goes_on_as(&given, self.talk.newest(), ALIKE);
         if dt < WORTH_A_STEP && !goes_on {
             // what moves in a step that is too short to solve for moves in the next one
-            self.settle()?;
+            self.catch_up()?;
             (self.talk.course, self.talk.travel) = (None, None);
             return self.step_to_the_point(|winding| winding.advance_ramped(inputs, rates, dt));
         }
@@ -136,8 +136,8 @@ impl Simulation {
     pub fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
         let of_scene = self.talk.course.is_some_and(|course| course.is_of_scene());
         if !of_scene || !self.finds_its_own_steps() {
-            self.settle()?;
-            (self.talk.course, self.talk.travel, self.talk.told) = (None, None, None);
+            self.catch_up()?;
+            (self.talk.course, self.talk.travel, self.talk.given) = (None, None, None);
         }
         if !self.finds_its_own_steps() || dt.is_nan() || dt <= 0.0 {
             return self.step_to_the_point(|winding| winding.advance_profile(dt));
@@ -154,7 +154,7 @@ impl Simulation {
     /// # Errors
     ///
     /// If the method gives up on the way.
-    pub fn settle(&mut self) -> Result<(), SimError> {
+    pub fn catch_up(&mut self) -> Result<(), SimError> {
         if let Some(dropped) = self.ahead.take() {
             self.pool.give(dropped.winding);
         }
@@ -184,16 +184,16 @@ impl Simulation {
         Ok(())
     }
 
-    /// A copy whose winding stands at the communication point ([`Self::settle`]). No flag stops it on the way.
+    /// A copy whose winding stands at the communication point ([`Self::catch_up`]). No flag stops it on the way.
     ///
     /// # Errors
     ///
     /// If the method gives up on the way.
-    pub fn settled(&self) -> Result<Self, SimError> {
+    pub fn caught_up(&self) -> Result<Self, SimError> {
         let mut copy = self.clone();
         if copy.time() > copy.now.run.time {
             Arc::make_mut(&mut copy.now).stop = None;
-            copy.settle()?;
+            copy.catch_up()?;
         }
         Ok(copy)
     }
@@ -204,7 +204,7 @@ impl Simulation {
         step: impl FnOnce(&mut Winding) -> Result<(), SimError>,
     ) -> Result<(), SimError> {
         let told = self.told_tension();
-        self.settle()?;
+        self.catch_up()?;
         let winding = self.pool.own(&mut self.now);
         winding.run.events.clear();
         let gone = step(winding);
@@ -277,7 +277,7 @@ impl Simulation {
             self.talk.turned = Some(course);
             return Ok(());
         }
-        self.settle()?;
+        self.catch_up()?;
         self.talk.course = Some(course);
         Ok(())
     }
@@ -306,7 +306,7 @@ impl Simulation {
                 course = course.as_long_as(went_on);
             }
         }
-        self.settle()?;
+        self.catch_up()?;
         self.talk.course = Some(course);
         Ok(())
     }
@@ -331,7 +331,10 @@ impl Simulation {
         told: &Outputs,
         dt: f64,
     ) -> Result<(), SimError> {
-        let mut served = self.talk.served.unwrap_or_else(|| Served::at(&self.now));
+        let mut served = self
+            .talk
+            .served
+            .unwrap_or_else(|| CommunicationPoint::at(&self.now));
         served.begin(dt, &self.now);
         if !self.now.run.over {
             served.outputs.meet_tension(told.wire_tension);
@@ -361,7 +364,7 @@ impl Simulation {
             }
             if self.now.run.over {
                 self.talk.served = Some(served);
-                self.settle()?;
+                self.catch_up()?;
                 let winding = self.pool.own(&mut self.now);
                 let speed = winding.inputs().spindle_speed;
                 winding.run.acceleration = (speed - speed_before) / dt;
@@ -429,7 +432,7 @@ impl Winding {
         let drive = course.drive(self.run.time, duration);
         match course.is_by_law() {
             true => self.follow_by_law(&drive),
-            false => self.follow(&drive),
+            false => self.go_through(&drive),
         }
     }
 
@@ -437,7 +440,7 @@ impl Winding {
     fn go_along_scene(&mut self, duration: f64) -> Result<(), SimError> {
         let (profile, start) = (self.motion_profile.clone(), self.run.time);
         let mut drives = profile.drives(start, start + duration, self.sys.state.set_tension);
-        drives.try_for_each(|drive| self.follow(&drive))
+        drives.try_for_each(|drive| self.go_through(&drive))
     }
 
     /// The scene's own motion from the winding's time to its next kink or its end, where the inputs are those of `now`.
@@ -449,13 +452,13 @@ impl Winding {
     }
 
     /// Takes a communication point for the present instant.
-    fn stand_at(&mut self, point: &Served) {
+    fn stand_at(&mut self, point: &CommunicationPoint) {
         (self.run.time, self.run.time_lost) = (point.time, point.time_lost);
         self.sys.state.spindle.speed = point.inputs.spindle_speed;
         self.sys.state.set_tension = point.inputs.tension_setpoint;
         self.sys.state.support[1].point.y = point.inputs.nozzle_position;
         self.put_aside(&point.inputs);
-        self.finish();
+        self.update_at_point();
         let mut told = *point;
         told.outputs.meet_tension(self.run.outputs.wire_tension);
         keep_told(&mut self.run.outputs, &told.outputs);

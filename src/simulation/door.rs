@@ -9,7 +9,7 @@ use crate::system::{Drive, NozzleDrive};
 
 /// Where the motion of the machine over a communication step comes from.
 #[derive(Clone, Copy, Debug)]
-enum Source {
+enum StepMotion {
     /// inputs at the start of the step and their rates, per s
     Inputs { inputs: Inputs, rates: Inputs },
     /// the scene's own motion profile at this time of the run
@@ -24,27 +24,27 @@ impl Winding {
         rates: Inputs,
         dt: f64,
     ) -> Result<(), SimError> {
-        self.advance_by(Source::Inputs { inputs, rates }, dt)
+        self.advance_by(StepMotion::Inputs { inputs, rates }, dt)
     }
 
     /// See [`super::Simulation::advance_profile`].
     pub(super) fn advance_profile(&mut self, dt: f64) -> Result<(), SimError> {
-        self.advance_by(Source::Profile, dt)
+        self.advance_by(StepMotion::Profile, dt)
     }
 
-    /// Advances by `dt`, s, with the motion that `source` gives the machine: the one way through a step.
+    /// Advances by `dt`, s, with this motion of the machine: the one way through a step.
     ///
     /// Where its inputs send the nozzle into the core, winding ends when it gets there.
-    fn advance_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
+    fn advance_by(&mut self, motion: StepMotion, dt: f64) -> Result<(), SimError> {
         self.check_step(dt)?;
-        let Source::Inputs { inputs, rates } = source else {
-            return self.go_by(source, dt);
+        let StepMotion::Inputs { inputs, rates } = motion else {
+            return self.go_by(motion, dt);
         };
         let end = inputs.after(&rates, dt);
         check_finite(&inputs, self.run.time)?;
         check_finite(&end, self.run.time)?;
         let Some(share) = self.meets_circle(&end) else {
-            return self.go_by(source, dt);
+            return self.go_by(motion, dt);
         };
         // the nozzle goes evenly from where it is to where it is sent
         let (now, [before, after]) = (self.inputs(), [share * dt, (1.0 - share) * dt]);
@@ -67,11 +67,11 @@ impl Winding {
             ),
             ..inputs
         };
-        let source = |inputs: Inputs| Source::Inputs { inputs, rates };
-        self.go_by(source(until), before)?;
+        let motion = |inputs: Inputs| StepMotion::Inputs { inputs, rates };
+        self.go_by(motion(until), before)?;
         self.note_circle_met(&end);
         let told = self.run.outputs;
-        self.go_by(source(inputs.after(&rates, before)), after)?;
+        self.go_by(motion(inputs.after(&rates, before)), after)?;
         let o = &mut self.run.outputs;
         o.wire_tension_max = o.wire_tension_max.max(told.wire_tension_max);
         o.wire_tension_min = o.wire_tension_min.min(told.wire_tension_min);
@@ -80,8 +80,10 @@ impl Winding {
         Ok(())
     }
 
-    /// See [`Self::advance_by`].
-    fn go_by(&mut self, source: Source, dt: f64) -> Result<(), SimError> {
+    /// Goes through a communication step of `dt`, s, and the time owed before it; updates outputs and rates.
+    ///
+    /// After an error the run stands at the last good instant.
+    fn go_by(&mut self, motion: StepMotion, dt: f64) -> Result<(), SimError> {
         let span = self.run.owed + dt;
         if span < WORTH_A_STEP {
             self.run.owed = span;
@@ -91,27 +93,27 @@ impl Winding {
         let owed = std::mem::take(&mut self.run.owed);
         let before = self.run.outputs;
         let speed_before = self.sys.state.spindle.speed;
-        if self.is_moved_by(&source, dt) {
+        if self.is_moved_by(&motion, dt) {
             self.run.quiet = 0.0;
         }
         self.reset_extremes();
-        let gone = match &source {
-            Source::Inputs { inputs, rates } => {
+        let gone = match &motion {
+            StepMotion::Inputs { inputs, rates } => {
                 // (its mean over the step)
                 self.sys
                     .damp_tensioner(inputs.after(rates, 0.5 * dt).tensioner_damping);
                 let drive = self.drive_of(*inputs, rates, [dt, span], owed);
                 match self.run.nozzle_by_law {
                     true => self.follow_by_law(&drive),
-                    false => self.follow(&drive),
+                    false => self.go_through(&drive),
                 }
             }
-            Source::Profile => {
+            StepMotion::Profile => {
                 let start = self.run.time - owed;
                 let end = self.run.time + (dt - self.run.time_lost);
                 let (profile, tension) = (self.motion_profile.clone(), self.sys.state.set_tension);
                 let mut drives = profile.drives(start, end, tension);
-                drives.try_for_each(|drive| self.follow(&drive))
+                drives.try_for_each(|drive| self.go_through(&drive))
             }
         };
         if gone.is_err() {
@@ -119,7 +121,7 @@ impl Winding {
             return gone;
         }
         self.sys.end_drive();
-        if let Source::Inputs { inputs, rates } = &source {
+        if let StepMotion::Inputs { inputs, rates } = &motion {
             let end = inputs.after(rates, dt);
             self.sys.state.spindle.speed = end.spindle_speed;
             self.sys.state.set_tension = end.tension_setpoint;
@@ -128,14 +130,14 @@ impl Winding {
         }
         self.run.acceleration = (self.sys.state.spindle.speed - speed_before) / span;
         self.pass_time(dt);
-        self.finish();
+        self.update_at_point();
         let both = [&before, &self.run.outputs];
         self.run.rates = rates_of(self, both, span, self.sys.state.spindle.speed);
         Ok(())
     }
 
     /// Goes through the interval of one drive.
-    pub(super) fn follow(&mut self, drive: &Drive) -> Result<(), SimError> {
+    pub(super) fn go_through(&mut self, drive: &Drive) -> Result<(), SimError> {
         self.begin_drive(drive);
         self.through(drive)
     }
@@ -161,17 +163,17 @@ impl Winding {
         }
     }
 
-    /// Whether a step of `dt`, s, from this source moves anything or changes an input.
-    fn is_moved_by(&self, source: &Source, dt: f64) -> bool {
-        match source {
-            Source::Inputs { inputs, rates } => {
+    /// Whether a step of `dt`, s, of this motion moves anything or changes an input.
+    fn is_moved_by(&self, motion: &StepMotion, dt: f64) -> bool {
+        match motion {
+            StepMotion::Inputs { inputs, rates } => {
                 let end = inputs.after(rates, dt);
                 *rates != Inputs::HELD
                     || inputs.spindle_speed != 0.0
                     || self.nozzle_at_end(&end) != self.sys.state.support[1].point
                     || inputs.tension_setpoint != self.sys.state.set_tension
             }
-            Source::Profile => true,
+            StepMotion::Profile => true,
         }
     }
 
@@ -206,13 +208,14 @@ impl Winding {
         self.run.rates = Outputs::default();
         if reached {
             (self.run.time, self.run.time_lost) = (self.sys.state.time, 0.0);
-            self.finish();
+            self.update_at_point();
             self.run.rates = speeds_of(&self.run.outputs, self.sys.state.spindle.speed);
             self.run.rates.nozzle_y = nozzle.velocity.y;
         }
     }
 
-    pub(super) fn finish(&mut self) {
+    /// Brings the state to the time of the run, and the outputs with it.
+    pub(super) fn update_at_point(&mut self) {
         self.sys.state.time = self.run.time;
         self.update_outputs();
     }

@@ -17,10 +17,12 @@ mod drawn_loop;
 mod faults;
 mod freezing;
 mod frozen_tension;
+mod health;
 mod io;
 mod judgement;
 mod layon;
 mod machine;
+mod master_inputs;
 mod motion_profile;
 mod nozzle_by_law;
 mod nozzle_place;
@@ -47,7 +49,6 @@ mod talk;
 mod tapered;
 mod telling;
 mod thinned;
-mod told;
 #[cfg(feature = "lab")]
 mod trail;
 #[cfg(feature = "lab")]
@@ -83,7 +84,7 @@ const QUIET: f64 = 1e-6;
 
 /// Time to which communication steps add up before the solver takes a step, s.
 ///
-/// It is the solver's own shortest step. In less time, wire at 5000 rpm moves by 20 nm at most, and
+/// About the solver's shortest step for wire of 0.7 mm. In less time, wire at 5000 rpm moves by 20 nm at most, and
 /// rounding errors dominate the solution.
 const WORTH_A_STEP: f64 = 1e-9;
 

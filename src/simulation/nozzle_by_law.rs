@@ -38,7 +38,7 @@ impl Winding {
     pub(super) fn follow_by_law(&mut self, whole: &Drive) -> Result<(), SimError> {
         let angle = self.sys.state.spindle.angle - self.run.angle0;
         let law = self.scene.nozzle_law.clone();
-        parts(*whole, &law, angle).try_for_each(|part| self.follow(&part))
+        parts(*whole, &law, angle).try_for_each(|part| self.go_through(&part))
     }
 
     /// The course from the winding's time to the next corner of the nozzle's law.

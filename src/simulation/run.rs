@@ -2,9 +2,9 @@
 
 use super::ahead::Ahead;
 use super::door::check_finite;
+use super::master_inputs::{MasterInputs, with_brake};
 use super::pool::Pool;
 use super::talk::Talk;
-use super::told::{Told, with_brake};
 use super::{SimError, Winding};
 use crate::scene::Scene;
 use crate::signals::{Event, Inputs, Outputs};
@@ -81,7 +81,7 @@ impl Simulation {
 
     fn started(winding: Winding, inputs: Inputs) -> Self {
         let mut run = Self::from(winding);
-        run.talk.told = Some(Told::new(inputs, &Inputs::HELD, 0.0));
+        run.talk.given = Some(MasterInputs::new(inputs, &Inputs::HELD, 0.0));
         run
     }
 
@@ -103,7 +103,7 @@ impl Simulation {
     }
 
     /// Lets steps of the implicit method reach beyond the communication point, as long as inputs go on as they did. Then a fine
-    /// communication step costs little, and the coil may be a step of the method behind; see [`Self::settle`].
+    /// communication step costs little, and the coil may be a step of the method behind; see [`Self::catch_up`].
     pub fn step_beyond(&mut self, on: bool) {
         self.steps_beyond = on;
     }
@@ -140,8 +140,8 @@ impl Simulation {
     pub fn inputs(&self) -> Inputs {
         let served = self.talk.served.as_ref();
         let inputs = served.map_or_else(|| self.now.inputs(), |served| served.inputs);
-        match &self.talk.told {
-            Some(told) => told.pull_of(inputs),
+        match &self.talk.given {
+            Some(given) => given.pull_of(inputs),
             None => inputs,
         }
     }
@@ -184,7 +184,7 @@ impl Simulation {
     ///
     /// If the method gives up on the way to the communication point, from which on they hold.
     pub fn retune(&mut self, scene: &Scene) -> Result<(), SimError> {
-        self.settle()?;
+        self.catch_up()?;
         let winding = Arc::make_mut(&mut self.now);
         winding.run.events.clear();
         winding.retune(scene);

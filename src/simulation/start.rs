@@ -210,7 +210,7 @@ fn touch(sys: &mut System, scene: &Scene, surface: &Arc<Surface>) {
         mu_kinetic: scene.friction.kinetic,
         slip_speed: scene.friction.slip_speed,
     };
-    if scene.solver.integrator == Integrator::Implicit {
+    if scene.solver.integrator.is_implicit() {
         let shape = core_shape(&scene.core, surface);
         sys.touch_along(LineModel {
             flanges: core_flanges(&scene.core),

@@ -4,9 +4,9 @@ use super::Winding;
 use super::ahead::between;
 use super::course::Course;
 use super::door::check_finite;
+use super::master_inputs::MasterInputs;
 use super::motion_profile::ROUNDING;
 use super::outputs::{keep_told, raise_as};
-use super::told::Told;
 use crate::signals::{Event, Inputs, Outputs};
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,7 @@ const AGAIN: u32 = 3;
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Talk {
     /// inputs of the last communication step as a master gave them; none where it did not
-    pub(super) told: Option<Told>,
+    pub(super) given: Option<MasterInputs>,
     /// what the inputs are taken to go on as
     pub(super) course: Option<Course>,
     /// the same from the next step of the method on, where it differs by too little to drop the one under way
@@ -40,14 +40,14 @@ pub(super) struct Talk {
     /// how many there were to wait for after the last step ahead that was dropped
     pub(super) waited: u32,
     /// what the master reads, where the winding is not at the communication point
-    pub(super) served: Option<Served>,
+    pub(super) served: Option<CommunicationPoint>,
     /// what happened since events were last taken
     pub(super) events: Vec<Event>,
 }
 
-/// A communication point.
+/// A communication point that has been answered.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Served {
+pub(super) struct CommunicationPoint {
     /// s
     pub(super) time: f64,
     /// what adding up steps has lost of `time`, s
@@ -118,18 +118,18 @@ impl Talk {
         };
         let course = self.course.as_ref().map_or(!ahead, Course::is_sound);
         let turned = self.turned.as_ref().is_none_or(|c| ahead && c.is_sound());
-        let told = self.told.as_ref().is_none_or(Told::is_sound);
+        let given = self.given.as_ref().is_none_or(MasterInputs::is_sound);
         served
             && course
             && turned
-            && told
+            && given
             && self.wait <= LONGEST_WAIT
             && self.waited <= LONGEST_WAIT
             && self.doubt <= LONGEST_WAIT
     }
 }
 
-impl Served {
+impl CommunicationPoint {
     /// The communication point at which the winding stands.
     pub(super) fn at(winding: &Winding) -> Self {
         Self {

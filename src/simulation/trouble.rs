@@ -1,18 +1,15 @@
 //! Steps of the method that were out of the ordinary.
 
 use super::Winding;
-use crate::integrate::SolverStatistics;
+use crate::integrate::{PATIENCE, SolverStatistics};
 use crate::signals::EventKind;
-
-/// Searches in vain for one step from which on it is told. One or two are ordinary where wire lands: giving a long step up is cheaper
-/// than searching on. After three, the method searches as far as it can.
-const HARD: u64 = 3;
 
 impl Winding {
     /// Tells of the step just taken, of `taken` s, if it was hard to find or is off by more than it may be; `before` are the counts
     /// from before it.
     ///
-    /// Steps that were shortened for their error, or after a search or two, are ordinary and are only counted.
+    /// Steps that were shortened for their error, or after fewer searches than the method has [`PATIENCE`] for, are ordinary and are only
+    /// counted.
     pub(super) fn tell_of_trouble(&mut self, before: SolverStatistics, taken: f64) {
         let now = self.statistics();
         let in_vain = now.newton_failures - before.newton_failures;
@@ -21,7 +18,7 @@ impl Winding {
                 "the solver took a step of {taken:.2e} s, its shortest, with an error above solver.tolerance, after {in_vain} searches in vain; what follows may be off by more than that tolerance"
             );
             self.report(EventKind::Solver, text);
-        } else if in_vain >= HARD {
+        } else if in_vain >= PATIENCE {
             let text = format!(
                 "the solver found a step after {in_vain} searches in vain, one of {taken:.2e} s; it meets solver.tolerance, so nothing needs to be done"
             );

@@ -166,9 +166,9 @@ impl Winding {
             #[cfg(feature = "lab")]
             trail,
         } = other;
-        self.sys.follow(sys);
+        self.sys.take_over_from(sys);
         self.coil.clone_from(coil);
-        self.stepper.follow(stepper);
+        self.stepper.take_over_from(stepper);
         self.run.clone_from(run);
         self.behind.clone_from(behind);
         self.most_work = *most_work;

@@ -37,7 +37,7 @@ pub(crate) use slip::FrozenSlip;
 pub use state::State;
 pub use support::{Spindle, Support};
 
-use crate::feed::{Feed, FeedSpec};
+use crate::feed::{EdgeStep, Feed, FeedSpec};
 use crate::math::turn_about_y;
 use crate::math::{Quat, Spin, V3, spin_velocity};
 use crate::rod::{ExitBend, Laws, Rod, Section, Twist};
@@ -73,7 +73,7 @@ impl System {
     }
 
     /// Takes over the state of another system of the same model, and keeps its own work space.
-    pub(crate) fn follow(&mut self, other: &Self) {
+    pub(crate) fn take_over_from(&mut self, other: &Self) {
         self.state.copy_from(&other.state);
         self.scratch.contact.serve(&other.scratch.contact);
     }
@@ -204,17 +204,16 @@ impl System {
         // the line comes from beyond the nozzle, radially
         let out = V3::new(self.state.rod.x[n].x, 0.0, self.state.rod.x[n].z).normalize();
         let deflection = libm::acos((d.dot(&out) / length).clamp(-1.0, 1.0));
-        let grown = feed.step(
-            spec,
-            &law,
-            self.state.set_tension,
+        let step = EdgeStep {
             dt,
+            set: self.state.set_tension,
             rest,
             length,
-            [plastic, coming],
+            plastic: [plastic, coming],
             deflection,
-            &yields,
-        );
+            yields: &yields,
+        };
+        let grown = feed.step(spec, &law, &step);
         let passing = self.pass_nozzle(grown);
         let (after, plastic) = (self.state.rod.rest[e], self.state.rod.stretch[e].strain);
         // the edge stretches and grows in the same step: its tension runs from the old to the new value

@@ -44,7 +44,7 @@ impl Instance {
             return;
         };
         // The files are those of the communication point. Where no step leads there, of the last one before it.
-        let _ = run.simulation.settle();
+        let _ = run.simulation.catch_up();
         if let Err(reason) = recording.finish(&run.simulation, ending) {
             self.messages.push(Message::not_written(reason));
         }

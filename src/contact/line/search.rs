@@ -5,6 +5,7 @@ use super::model::LineModel;
 use super::point::{CORE, FLANGE, PASSAGES, PointState, WIRE};
 use super::scratch::LineScratch;
 use super::touch::TouchState;
+use crate::contact::own_wire::SAME_PASSAGE;
 use crate::contact::stencil::ContactPoint;
 use crate::geometry::SplineTube;
 use crate::math::V3;
@@ -16,9 +17,6 @@ const SKIN: f64 = 0.15;
 /// Way, in wire diameters, that a point with nothing near it has to spare before its surroundings are looked up again. Chosen: well
 /// below [`SKIN`], and more than an update of Newton's method mostly moves a node.
 const ROOM: f64 = 0.03;
-
-/// Passages whose segments are nearer along the wire than this are one passage at successive searches.
-const SAME_PASSAGE: u32 = 6;
 
 /// How far the normal of a touch may turn in a step, rad.
 #[derive(Clone, Copy)]

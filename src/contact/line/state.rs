@@ -157,8 +157,7 @@ impl LineState {
 
     /// Depth of the deepest touch of node `i` and the middles of its edges, m; 0: none.
     pub fn depth(&self, i: usize) -> f64 {
-        let from = (2 * i).saturating_sub(1);
-        self.points[from..=2 * i + 1]
+        self.points[ContactPoint::around(i)]
             .iter()
             .flat_map(|p| p.touch.iter())
             .map(|t| t.depth)
@@ -167,16 +166,15 @@ impl LineState {
 
     /// Whether node `i` or the middle of an edge at it touches core or frozen wire.
     pub fn touches(&self, i: usize) -> bool {
-        let from = (2 * i).saturating_sub(1);
         // (most have nothing near them, and searches for the last one that touches go through all of these)
-        self.points[from..=2 * i + 1]
+        self.points[ContactPoint::around(i)]
             .iter()
             .any(|p| Self::is_touched(p))
     }
 
     /// Whether node `i` itself does, and not only the middle of an edge at it.
     pub fn touches_itself(&self, i: usize) -> bool {
-        Self::is_touched(&self.points[2 * i])
+        Self::is_touched(&self.points[ContactPoint::Node(i).number()])
     }
 
     fn is_touched(point: &PointState) -> bool {
@@ -186,8 +184,7 @@ impl LineState {
     /// The same without flanges: those of the `model`, or walls of its mesh that face along y.
     pub fn touches_wound(&self, model: &LineModel, i: usize) -> bool {
         let by_key = model.shape.with_walls().is_none();
-        let from = (2 * i).saturating_sub(1);
-        self.points[from..=2 * i + 1]
+        self.points[ContactPoint::around(i)]
             .iter()
             .filter(|p| p.has_surroundings())
             .any(|p| {

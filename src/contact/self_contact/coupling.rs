@@ -17,29 +17,11 @@ pub struct Coupling {
 /// Adds the product of the couplings with `x` to `y`; both have `D` unknowns a node, first its coordinates.
 pub fn add_couplings<const D: usize>(couplings: &[Coupling], x: &[f64], y: &mut [f64]) {
     for c in couplings {
-        one_way::<D>(&c.block, &c.old, &c.young, x, y);
-        one_way::<D>(&c.block, &c.young, &c.old, x, y);
-    }
-}
-
-fn one_way<const D: usize>(
-    block: &Block,
-    from: &NodeWeights,
-    to: &NodeWeights,
-    x: &[f64],
-    y: &mut [f64],
-) {
-    let mut s = V3::zeros();
-    for (n, w) in from.iter() {
-        for a in 0..3 {
-            s[a] += w * x[D * n + a];
-        }
-    }
-    // the block is symmetric
-    let t = block_times(block, &s);
-    for (n, w) in to.iter() {
-        for a in 0..3 {
-            y[D * n + a] += w * t[a];
+        // (the block is symmetric)
+        for (from, to) in [(&c.old, &c.young), (&c.young, &c.old)] {
+            let mut way = V3::zeros();
+            from.add_way::<D>(x, &mut way);
+            to.add_to::<D>(&block_times(&c.block, &way), y);
         }
     }
 }

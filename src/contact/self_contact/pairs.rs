@@ -30,6 +30,14 @@ pub(super) struct Pair {
     pub(super) rebound: f64,
 }
 
+impl Pair {
+    /// The node of its point, or the one before it.
+    #[inline]
+    pub(super) fn node_before(&self) -> usize {
+        ContactPoint::node_before(self.point as usize)
+    }
+}
+
 /// Contact of live wire with live wire: the pairs with their friction state.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SelfContact {
@@ -71,12 +79,13 @@ impl SelfContact {
     /// Drops the pairs of both edges at node `i`, which was taken out, and renumbers the others; its own point becomes
     /// the middle of the joined edge.
     pub fn merge(&mut self, i: usize) {
-        let i = i as u32;
-        self.pairs
-            .retain(|p| p.point != 2 * i - 1 && p.point != 2 * i + 1);
+        let number = |point: ContactPoint| point.number() as u32;
+        let here = number(ContactPoint::Node(i));
+        let gone = [ContactPoint::Edge(i - 1), ContactPoint::Edge(i)].map(number);
+        self.pairs.retain(|p| !gone.contains(&p.point));
         for p in &mut self.pairs {
-            p.point -= u32::from(p.point >= 2 * i) + u32::from(p.point > 2 * i);
-            p.segment -= u32::from(p.segment >= i);
+            p.point -= u32::from(p.point >= here) + u32::from(p.point > here);
+            p.segment -= u32::from(p.segment as usize >= i);
         }
     }
 
@@ -97,7 +106,7 @@ impl SelfContact {
     pub(in crate::contact) fn fits(&self, nodes: usize) -> bool {
         let points = 1..2 * (nodes as u32 - 1);
         let mut pairs = self.pairs.iter();
-        pairs.all(|p| points.contains(&p.point) && p.segment < p.point / 2)
+        pairs.all(|p| points.contains(&p.point) && (p.segment as usize) < p.node_before())
     }
 
     /// Number of pairs listed.
@@ -119,7 +128,7 @@ impl SelfContact {
         loop {
             let carried = |pair: &&Pair| pair.depth > 0.0 && pair.segment as usize <= last;
             let points = self.pairs.iter().filter(carried);
-            let next = points.map(|pair| pair.point as usize / 2).max();
+            let next = points.map(Pair::node_before).max();
             match next.filter(|next| *next > last) {
                 Some(next) => last = next,
                 None => return last,

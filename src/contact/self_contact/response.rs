@@ -86,7 +86,7 @@ impl SelfContact {
             pair.segment = foot.segment;
             (pair.share, pair.normal) = (foot.share, foot.normal);
             // (a loop that opens leaves no passage to touch: downhill from there lies the point's own wire)
-            pair.depth = if foot.segment + 1 >= pair.point / 2 {
+            pair.depth = if foot.segment as usize + 1 >= pair.node_before() {
                 -around.diameter
             } else {
                 foot.depth(around.diameter)

@@ -3,7 +3,7 @@
 use super::pairs::{Pair, SelfContact};
 use super::scratch::{PairScratch, Reached, Unpaired};
 use crate::contact::friction::FrictionLimit;
-use crate::contact::own_wire::own_wire;
+use crate::contact::own_wire::{SAME_PASSAGE, own_wire};
 use crate::contact::stencil::ContactPoint;
 use crate::math::{V3, polar_angle, wrap_to_pi};
 use std::f64::consts::TAU;
@@ -15,8 +15,6 @@ const SKIN: f64 = 0.25;
 const FOLLOW: f64 = 1.5;
 /// How far from whole turns back along the wire a partner may lie, rad, beside half of what its segment takes up.
 const WINDOW: f64 = 0.6;
-/// Pairs of one point whose segments are nearer along the wire than this are one pair at successive steps.
-const SAME_PASSAGE: u32 = 6;
 
 impl SelfContact {
     /// Lists the pairs for a step from `q` that is expected to lead to `guess`, places of the nodes in the core frame, m.
@@ -63,7 +61,7 @@ impl SelfContact {
         }
         for contact_point in ContactPoint::all(q.len() - 1) {
             let point = contact_point.number() as u32;
-            let i = point as usize / 2;
+            let i = ContactPoint::node_before(contact_point.number());
             let at = match contact_point {
                 ContactPoint::Node(i) => angle[i],
                 ContactPoint::Edge(i) => 0.5 * (angle[i] + angle[i + 1]),
@@ -247,7 +245,7 @@ impl PairScratch {
                 let other = shaping(near.other as usize, q.len());
                 way + farthest_way(other, |node| (now[node] - q[node]).norm()) > near.room
             })
-            .map(|near| near.point as usize / 2)
+            .map(|near| ContactPoint::node_before(near.point as usize))
     }
 }
 

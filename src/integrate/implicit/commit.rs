@@ -14,6 +14,17 @@ use crate::feed::Feed;
 use crate::math::{Spin, V3};
 use crate::system::{Spindle, Support, System};
 
+/// What the energy balance of a step takes from its start.
+struct Before {
+    spindle: Spindle,
+    /// N m
+    torque_on_core: f64,
+    /// the part of it there because forces and motion are a little out of balance, N m
+    unbalanced: f64,
+    /// tension of the edge at the nozzle, N
+    nozzle_tension: Option<f64>,
+}
+
 impl Implicit {
     pub(super) fn commit<const D: usize, U: Unknowns<D>>(
         &mut self,
@@ -28,21 +39,20 @@ impl Implicit {
         w.force.clone_from(&sys.state.load.force);
         let spin = Spin::new(spindle.angle);
         let nodes = sys.state.rod.nodes();
-        let (x0, v0) = (&mut w.start, &mut w.guess);
-        x0.clone_from(&sys.state.rod.x);
-        v0.clone_from(&sys.state.rod.v);
+        w.before[0].clone_from(&sys.state.rod.x);
+        w.before[1].clone_from(&sys.state.rod.v);
         let numerical = sys.state.balance.numerical;
         let kinetic = sys.kinetic();
         let momentum = sys.momentum_about_core();
-        let before = (
-            sys.state.spindle,
-            sys.state.torque_on_core,
-            sys.state.unbalanced,
-            sys.state.load.tension.last().copied(),
-        );
+        let before = Before {
+            spindle: sys.state.spindle,
+            torque_on_core: sys.state.torque_on_core,
+            unbalanced: sys.state.unbalanced,
+            nozzle_tension: sys.state.load.tension.last().copied(),
+        };
         let turning = sys.state.turning;
         w.unknowns.hand_over(sys, self.scheme, step);
-        let fed = self::feed(sys, step, nozzle, &w.q);
+        let fed = feed_after(sys, step, nozzle, &w.q);
         let grown = fed.map_or(0.0, |(_, grown)| grown);
         for i in 0..nodes {
             let x = spin.to_lab(w.q[i]);
@@ -52,8 +62,9 @@ impl Implicit {
                     sys.state.rod.v[i] = (x - w.star[0][i]) / step.gamma;
                 }
                 Scheme::Midpoint => {
-                    sys.state.rod.x[i] = x * 2.0 - w.start[i];
-                    sys.state.rod.v[i] = (x - w.start[i]) * (4.0 / h) - w.guess[i];
+                    let [x0, v0] = &w.before;
+                    sys.state.rod.x[i] = x * 2.0 - x0[i];
+                    sys.state.rod.v[i] = (x - x0[i]) * (4.0 / h) - v0[i];
                 }
             }
         }
@@ -97,15 +108,16 @@ impl Implicit {
         }
         sys.evaluate_smooth(h, true);
         // energy balance: work of forces at both ends of the step
-        let turned = sys.state.spindle.angle - before.0.angle;
-        sys.state.balance.spindle -= 0.5 * (sys.state.torque_on_core + before.1) * turned;
+        let turned = sys.state.spindle.angle - before.spindle.angle;
+        sys.state.balance.spindle -=
+            0.5 * (sys.state.torque_on_core + before.torque_on_core) * turned;
         if feeds {
             let last = sys.state.rod.edges() - 1;
             // a moment at the node before, spread over more or less wire: the grid's doing
             sys.state.balance.remeshing += 0.5 * sys.bent_at_nozzle() * grown;
             sys.tighten_line_wire();
             let now = sys.state.load.tension[last];
-            let tension = 0.5 * (now + before.3.unwrap_or(now));
+            let tension = 0.5 * (now + before.nozzle_tension.unwrap_or(now));
             let law = sys.model.laws.stretch;
             sys.state.balance.nozzle -=
                 (tension * (1.0 + passing) + 0.5 * tension * tension / law.modulus) * grown;
@@ -130,7 +142,8 @@ impl Implicit {
         let mut work = 0.0;
         for i in sys.free_nodes() {
             work += 0.5
-                * (sys.state.load.force[i] + w.force[i]).dot(&(sys.state.rod.x[i] - w.start[i]));
+                * (sys.state.load.force[i] + w.force[i])
+                    .dot(&(sys.state.rod.x[i] - w.before[0][i]));
         }
         work += w.unknowns.work(sys);
         let gained = if feeds {
@@ -138,13 +151,14 @@ impl Implicit {
         } else {
             0.0
         };
-        let held = 0.5 * (sys.state.unbalanced + before.2) * turned;
+        let held = 0.5 * (sys.state.unbalanced + before.unbalanced) * turned;
         // (what yields within the step is known better than by the forces at its ends)
         work -= sys.state.load.beyond;
         sys.state.balance.numerical += work - held - (carried.kinetic - kinetic - gained);
         let past = &mut sys.state.past;
-        std::mem::swap(&mut past.x, &mut w.start);
-        std::mem::swap(&mut past.v, &mut w.guess);
+        let [x0, v0] = &mut w.before;
+        std::mem::swap(&mut past.x, x0);
+        std::mem::swap(&mut past.v, v0);
         past.q.rotate_right(1);
         past.q[0].clear();
         let spin = Spin::new(sys.state.spindle.angle);
@@ -159,13 +173,14 @@ impl Implicit {
                 carried,
                 numerical,
             };
-            w.impacts.stop(sys, step, solved, before.0, self.tolerance);
+            w.impacts
+                .stop(sys, step, solved, before.spindle, self.tolerance);
         }
     }
 }
 
 /// The feed after the step and how much wire came in.
-pub(super) fn feed(
+pub(super) fn feed_after(
     sys: &System,
     step: &StepFormula,
     nozzle: Option<NozzleEdge>,

@@ -19,13 +19,13 @@ pub struct StepError {
 }
 
 impl StepError {
-    /// Error of a solve that got `stuck` with the smallest step tried, s.
-    pub(super) fn at(step: f64, stuck: &NewtonFailure) -> Self {
+    /// Error of a solve that ended in `failure`, with the smallest step tried, s.
+    pub(super) fn at(step: f64, failure: &NewtonFailure) -> Self {
         Self {
             step,
-            node: stuck.node,
-            update: stuck.update,
-            cause: if stuck.update.is_finite() {
+            node: failure.node,
+            update: failure.update,
+            cause: if failure.update.is_finite() {
                 "Newton's method does not settle"
             } else {
                 "a value is not finite"

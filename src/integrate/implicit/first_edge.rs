@@ -22,7 +22,7 @@ pub(super) struct FirstEdge<'a> {
 
 /// Frozen wire that slips, from the edge `from` on.
 #[derive(Clone, Copy, Debug)]
-struct Run {
+struct Slipping {
     from: usize,
     /// wire that it gives over the tension of the first live edge, m/N
     a: f64,
@@ -84,7 +84,7 @@ impl<'a> FirstEdge<'a> {
     }
 
     /// Which of the frozen wire slips when the edge is `length` long, and whether its tension falls; none where friction holds.
-    fn slips(&self, length: f64) -> Option<(Run, bool)> {
+    fn slips(&self, length: f64) -> Option<(Slipping, bool)> {
         let last = self.pulls.last()?;
         let held = self.held(length);
         let least = last.most(self.friction).other(last.pulls());
@@ -92,7 +92,7 @@ impl<'a> FirstEdge<'a> {
         // (an edge that yields pulls no harder than it yields at)
         let rises = held.min(self.yields_at()) > last.least(self.friction).other(last.pulls());
         if (falls && least > 0.0) || rises {
-            let reached = |tension: f64, run: &Run| {
+            let reached = |tension: f64, run: &Slipping| {
                 let there = self.length_at(tension, self.rest - run.b, run.a);
                 if falls {
                     there <= length
@@ -106,10 +106,10 @@ impl<'a> FirstEdge<'a> {
     }
 
     /// Goes back along the frozen wire until the tension at which the next edge would slip is `reached`.
-    fn run(&self, falls: bool, reached: impl Fn(f64, &Run) -> bool) -> Run {
+    fn run(&self, falls: bool, reached: impl Fn(f64, &Slipping) -> bool) -> Slipping {
         let modulus = self.law.modulus;
         let count = self.pulls.len();
-        let mut run = Run {
+        let mut run = Slipping {
             from: count,
             a: 0.0,
             b: 0.0,
@@ -176,7 +176,7 @@ impl<'a> FirstEdge<'a> {
 
     /// Tension at which edge and frozen wire are in balance, N, the edge's unstretched length, m, what slips, and whether the edge
     /// yields. Frozen wire pulls no harder than the edge does where it begins to yield, and gives no more than it has.
-    fn balanced(&self, length: f64, run: Run, falls: bool) -> (f64, f64, Run, bool) {
+    fn balanced(&self, length: f64, run: Slipping, falls: bool) -> (f64, f64, Slipping, bool) {
         let modulus = self.law.modulus;
         let rest = self.rest - run.b;
         let most = self.yields_at();

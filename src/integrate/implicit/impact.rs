@@ -9,7 +9,7 @@
 //! that moved all the time as it does now, or it would take the fall for part of the motion.
 
 use super::carried::Carried;
-use super::impulse::{Impulse, PARTS};
+use super::impulse::{Impulse, NOW, PARTS, PLACE, START};
 use super::landings::{Came, Solved};
 use super::scheme::StepFormula;
 use super::stirred::Stirred;
@@ -61,7 +61,7 @@ fn taken_back(sys: &mut System, given: f64, mut taken: [f64; 2]) -> [f64; 2] {
 /// Impulses of touches, and what they are computed with.
 #[derive(Debug, Default)]
 pub(super) struct Impacts {
-    /// node by node, core frame, see [`PARTS`]
+    /// node by node, core frame, a part each: [`NOW`], [`START`] and [`PLACE`]; only the first where nothing landed
     motion: [Vec<V3>; PARTS],
     /// the same before any impulse
     start: [Vec<V3>; PARTS],
@@ -92,12 +92,8 @@ impl Impacts {
         }
         let restitution = line.model.restitution;
         let touches = std::mem::take(&mut line.scratch.accepted);
-        let parts = if touches.iter().any(|t| t.began) {
-            PARTS
-        } else {
-            1
-        };
-        self.look(sys, old, solved.mass, parts);
+        let landed = touches.iter().any(|t| t.began);
+        self.look(sys, old, solved.mass, landed);
         let [places, before, _] = &sys.state.past.q;
         self.list(&touches, (places, before), step, restitution);
         if let Some(line) = sys.line_contact() {
@@ -105,31 +101,31 @@ impl Impacts {
         }
         let [blow, rubbed] =
             self.came
-                .in_landings(sys, step, (solved, old), (&self.impulses, &self.start[0]));
+                .in_landings(sys, step, (solved, old), (&self.impulses, &self.start[NOW]));
         sys.state.balance.numerical -= blow + rubbed;
-        let landed = [blow, rubbed];
-        self.give_back_friction(sys, step, parts, &mut carried);
+        let by_landings = [blow, rubbed];
+        self.give_back_friction(sys, step, landed, &mut carried);
         let bound = UNSEEN * tolerance;
-        self.settle(step.h, bound, parts, restitution);
-        self.take_over(sys, step, old, parts);
+        self.sweep_parts(step.h, bound, landed, restitution);
+        self.take_over(sys, step, old, landed);
         let rubbed = self.rubbed();
         let now = Carried::of(sys);
         let stopped = -carried.gained(sys, now) - rubbed;
-        if parts > 1 {
+        if landed {
             // (a blow has no moment that a step could tell)
             sys.state.pressed = 0.0;
         } else if !sys.contact_follows(step.h) {
             sys.state.pressed += (solved.carried.momentum - now.momentum) / step.h;
         }
         let given = solved.numerical - sys.state.balance.numerical;
-        let taken = apart([landed[0] + stopped, landed[1] + rubbed]);
+        let taken = apart([by_landings[0] + stopped, by_landings[1] + rubbed]);
         let [stopped, rubbed] = taken_back(sys, given, taken);
         book(sys, rubbed, stopped);
         if restitution > 0.0
             && let Some(line) = sys.line_contact()
         {
             for impulse in &self.impulses {
-                let speed = impulse.range[0][1];
+                let speed = impulse.range[NOW][1];
                 line.state.keep_rebound(impulse.touch.owner, speed);
             }
         }
@@ -137,25 +133,25 @@ impl Impacts {
 
     /// Impulses that stop what touches in a step of `h` (s), then those that let it rebound, and its history with them; until no way
     /// changes by `unseen`, m.
-    fn settle(&mut self, h: f64, unseen: f64, parts: usize, restitution: f64) {
+    fn sweep_parts(&mut self, h: f64, unseen: f64, landed: bool, restitution: f64) {
         self.stirred.list(&self.impulses, self.mobility.len());
-        self.sweep_until(0, unseen / h);
-        if parts == 1 {
+        self.sweep_until(NOW, unseen / h);
+        if !landed {
             return;
         }
         if restitution > 0.0 {
             let landings = self.impulses.iter_mut().filter(|i| i.touch.began);
             landings.for_each(Impulse::rebound);
             // (what a rebound is wrong by goes on over many steps)
-            self.sweep_until(0, 0.1 * unseen / h);
+            self.sweep_until(NOW, 0.1 * unseen / h);
             for landing in self.impulses.iter_mut().filter(|i| i.touch.began) {
-                landing.rebounds_at(landing.along_normal(&self.motion[0]), h);
+                landing.rebounds_at(landing.along_normal(&self.motion[NOW]), h);
             }
         }
-        self.sweep_until(1, unseen / h);
-        self.sweep_until(2, unseen);
+        self.sweep_until(START, unseen / h);
+        self.sweep_until(PLACE, unseen);
         for impulse in &mut self.impulses {
-            impulse.shift(&mut self.motion[2]);
+            impulse.shift(&mut self.motion[PLACE]);
         }
     }
 
@@ -182,15 +178,15 @@ impl Impacts {
     /// Work of friction in the impulses, J: each acts last, on the mean of the motion without it and the motion after all.
     fn rubbed(&self) -> f64 {
         let of_touch = |impulse: &Impulse| {
-            let [rubbed, ..] = impulse.rubbed;
+            let rubbed = impulse.rubbed[NOW];
             let alone = 0.5 * rubbed * impulse.inverse;
-            rubbed * (alone - impulse.along_friction(&self.motion[0]))
+            rubbed * (alone - impulse.along_friction(&self.motion[NOW]))
         };
         self.impulses.iter().map(of_touch).sum()
     }
 
-    /// Puts down how the wire moves, in `parts` of the [`PARTS`].
-    fn look(&mut self, sys: &System, old: Spindle, mass: &[f64], parts: usize) {
+    /// Puts down how the wire moves, and where wire has `landed`, how it did at the step's start and where it was.
+    fn look(&mut self, sys: &System, old: Spindle, mass: &[f64], landed: bool) {
         let (rod, past, now) = (&sys.state.rod, &sys.state.past, sys.state.spindle);
         let free = sys.free_nodes();
         self.mobility.clear();
@@ -204,10 +200,10 @@ impl Impacts {
             let carried = |x: &V3| spin_velocity(spindle.speed, *x);
             to.extend(v.iter().zip(x).map(|(v, x)| spin.to_core(v - carried(x))));
         };
-        relative(now, &rod.v, &rod.x, &mut self.motion[0]);
-        if parts > 1 {
-            relative(old, &past.v, &past.x, &mut self.motion[1]);
-            self.motion[2].extend_from_slice(&past.q[1]);
+        relative(now, &rod.v, &rod.x, &mut self.motion[NOW]);
+        if landed {
+            relative(old, &past.v, &past.x, &mut self.motion[START]);
+            self.motion[PLACE].extend_from_slice(&past.q[1]);
         }
         for (start, motion) in self.start.iter_mut().zip(&self.motion) {
             start.clone_from(motion);
@@ -223,22 +219,22 @@ impl Impacts {
         restitution: f64,
     ) {
         self.impulses.clear();
-        let began = !self.motion[1].is_empty();
+        let landed = !self.motion[START].is_empty();
         for touch in touches {
             let Some(mut impulse) = Impulse::of(touch, step.gamma, &self.mobility, places) else {
                 continue;
             };
             let way = impulse.along_friction(places) - impulse.along_friction(before);
             impulse.slid = (2.0 * way / step.h).min(0.0);
-            impulse.range[0] = [0.0, touch.rebound];
+            impulse.range[NOW] = [0.0, touch.rebound];
             if touch.began {
-                let approach = -impulse.along_normal(&self.motion[1]);
+                let approach = -impulse.along_normal(&self.motion[START]);
                 let speed = restitution * approach.max(0.0);
                 let there = impulse.along_normal(places) - step.h * speed;
                 impulse.range = [[0.0; 2], [speed; 2], [there; 2]];
-            } else if began {
-                for (part, motion) in self.motion.iter().enumerate().skip(1) {
-                    impulse.range[part] = [impulse.along_normal(motion); 2];
+            } else if landed {
+                for part in [START, PLACE] {
+                    impulse.range[part] = [impulse.along_normal(&self.motion[part]); 2];
                 }
             }
             self.impulses.push(impulse);
@@ -250,21 +246,21 @@ impl Impacts {
         &mut self,
         sys: &mut System,
         step: &StepFormula,
-        parts: usize,
+        landed: bool,
         carried: &mut Carried,
     ) {
         let spin = Spin::new(sys.state.spindle.angle);
         for impulse in &mut self.impulses {
             let [now, start, _] = &sys.state.past.q;
             let way = impulse.seen_of(now) - impulse.seen_of(start);
-            impulse.bound_surplus(step.gamma, &self.motion[0], (way, step.h));
+            impulse.bound_surplus(step.gamma, &self.motion[NOW], (way, step.h));
             for (i, share) in impulse.shares() {
                 let speed = impulse.touch.surplus * (share * step.gamma);
                 sys.state.rod.v[i] += spin.to_lab(speed);
-                self.motion[0][i] += speed;
-                self.start[0][i] += speed;
-                if parts > 1 {
-                    self.motion[2][i] -= speed * step.gamma;
+                self.motion[NOW][i] += speed;
+                self.start[NOW][i] += speed;
+                if landed {
+                    self.motion[PLACE][i] -= speed * step.gamma;
                 }
             }
         }
@@ -282,7 +278,7 @@ impl Impacts {
             place = if backwards { k } else { k + 1 };
             let impulse = &mut self.impulses[k];
             let mut change = impulse.press(part, motion);
-            if part < 2 {
+            if part != PLACE {
                 change = change.max(impulse.rub(part, motion));
             }
             if change > stirs {
@@ -294,16 +290,16 @@ impl Impacts {
     }
 
     /// Makes the motion that of the wire, now and at the step's start.
-    fn take_over(&mut self, sys: &mut System, step: &StepFormula, old: Spindle, parts: usize) {
+    fn take_over(&mut self, sys: &mut System, step: &StepFormula, old: Spindle, landed: bool) {
         let (now, before) = (Spin::new(sys.state.spindle.angle), Spin::new(old.angle));
-        for (i, (v, start)) in self.motion[0].iter().zip(&self.start[0]).enumerate() {
+        for (i, (v, start)) in self.motion[NOW].iter().zip(&self.start[NOW]).enumerate() {
             sys.state.rod.v[i] += now.to_lab(v - start);
         }
         let past = &mut sys.state.past;
-        if parts > 1 {
+        if landed {
             for i in 0..past.x.len() {
-                let way = before.to_lab(self.motion[2][i] - self.start[2][i]);
-                let faster = before.to_lab(self.motion[1][i] - self.start[1][i]);
+                let way = before.to_lab(self.motion[PLACE][i] - self.start[PLACE][i]);
+                let faster = before.to_lab(self.motion[START][i] - self.start[START][i]);
                 past.x[i] += way;
                 past.v[i] += faster + spin_velocity(old.speed, way);
             }
@@ -311,11 +307,11 @@ impl Impacts {
         // the way of a touch that opened too fast stays; the speed that it would stand for does not
         for impulse in self.impulses.iter().filter(|i| !i.touch.began) {
             for (i, share) in impulse.shares() {
-                let speed = impulse.sum(0) * share;
+                let speed = impulse.sum(NOW) * share;
                 past.x[i] -= before.to_lab(speed * step.gamma);
             }
         }
-        if parts == 1 {
+        if !landed {
             for impulse in &self.impulses {
                 for (i, share) in impulse.shares() {
                     let speed = impulse.touch.surplus * (share * step.gamma);
@@ -380,14 +376,14 @@ mod tests {
             for _ in 0..10 {
                 for (impulse, surplus) in impacts.impulses.iter_mut().zip(surplus) {
                     impulse.touch.surplus = surplus * 1e7;
-                    impulse.bound_surplus(1e-12, &impacts.motion[0], (way, 1e-5));
+                    impulse.bound_surplus(1e-12, &impacts.motion[NOW], (way, 1e-5));
                     let surplus = impulse.touch.surplus;
                     for (i, share) in impulse.shares() {
-                        impacts.motion[0][i] += surplus * (share * 1e-12);
+                        impacts.motion[NOW][i] += surplus * (share * 1e-12);
                     }
                 }
             }
-            let [before, after] = [&impacts.start[0], &impacts.motion[0]].map(|v| energy(v));
+            let [before, after] = [&impacts.start[NOW], &impacts.motion[NOW]].map(|v| energy(v));
             // (along either direction the wire may become twice as fast as its way says)
             assert!(after <= 5.0 * before, "{speed}: {before} J, {after} J");
         }
@@ -410,8 +406,9 @@ mod tests {
                     touch(above, along * out),
                 ];
                 let mut impacts = wedged(speed, &touches);
-                impacts.settle(1e-5, 1e-12, 1, 0.5);
-                let [before, after] = [&impacts.start[0], &impacts.motion[0]].map(|v| energy(v));
+                impacts.sweep_parts(1e-5, 1e-12, false, 0.5);
+                let [before, after] =
+                    [&impacts.start[NOW], &impacts.motion[NOW]].map(|v| energy(v));
                 assert!(
                     after <= before * (1.0 + 1e-9),
                     "{speed:?}, {opening}: {after:e} of {before:e} J"
@@ -424,7 +421,7 @@ mod tests {
                 let falls = impacts
                     .impulses
                     .iter()
-                    .any(|i| i.along_normal(&impacts.motion[0]) < -1e-2);
+                    .any(|i| i.along_normal(&impacts.motion[NOW]) < -1e-2);
                 assert!(!falls, "{speed:?}, {opening}: into its touch");
             }
         }
@@ -461,9 +458,9 @@ mod tests {
     #[test]
     fn sweeps_follow_what_stirs() {
         let mut impacts = laid(200);
-        impacts.motion[0][70] = V3::new(0.0, -1.0, 0.5);
+        impacts.motion[NOW][70] = V3::new(0.0, -1.0, 0.5);
         let unseen = 1e-6;
-        impacts.sweep_until(0, unseen);
+        impacts.sweep_until(NOW, unseen);
         let looks = looks(&impacts);
         // (all are looked at first and last)
         assert!(looks[67..72].iter().all(|l| *l > 3), "{looks:?}");
@@ -473,7 +470,7 @@ mod tests {
         );
         impacts.stirred.begin(1);
         impacts.stirred.all();
-        let left = impacts.sweep(0, false, 0.0);
+        let left = impacts.sweep(NOW, false, 0.0);
         assert!(left < unseen, "{left}");
     }
 
@@ -490,7 +487,7 @@ mod tests {
             impacts.impulses[k].range = [[speed; 2]; PARTS];
         }
         impacts.stirred.list(&impacts.impulses, 200);
-        impacts.sweep_until(0, 1e-6);
+        impacts.sweep_until(NOW, 1e-6);
         let looks = looks(&impacts);
         assert_eq!(looks[100..102], [LOOKS; 2]);
         assert!(
@@ -504,11 +501,11 @@ mod tests {
     fn friction_of_a_blow_brakes_the_slide() {
         for (slide, left) in [(-0.1, 0.0), (-2.0, -1.7)] {
             let mut impacts = wedged(V3::new(0.0, -1.0, slide), &[touch(V3::y(), V3::z() * 0.3)]);
-            impacts.settle(1e-5, 1e-12, 1, 0.0);
+            impacts.sweep_parts(1e-5, 1e-12, false, 0.0);
             let [impulse] = &impacts.impulses[..] else {
                 panic!("one touch")
             };
-            let got = impulse.along_friction(&impacts.motion[0]);
+            let got = impulse.along_friction(&impacts.motion[NOW]);
             assert!((got - left).abs() < 1e-9, "{slide}: {got}");
         }
     }

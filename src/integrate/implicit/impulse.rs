@@ -3,8 +3,14 @@
 use crate::contact::AcceptedTouch;
 use crate::math::V3;
 
-/// The velocities now, those at the step's start, and the places there.
+/// How many parts a motion has.
 pub(super) const PARTS: usize = 3;
+/// The velocities now, m/s.
+pub(super) const NOW: usize = 0;
+/// The velocities at the step's start, m/s.
+pub(super) const START: usize = 1;
+/// The places at the step's start, m.
+pub(super) const PLACE: usize = 2;
 
 /// The impulse of one touch.
 #[derive(Clone, Copy, Debug)]
@@ -193,10 +199,10 @@ impl Impulse {
         // a touch pushes: all that it gives along the normal is at least 0, and what the wire would have fallen
         // since it began lies behind its surface
         let allowed = match part {
-            0 => wanted
+            NOW => wanted
                 .min(self.most.max(-alone / self.inverse))
                 .max(-self.given),
-            1 => wanted.max(0.0),
+            START => wanted.max(0.0),
             _ => wanted.min(0.0),
         };
         let change = allowed - self.added[part];
@@ -210,27 +216,27 @@ impl Impulse {
 
     /// Lets a landing rebound, which has been stopped: its touch gives back no more than it took to stop it.
     pub(super) fn rebound(&mut self) {
-        self.most = self.added[0] + (self.given + self.added[0]);
-        self.range[0] = self.range[1];
+        self.most = self.added[NOW] + (self.given + self.added[NOW]);
+        self.range[NOW] = self.range[START];
     }
 
     /// Wire that something else had slowed down rebounds by less: the history becomes that of the speed `now`, m/s, after a step
     /// of `h`, s.
     pub(super) fn rebounds_at(&mut self, now: f64, h: f64) {
-        let [speed, _] = self.range[0];
+        let [speed, _] = self.range[NOW];
         let slower = now.clamp(0.0, speed);
-        self.range[0][1] = slower;
-        self.range[1] = [slower; 2];
-        self.range[2] = self.range[2].map(|there| there + h * (speed - slower));
+        self.range[NOW][1] = slower;
+        self.range[START] = [slower; 2];
+        self.range[PLACE] = self.range[PLACE].map(|there| there + h * (speed - slower));
     }
 
     /// Shifts the place along the surface by the share that friction has in the speed there: to where the slide that is left comes from.
     ///
     /// The places along the normals are settled by then. In a wedge, each shift would press another touch, and that one the first.
     pub(super) fn shift(&mut self, motion: &mut [V3]) {
-        if self.added[1] > 0.0 {
-            let shift = self.added[2] * self.rubbed[1] / self.added[1];
-            self.add_friction(2, shift, motion);
+        if self.added[START] > 0.0 {
+            let shift = self.added[PLACE] * self.rubbed[START] / self.added[START];
+            self.add_friction(PLACE, shift, motion);
         }
     }
 
@@ -248,7 +254,7 @@ impl Impulse {
             _ if pressed < 0.0 => until(self.slid).clamp(-most, 0.0),
             _ => until(0.0).clamp(-most, most),
         };
-        let allowed = if part == 0 && self.touch.began {
+        let allowed = if part == NOW && self.touch.began {
             allowed.min(until(0.0).max(-self.given * self.friction))
         } else {
             allowed

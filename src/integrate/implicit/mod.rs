@@ -19,11 +19,11 @@ mod landings;
 mod largest;
 mod lengths;
 mod minimal_residual;
-mod model;
 mod newton;
 mod nozzle_edge;
 mod places;
 mod places_and_rolls;
+mod potential;
 mod predictor;
 #[cfg(feature = "lab")]
 mod probe;
@@ -43,10 +43,12 @@ mod work;
 
 pub use error::StepError;
 pub use scheme::Scheme;
+pub use step_control::{NOZZLE_TURN, PATIENCE};
 
 use places::Places;
 use places_and_rolls::PlacesAndRolls;
 use serde::{Deserialize, Serialize};
+use std::mem::take;
 use work::Work;
 
 /// Newton's update at which a solve is done, over the tolerance.
@@ -83,6 +85,14 @@ impl SolverStatistics {
     /// Steps tried, taken or not.
     pub fn tried(&self) -> u64 {
         self.steps + self.rejects + self.newton_failures
+    }
+
+    /// Takes over what was counted since the last time.
+    fn take_from<const D: usize, U>(&mut self, work: &mut Work<D, U>) {
+        self.evaluations += take(&mut work.evaluations);
+        self.solves += take(&mut work.solves);
+        self.line_search_halvings += take(&mut work.line_search_halvings);
+        self.cg_iterations += take(&mut work.conjugate.cg_iterations);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::circle::Circle;
 use super::largest::largest;
-use super::model::Model;
+use super::potential::Potential;
 use super::slope::Slope;
 use super::unknowns::Unknowns;
 use super::update::{load_gradient, solve_linear};
@@ -136,25 +136,25 @@ pub(super) struct NewtonFailure {
 /// Moves `work.q` to the minimum; `close` is the update below which it is there, m.
 #[inline(never)]
 pub(super) fn solve<const D: usize, U: Unknowns<D>>(
-    model: &mut Model,
+    potential: &mut Potential,
     work: &mut Work<D, U>,
     close: f64,
     limits: NewtonLimits,
 ) -> Result<usize, NewtonFailure> {
-    expect_nothing(model, work);
-    take_limits(model, LimitFrom::Lagged);
-    let mut value = model.evaluate(work).now;
-    take_limits(model, LimitFrom::Slide);
+    expect_nothing(potential, work);
+    take_limits(potential, LimitFrom::Lagged);
+    let mut value = potential.evaluate(work).now;
+    take_limits(potential, LimitFrom::Slide);
     // inertia bounds the update from above: a guess that is good enough costs no solve
-    let weight = model.gamma * model.gamma;
-    let radius = 0.5 * model.diameter;
+    let weight = potential.gamma * potential.gamma;
+    let radius = 0.5 * potential.diameter;
     let bound = work
         .gradient
         .iter()
         .zip(&work.mass)
         .map(|(g, m)| g.amax() * weight / m)
         .fold(0.0, f64::max);
-    let bound = bound.max(work.unknowns.bound(model.gamma, radius));
+    let bound = bound.max(work.unknowns.bound(potential.gamma, radius));
     if bound < limits.guess {
         return Ok(0);
     }
@@ -163,12 +163,12 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
     let mut worst = (0, f64::INFINITY);
     for step in 1..=limits.steps {
         if step > FOLLOWS {
-            take_limits(model, LimitFrom::Lagged);
+            take_limits(potential, LimitFrom::Lagged);
         } else if step > limits.slides {
-            take_limits(model, LimitFrom::NormalForce);
+            take_limits(potential, LimitFrom::NormalForce);
         }
         work.solves += 1;
-        let fits = solve_linear(model, work, limits.promise).map_err(|node| NewtonFailure {
+        let fits = solve_linear(potential, work, limits.promise).map_err(|node| NewtonFailure {
             node,
             update: f64::NAN,
             steps: step,
@@ -179,25 +179,25 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             work.update.clone_from(&work.plain);
             slope = Slope::of(work);
         }
-        let (update, node, rolls) = largest_update(model, work);
-        let stuck = |far| NewtonFailure {
+        let (update, node, rolls) = largest_update(potential, work);
+        let failure = |far| NewtonFailure {
             node,
             update,
             steps: step,
             far,
         };
         if !update.is_finite() {
-            return Err(stuck(None));
+            return Err(failure(None));
         }
         if step == 1 {
             let way = work.mean_update();
             if way > limits.far {
-                return Err(stuck(Some(way)));
+                return Err(failure(Some(way)));
             }
         }
-        let mut share = limits.share(work, update, model.diameter);
+        let mut share = limits.share(work, update, potential.diameter);
         if circle.closes(update, share == 1.0) && limits.may_shorten() {
-            return Err(stuck(None));
+            return Err(failure(None));
         }
         work.keep_start();
         // (the next evaluation fills in all of the stretch)
@@ -215,7 +215,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         let mut line_search_halvings = 0;
         if share == 1.0 && fits && limits.chord > 0.0 {
             match end_by_chords(
-                model,
+                potential,
                 work,
                 value + slope.rise(1.0),
                 (update, close),
@@ -223,8 +223,8 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             ) {
                 Chord::Ends => return Ok(step + 1),
                 Chord::Nearer => {
-                    value = model.evaluate(work).now;
-                    if let Some(line) = &mut model.line {
+                    value = potential.evaluate(work).now;
+                    if let Some(line) = &mut potential.line {
                         line.state.renew_limits();
                     }
                     last_update = update;
@@ -236,11 +236,11 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         loop {
             work.take(share);
             expect_tension(work, share);
-            let trial = model.evaluate(work);
+            let trial = potential.evaluate(work);
             let most = value + slope.rise(share);
             if trial.merit <= most + NOISE * value.abs() || share * update < close {
                 value = trial.now;
-                if let Some(line) = &mut model.line {
+                if let Some(line) = &mut potential.line {
                     line.state.renew_limits();
                 }
                 break;
@@ -254,7 +254,7 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
                 limits.line_search_halvings
             };
             if line_search_halvings > most {
-                return Err(stuck(None));
+                return Err(failure(None));
             }
             share *= 0.5;
         }
@@ -286,7 +286,7 @@ enum Chord {
 /// about its square over the one before. It needs neither a new Hessian nor new factors with looks ahead, more than half
 /// the cost of an iteration. Where the first of them does not shrink enough, the work was in vain.
 fn end_by_chords<const D: usize, U: Unknowns<D>>(
-    model: &mut Model,
+    potential: &mut Potential,
     work: &mut Work<D, U>,
     value: f64,
     (first, close): (f64, f64),
@@ -297,7 +297,7 @@ fn end_by_chords<const D: usize, U: Unknowns<D>>(
     }
     work.take(1.0);
     expect_tension(work, 1.0);
-    let trial = model.evaluate_forces(work);
+    let trial = potential.evaluate_forces(work);
     if trial.merit > value + NOISE * value.abs() {
         return Chord::Vain;
     }
@@ -307,8 +307,8 @@ fn end_by_chords<const D: usize, U: Unknowns<D>>(
         work.solves += 1;
         load_gradient(work);
         std::mem::swap(&mut work.update, &mut work.load);
-        work.solve_factored(0.5 * model.diameter);
-        let (next, ..) = largest_update(model, work);
+        work.solve_factored(0.5 * potential.diameter);
+        let (next, ..) = largest_update(potential, work);
         let ends = next < left || next * next <= before * left;
         if !ends && (next > SHRINKS * before || chord + 1 == CHORDS) {
             if chord == 0 {
@@ -322,7 +322,7 @@ fn end_by_chords<const D: usize, U: Unknowns<D>>(
         if ends {
             return Chord::Ends;
         }
-        model.evaluate_forces(work);
+        potential.evaluate_forces(work);
         before = next;
     }
     Chord::Nearer
@@ -330,28 +330,31 @@ fn end_by_chords<const D: usize, U: Unknowns<D>>(
 
 /// Largest update of an unknown, m, its node, and whether it is a roll, which counts by the way of the wire's surface.
 fn largest_update<const D: usize, U: Unknowns<D>>(
-    model: &Model,
+    potential: &Potential,
     work: &Work<D, U>,
 ) -> (f64, usize, bool) {
-    let (update, at) = largest::<D>(&work.update, 0.5 * model.diameter);
+    let (update, at) = largest::<D>(&work.update, 0.5 * potential.diameter);
     (update, at / D, at % D == 3)
 }
 
-fn take_limits(model: &mut Model, from: LimitFrom) {
-    if let Some(line) = &mut model.line {
+fn take_limits(potential: &mut Potential, from: LimitFrom) {
+    if let Some(line) = &mut potential.line {
         line.state.limit_from = from;
     }
 }
 
 /// At the start tensions are expected to stay what they were at the last accepted instant.
-pub(super) fn expect_nothing<const D: usize, U: Unknowns<D>>(model: &Model, work: &mut Work<D, U>) {
+pub(super) fn expect_nothing<const D: usize, U: Unknowns<D>>(
+    potential: &Potential,
+    work: &mut Work<D, U>,
+) {
     work.expected.clear();
-    for j in 0..model.rod.edges() {
-        let tension = model.tension.get(j).copied().unwrap_or(0.0);
-        let strain = model.rod.stretch[j].strain + tension / model.laws.stretch.modulus;
+    for j in 0..potential.rod.edges() {
+        let tension = potential.tension.get(j).copied().unwrap_or(0.0);
+        let strain = potential.rod.stretch[j].strain + tension / potential.laws.stretch.modulus;
         work.expected.push(Axial {
             tension,
-            length: model.rod.rest[j] * (1.0 + strain),
+            length: potential.rod.rest[j] * (1.0 + strain),
             ..Default::default()
         });
     }

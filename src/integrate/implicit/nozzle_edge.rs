@@ -34,6 +34,21 @@ pub(super) struct NozzleEdge {
     grip: f64,
 }
 
+/// The edge at the start of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EdgeAtStart {
+    /// its unstretched length, m
+    pub(super) rest: f64,
+    /// the tensioner's force, N
+    pub(super) pull: f64,
+    /// tension after over tension before the exit where wire comes out
+    pub(super) grip: f64,
+    /// modulus of the wire, N
+    pub(super) ea: f64,
+    /// plastic stretch of the edge and of wire that comes out
+    pub(super) plastic: [f64; 2],
+}
+
 /// The line's tension from some rest length of the edge on: `a + b * rest`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Piece {
@@ -57,20 +72,22 @@ enum Way {
 }
 
 impl NozzleEdge {
-    /// The edge at the start of a step:
-    ///
-    /// - `rest`: its unstretched length, m; `pull`: the tensioner's force, N
-    /// - `grip`: tension after over tension before the exit where wire comes out
-    /// - `ea`: modulus of the wire, N; `plastic`: plastic stretch of the edge and of wire that comes out
-    /// - `yields`: how the line's wire yields
+    /// The edge in a step; `yields` is how the line's wire yields.
     pub(super) fn new(
         spec: &FeedSpec,
         feed: &Feed,
         past: &Past,
         step: &StepFormula,
-        (rest, pull, grip, ea, plastic): (f64, f64, f64, f64, [f64; 2]),
+        edge: EdgeAtStart,
         yields: &LineYield,
     ) -> Self {
+        let EdgeAtStart {
+            rest,
+            pull,
+            grip,
+            ea,
+            plastic,
+        } = edge;
         let (pieces, count) = if spec.has_chain() {
             let chain = Chain::new(spec, feed, past, step, (pull, yields));
             pieces_of(&chain, rest - feed.fed)
@@ -146,7 +163,7 @@ impl NozzleEdge {
         let way = self.way(length);
         let grip = match way {
             Way::Out(grip) | Way::Back(grip) => grip,
-            Way::Held => return self.stuck(length),
+            Way::Held => return self.stretched_held(length),
         };
         let free = self.free(length, way);
         if self.grip == 1.0 && self.longer == 0.0 {
@@ -156,13 +173,13 @@ impl NozzleEdge {
         // the potential goes on where wire begins to pass
         let end = self.start * (self.set + grip * self.line_at_start() / self.ea);
         Stretched {
-            energy: free.energy - self.free(end, way).energy + self.stuck(end).energy,
+            energy: free.energy - self.free(end, way).energy + self.stretched_held(end).energy,
             ..free
         }
     }
 
     /// The edge while friction lets no wire pass.
-    fn stuck(&self, length: f64) -> Stretched {
+    fn stretched_held(&self, length: f64) -> Stretched {
         let tension = self.held(length);
         Stretched {
             tension,
@@ -341,6 +358,28 @@ mod tests {
         (spec, feed, past, step)
     }
 
+    /// An edge of such wire under the set force, 15 N.
+    fn at_start(rest: f64, grip: f64, plastic: [f64; 2]) -> EdgeAtStart {
+        EdgeAtStart {
+            rest,
+            pull: 15.0,
+            grip,
+            ea: 48_900.0,
+            plastic,
+        }
+    }
+
+    /// That edge behind a line that does not yield.
+    fn edge(
+        (spec, feed, past, step): (&FeedSpec, &Feed, &Past, &StepFormula),
+        rest: f64,
+        grip: f64,
+        plastic: [f64; 2],
+    ) -> NozzleEdge {
+        let start = at_start(rest, grip, plastic);
+        NozzleEdge::new(spec, feed, past, step, start, &LineYield::default())
+    }
+
     /// The tension at `length` (m) is that of wire of the edge, with its plastic stretch, and wire that came, with its own.
     fn assert_pulls_by_its_wire(edge: &NozzleEdge, length: f64, plastic: [f64; 2]) {
         let (rest, tension) = (edge.rest(length), edge.stretched(length).tension);
@@ -355,14 +394,7 @@ mod tests {
     fn wire_and_line_pull_alike() {
         let (spec, feed, past, step) = setting();
         let ea = 48_900.0;
-        let edge = NozzleEdge::new(
-            &spec,
-            &feed,
-            &past,
-            &step,
-            (3e-3, 15.0, 1.1, ea, [1e-4; 2]),
-            &LineYield::default(),
-        );
+        let edge = edge((&spec, &feed, &past, &step), 3e-3, 1.1, [1e-4; 2]);
         // so long that wire comes out
         let length = 3.36e-3 * (1.0 + 3e-4);
         let y = edge.rest(length);
@@ -399,14 +431,7 @@ mod tests {
     #[test]
     fn a_slack_line_does_not_push() {
         let (spec, feed, past, step) = setting();
-        let edge = NozzleEdge::new(
-            &spec,
-            &feed,
-            &past,
-            &step,
-            (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]),
-            &LineYield::default(),
-        );
+        let edge = edge((&spec, &feed, &past, &step), 3e-3, 1.0, [0.0; 2]);
         let s = edge.stretched(1e-3);
         assert_eq!(s.tension, 0.0);
         assert!((edge.rest(1e-3) - 1e-3).abs() < 1e-15);
@@ -417,14 +442,7 @@ mod tests {
     fn friction_at_the_exit_holds_wire_between_two_tensions() {
         let (spec, feed, past, step) = at_rest();
         let (ea, grip) = (48_900.0, 1.4);
-        let edge = NozzleEdge::new(
-            &spec,
-            &feed,
-            &past,
-            &step,
-            (3e-3, 15.0, grip, ea, [1e-4; 2]),
-            &LineYield::default(),
-        );
+        let edge = edge((&spec, &feed, &past, &step), 3e-3, grip, [1e-4; 2]);
         let line = edge.line_at_start();
         assert!(line > 5.0, "the line pulls by {line} N");
         let at = |tension: f64| 3e-3 * (1.0 + 1e-4 + tension / ea);
@@ -464,14 +482,7 @@ mod tests {
         let (spec, feed, past, step) = at_rest();
         let (ea, rest, plastic) = (48_900.0, 3e-3, [0.02, 0.001]);
         for grip in [1.0, 1.3] {
-            let edge = NozzleEdge::new(
-                &spec,
-                &feed,
-                &past,
-                &step,
-                (rest, 15.0, grip, ea, plastic),
-                &LineYield::default(),
-            );
+            let edge = edge((&spec, &feed, &past, &step), rest, grip, plastic);
             let turn = rest * (1.02 + edge.line_at_start() / ea);
             let mut before = edge.stretched(turn - 2e-5);
             for k in -199..400 {
@@ -502,16 +513,9 @@ mod tests {
         feed.guided = feed.paid + 0.6 * 20.0 / 97_800.0;
         past.guided = [feed.guided; 2];
         (feed.paid_rate, past.paid_rate, past.paid) = (0.0, 0.0, [feed.paid; 2]);
-        let (ea, rest, plastic) = (48_900.0, 3e-3, [0.02, 0.001]);
+        let (rest, plastic) = (3e-3, [0.02, 0.001]);
         for grip in [1.0, 1.3] {
-            let edge = NozzleEdge::new(
-                &spec,
-                &feed,
-                &past,
-                &step,
-                (rest, 15.0, grip, ea, plastic),
-                &LineYield::default(),
-            );
+            let edge = edge((&spec, &feed, &past, &step), rest, grip, plastic);
             let chain = Chain::new(&spec, &feed, &past, &step, (15.0, &LineYield::default()));
             assert!(edge.count >= 3, "back, held and out: {edge:?}");
             let (curve, passed) = chain.at_nozzle();
@@ -549,7 +553,7 @@ mod tests {
         let mut yields = LineYield::default();
         yields.push(30.0, 2e-4);
         yields.push(34.0, 3e-4);
-        let state = (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]);
+        let state = at_start(3e-3, 1.0, [0.0; 2]);
         let edge = NozzleEdge::new(&spec, &feed, &past, &step, state, &yields);
         assert_eq!(edge.count, 3);
         let longest = 3e-3 * (1.0 + 15.0 / 48_900.0) + 2e-3;
@@ -584,14 +588,7 @@ mod tests {
     fn without_mass_and_damping_the_set_force_acts() {
         let (mut spec, mut feed, past, step) = setting();
         (spec.mass, spec.damping, feed.damping) = (0.0, 0.0, 0.0);
-        let edge = NozzleEdge::new(
-            &spec,
-            &feed,
-            &past,
-            &step,
-            (3e-3, 15.0, 1.0, 48_900.0, [0.0; 2]),
-            &LineYield::default(),
-        );
+        let edge = edge((&spec, &feed, &past, &step), 3e-3, 1.0, [0.0; 2]);
         for length in [2e-3, 3e-3, 4e-3] {
             let s = edge.stretched(length);
             assert!((s.tension - 15.0).abs() < 1e-12 && s.stiffness == 0.0);

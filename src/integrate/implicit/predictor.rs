@@ -1,7 +1,7 @@
 //! The guess of a step and what its solve starts from.
 
 use super::lengths::voronoi;
-use super::nozzle_edge::NozzleEdge;
+use super::nozzle_edge::{EdgeAtStart, NozzleEdge};
 use super::scheme::{Scheme, StepFormula, extrapolation};
 use super::unknowns::Unknowns;
 use super::work::Work;
@@ -92,16 +92,16 @@ impl<const D: usize, U: Unknowns<D>> Work<D, U> {
             feed,
             past,
             step,
-            (
-                rod.rest[last],
-                sys.set_tension_after(step.share * step.h),
-                sys.exit_grip(),
-                sys.model.laws.stretch.modulus,
-                [
+            EdgeAtStart {
+                rest: rod.rest[last],
+                pull: sys.set_tension_after(step.share * step.h),
+                grip: sys.exit_grip(),
+                ea: sys.model.laws.stretch.modulus,
+                plastic: [
                     rod.stretch[last].strain,
                     sys.state.line_wire.next(feed.fed).strain,
                 ],
-            ),
+            },
             &sys.line_yield(),
         ))
     }

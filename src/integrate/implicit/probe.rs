@@ -1,8 +1,8 @@
 //! Single evaluations of the potential, for the laboratory and the benchmarks: nothing is solved.
 
-use super::model::Model;
+use super::potential::Potential;
 use super::predictor::{moved, step_of};
-use super::statics::{model_at_rest, still};
+use super::statics::{potential_at_rest, still};
 use super::unknowns::Unknowns;
 use super::work::Work;
 use super::{Implicit, Scheme, newton};
@@ -48,14 +48,14 @@ pub(super) fn out_of_balance_with<const D: usize, U: Unknowns<D>>(
     let step = still(sys);
     let (spindle, support) = (sys.state.spindle, sys.state.support);
     work.prepare(sys, &step, &spindle, &support, false);
-    let mut model = model_at_rest(sys);
-    model.held = [[false; 3]; 2];
-    newton::expect_nothing(&model, work);
+    let mut potential = potential_at_rest(sys, &step);
+    potential.held = [[false; 3]; 2];
+    newton::expect_nothing(&potential, work);
     // the tensions that are there are no surprise
     for (j, e) in work.expected.iter_mut().enumerate() {
         e.length = (work.q[j + 1] - work.q[j]).norm();
     }
-    model.evaluate(work);
+    potential.evaluate(work);
     let spin = Spin::new(sys.state.spindle.angle);
     let forces = work.gradient.iter().map(|g| -spin.to_lab(*g));
     (forces.collect(), work.unknowns.torques())
@@ -75,7 +75,7 @@ pub(super) fn evaluating_with<const D: usize, U: Unknowns<D>>(
         moved(&sys.state.support, step.share * h),
     );
     let nozzle = work.prepare(sys, &step, &spindle, &support, true);
-    let mut model = Model::of_step(sys, &step, &spindle, &support, nozzle);
-    newton::expect_nothing(&model, work);
-    with(&mut || model.evaluate(work).now);
+    let mut potential = Potential::of_step(sys, &step, &spindle, &support, nozzle);
+    newton::expect_nothing(&potential, work);
+    with(&mut || potential.evaluate(work).now);
 }

@@ -4,17 +4,19 @@
 //! are those of a time step. Plastic state, frames and anchors move on only where an increment has
 //! converged.
 
-use super::model::Model;
 use super::newton::{self, NewtonLimits};
+use super::potential::Potential;
 use super::scheme::StepFormula;
 use super::unknowns::Unknowns;
 use super::work::Work;
 use super::{CLOSE, Implicit, StepError};
 use crate::math::{Spin, V3};
-use crate::system::{System, line_contact};
+use crate::system::System;
 
 /// Time over which forces act in a static solve, s: inertia is then 1e-10 of the softest wire's stiffness.
 const LONG: f64 = 1e3;
+/// Largest move of an edge's end against its start in one Newton step, over its length. Chosen.
+const MOST_TURN_AT_REST: f64 = 0.4;
 /// Solves of one increment: the last ones turn plastic curvature along with what the first one found.
 const PASSES: usize = 3;
 
@@ -62,33 +64,28 @@ impl Implicit {
         let limits = NewtonLimits {
             steps: U::STATIC_STEPS,
             longest: f64::INFINITY,
-            turn: 0.4,
-            far: f64::INFINITY,
-            line_search_halvings: 12,
+            turn: MOST_TURN_AT_REST,
             guess: CLOSE * self.tolerance,
             chord: 0.0,
-            slides: NewtonLimits::STEP.slides,
-            promise: NewtonLimits::STEP.promise,
+            ..NewtonLimits::STEP
         };
         let mut taken = 0;
         for _ in 0..PASSES {
             work.q.clone_from(&work.guess);
             let ends = (&spindle, &support);
             work.unknowns.follow(sys, ends, &work.guess);
-            let mut model = model_at_rest(sys);
-            model.flat = self.flat;
-            let solved = newton::solve(&mut model, work, CLOSE * self.tolerance, limits);
-            let steps = solved.map_err(|stuck| {
+            let mut potential = potential_at_rest(sys, &step);
+            potential.flat = self.flat;
+            let solved = newton::solve(&mut potential, work, CLOSE * self.tolerance, limits);
+            let steps = solved.map_err(|failure| {
                 self.statistics.newton_failures += 1;
-                StepError::at(LONG, &stuck)
+                StepError::at(LONG, &failure)
             })?;
             taken = taken.max(steps);
             work.guess.clone_from(&work.q);
         }
         self.statistics.steps += 1;
-        self.statistics.evaluations += std::mem::take(&mut work.evaluations);
-        self.statistics.solves += std::mem::take(&mut work.solves);
-        self.statistics.line_search_halvings += std::mem::take(&mut work.line_search_halvings);
+        self.statistics.take_from(work);
         for (x, q) in sys.state.rod.x.iter_mut().zip(&work.q) {
             *x = spin.to_lab(*q);
         }
@@ -116,31 +113,15 @@ pub(super) fn still(sys: &mut System) -> StepFormula {
     }
 }
 
-pub(super) fn model_at_rest(sys: &mut System) -> Model<'_> {
-    let held = [sys.state.support[0].hold, sys.state.support[1].hold];
+/// The potential of the step that [`still`] returned: no wire is fed and none slips.
+pub(super) fn potential_at_rest<'a>(sys: &'a mut System, step: &StepFormula) -> Potential<'a> {
     if let Some(mut line) = sys.line_contact() {
         line.begin_solve();
     }
-    Model {
+    let (spindle, support) = (sys.state.spindle, sys.state.support);
+    Potential {
         first: None,
-        last: &sys.state.past.q[0],
-        rod: &sys.state.rod,
-        laws: &sys.model.laws,
-        line: line_contact(
-            &sys.model.contact,
-            &mut sys.state.contact,
-            &mut sys.scratch.contact,
-        ),
-        loads: &sys.model.loads,
-        tension: &sys.state.load.tension,
-        nozzle: None,
-        grown: 0.0,
-        gamma: LONG,
         elapsed: f64::INFINITY,
-        diameter: sys.model.section.diameter,
-        arc0: sys.state.arc0,
-        back: Spin::new(sys.state.spindle.angle),
-        held,
-        flat: false,
+        ..Potential::of_step(sys, step, &spindle, &support, None)
     }
 }

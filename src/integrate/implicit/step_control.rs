@@ -11,6 +11,21 @@ const GROWTH: f64 = 1.7;
 /// Share of the tolerance that a step length is chosen for. Fewer steps thrown away outweigh more
 /// steps (at 0.7 a fifth of all steps was rejected, at 0.4 a tenth, for a tenth less work in all).
 const AIM: f64 = 0.4;
+/// Smallest factor from an accepted step to the next. Chosen, like the next four.
+const SHRINKAGE: f64 = 0.3;
+/// Least and largest share of its length with which a step is tried again whose error is too large.
+pub(super) const SHORTER: [f64; 2] = [0.2, 0.8];
+/// The same of a step whose first update tells that its error would be.
+pub(super) const SHORTER_BY_FIRST_UPDATE: [f64; 2] = [0.3, 0.8];
+/// Share with which a step is tried again after Newton's method failed.
+pub(super) const AFTER_FAILURE: f64 = 0.4;
+/// Share with which it is after wire moved farther than pairs were looked for.
+pub(super) const AFTER_MISSED_PAIRS: f64 = 0.5;
+/// Failures of Newton's method for one step after which it searches as far as it can. One or two are ordinary where wire lands:
+/// giving a long step up is cheaper than searching on.
+pub const PATIENCE: u64 = 3;
+/// Share of the length that a bound on ways or turns allows: a little less than all, so that the second look agrees.
+pub(super) const WITHIN: f64 = 0.9;
 /// Steps below this multiple of the shortest are taken in trouble only.
 pub(super) const SHORT: f64 = 1e3;
 /// Least share of what is close that a short step asks for: 2 pm for wire of 0.7 mm, a thousand times the rounding of places.
@@ -18,7 +33,7 @@ const LEAST_SHARE: f64 = 1e-4;
 /// Angle by which the nozzle's own motion may turn the edge there in a step, rad. The nozzle's work is booked by the
 /// forces at both ends of the step. If the edge swings further, these two forces have little to do with each other. It is the angle
 /// from which on edges are halved, too: a long edge that bends by more before anyone looks gives energy when it is halved.
-const NOZZLE_TURN: f64 = 0.05;
+pub const NOZZLE_TURN: f64 = 0.05;
 
 /// How far the normal of a touch may turn in a step. A step takes touches by their normals at its end; of a shoulder that wire
 /// meets early and is past then, it would see nothing. Wire that lies on the shoulder already goes round it more slowly: with
@@ -88,7 +103,7 @@ impl Implicit {
         } else if h < self.next && factor > 1.0 {
             self.next
         } else {
-            h * factor.clamp(0.3, GROWTH)
+            h * factor.clamp(SHRINKAGE, GROWTH)
         }
         .clamp(self.shortest, self.longest)
     }
@@ -112,7 +127,6 @@ impl<const D: usize, U: Unknowns<D>> Work<D, U> {
                 share = share.min(room / way);
             }
         }
-        // (a little less, so that the second look agrees)
-        if share < 1.0 { 0.9 * share } else { 1.0 }
+        if share < 1.0 { WITHIN * share } else { 1.0 }
     }
 }

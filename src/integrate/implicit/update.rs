@@ -1,6 +1,6 @@
 //! The update of Newton's method: solved again until the tangents of contact and yielding fit where it leads.
 
-use super::model::Model;
+use super::potential::Potential;
 use super::unknowns::{Unknowns, add_at};
 use super::work::Work;
 use crate::contact::{ContactPoint, NodeWeights};
@@ -22,38 +22,37 @@ pub(super) fn load_gradient<const D: usize, U: Unknowns<D>>(work: &mut Work<D, U
 /// The update from gradient and Hessian, with tangents of contact that fit where it leads; whether all of them do.
 #[inline(never)]
 pub(super) fn solve_linear<const D: usize, U: Unknowns<D>>(
-    model: &mut Model,
+    potential: &mut Potential,
     work: &mut Work<D, U>,
     promise: f64,
 ) -> Result<bool, usize> {
     let nodes = work.q.len();
     load_gradient(work);
     for look in 0.. {
-        work.matrix.factor().map_err(|loose| loose.node)?;
+        work.matrix.factor().map_err(|pivot| pivot.node)?;
         work.update.clone_from(&work.load);
-        work.beyond.take(model.line.as_ref(), model.held);
-        work.solve_factored(0.5 * model.diameter);
+        work.beyond.take(potential.line.as_ref(), potential.held);
+        work.solve_factored(0.5 * potential.diameter);
         if look == 0 {
             work.plain.clone_from(&work.update);
         }
         if look == LOOKS_AHEAD {
             return Ok(false);
         }
-        let mut any = predict_branches(model.laws, work);
+        let mut any = predict_branches(potential.laws, work);
         let Work {
             q,
             update,
             load,
             matrix,
-            force: there,
+            there,
             ..
         } = work;
         let move_of = |point: usize| {
-            let mut d = V3::zeros();
-            for (i, w) in ContactPoint::of_number(point).weights().iter() {
-                d += V3::new(update[D * i], update[D * i + 1], update[D * i + 2]) * w;
-            }
-            d
+            let mut way = V3::zeros();
+            let weights = ContactPoint::of_number(point).weights();
+            weights.add_way::<D>(update, &mut way);
+            way
         };
         let mut correct = |place: &NodeWeights, stiffness: &Block, gradient: &V3| {
             place.spread_block(stiffness, matrix);
@@ -63,10 +62,10 @@ pub(super) fn solve_linear<const D: usize, U: Unknowns<D>>(
                 }
             }
         };
-        if let Some(line) = &mut model.line {
+        if let Some(line) = &mut potential.line {
             let farthest = farthest_move::<D>(update);
             any |= line.predict(
-                model.elapsed,
+                potential.elapsed,
                 (farthest, promise),
                 move_of,
                 |point, stiffness, gradient| {
@@ -74,7 +73,9 @@ pub(super) fn solve_linear<const D: usize, U: Unknowns<D>>(
                     correct(&place, stiffness, gradient);
                 },
             );
-            let mut conditions = line.model.of_pairs(model.elapsed, line.state.limit_from);
+            let mut conditions = line
+                .model
+                .of_pairs(potential.elapsed, line.state.limit_from);
             conditions.prediction *= promise;
             if let Some(pairs) = &mut line.state.self_contact {
                 there.clear();
@@ -84,7 +85,7 @@ pub(super) fn solve_linear<const D: usize, U: Unknowns<D>>(
                 any |= pairs.predict(
                     &mut line.scratch.pairs,
                     &conditions,
-                    (q, model.last, there),
+                    (q, potential.last, there),
                     |young, old, stiffness, gradient| {
                         correct(young, stiffness, gradient);
                         correct(old, stiffness, gradient);
@@ -96,8 +97,8 @@ pub(super) fn solve_linear<const D: usize, U: Unknowns<D>>(
             break;
         }
         // nothing but the ends is held, but for plane statics
-        if work.matrix.ends_changed() || model.flat {
-            model.pinned(nodes, |i, a| {
+        if work.matrix.ends_changed() || potential.flat {
+            potential.pinned(nodes, |i, a| {
                 work.matrix.pin(i, a);
                 work.load[D * i + a] = 0.0;
             });

@@ -75,7 +75,11 @@ pub(super) struct Work<const D: usize, U> {
     pub(super) minimal_residual: minimal_residual::Scratch,
     /// vectors of the conjugate gradients
     pub(super) conjugate: conjugate::Scratch,
-    /// forces at the last accepted instant, lab frame, N; while solving, places after the update, m
+    /// places after the update, m
+    pub(super) there: Vec<V3>,
+    /// places, m, and velocities, m/s, at the start of a step that is taken, lab frame
+    pub(super) before: [Vec<V3>; 2],
+    /// forces then, lab frame, N
     pub(super) force: Vec<V3>,
     /// evaluations of potential and gradient since they were last counted
     pub(super) evaluations: u64,

@@ -10,7 +10,7 @@ mod tokens;
 use names::Names;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-pub use tokens::tokens;
+pub use tokens::{Token, tokens};
 
 /// One file, its path relative to the workspace and with `/` on every system.
 #[derive(Clone, Debug)]
@@ -124,6 +124,15 @@ pub fn arrows(sources: &[Source]) -> Vec<Arrow> {
             name,
             test,
         })
+        .collect()
+}
+
+/// Each file of the library with its words that not only tests see.
+pub fn production(sources: &[Source]) -> Vec<(String, Vec<Token>)> {
+    let names = Names::of(sources);
+    names
+        .production()
+        .map(|(file, words)| (file.to_owned(), words.into_iter().cloned().collect()))
         .collect()
 }
 

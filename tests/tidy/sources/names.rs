@@ -57,6 +57,15 @@ impl Names {
         Self { modules }
     }
 
+    /// Each file with its words that not only tests see.
+    pub(super) fn production(&self) -> impl Iterator<Item = (&str, Vec<&Token>)> {
+        self.modules.values().map(|module| {
+            let words = module.tokens.iter().zip(&module.test);
+            let seen = words.filter(|(_, test)| !**test).map(|(word, _)| word);
+            (module.file.as_str(), seen.collect())
+        })
+    }
+
     /// What a file names: imports that it uses itself, and inline paths.
     pub(super) fn mentions(&self, file: &str) -> Vec<Mention> {
         let path = module_path(file);

@@ -12,8 +12,8 @@ use crate::rod::batch::Joints;
 use crate::rod::{Block, Laws, Rod, stretched, turning};
 use crate::system::{Loads, Spindle, Support, System, line_contact};
 
-/// What an evaluation needs besides the iterate.
-pub(super) struct Model<'a> {
+/// The incremental potential of a step, and what its evaluation needs besides the iterate.
+pub(super) struct Potential<'a> {
     pub(super) rod: &'a Rod,
     pub(super) laws: &'a Laws,
     pub(super) line: Option<LineContact<'a>>,
@@ -50,8 +50,8 @@ pub(super) struct Value {
     pub(super) now: f64,
 }
 
-impl<'a> Model<'a> {
-    /// What a solve of `step` needs besides the iterate.
+impl<'a> Potential<'a> {
+    /// The potential of `step`.
     pub(super) fn of_step(
         sys: &'a mut System,
         step: &StepFormula,
@@ -90,7 +90,7 @@ impl<'a> Model<'a> {
     }
 }
 
-impl Model<'_> {
+impl Potential<'_> {
     /// Evaluates at `work.q` into `work.gradient` and `work.matrix`.
     pub(super) fn evaluate<const D: usize, U: Unknowns<D>>(
         &mut self,
@@ -306,7 +306,7 @@ impl Model<'_> {
         work: &mut Work<D, U>,
         value: &mut Value,
     ) {
-        // taken out while it changes along with the rest of the model at hand
+        // taken out while it changes along with the rest of the potential at hand
         let Some(mut line) = self.line.take() else {
             return;
         };

@@ -1,31 +1,12 @@
 //! Tests of what the importer is told: by messages, and by outputs that a message goes with.
 
+use super::{reference, set, started};
 use crate::ffi::Status;
 use crate::instance::Instance;
 use crate::message::Message;
 use coilwind::settings::SceneSettings;
 use coilwind::signals::{Event, EventKind};
-use coilwind::variables::by_name;
 use coilwind_model_description::Category;
-
-fn reference(name: &str) -> u32 {
-    by_name(name).expect("a variable").reference
-}
-
-fn set(instance: &mut Instance, name: &str, value: f64) {
-    instance.set(&[reference(name)], [value]).expect("set");
-}
-
-/// Starts an instance at the time 0 after `set_up`; returns the messages of the start too.
-fn started(set_up: impl Fn(&mut Instance)) -> (Instance, Vec<Message>) {
-    let mut instance = Instance::for_tests();
-    set_up(&mut instance);
-    instance.setup_experiment(None, 0.0, None).expect("valid");
-    instance.enter_initialization_mode().expect("enters");
-    instance.exit_initialization_mode().expect("starts");
-    let messages = instance.end_call();
-    (instance, messages)
-}
 
 fn event(time: f64, kind: EventKind) -> Event {
     Event {
@@ -71,10 +52,10 @@ fn the_end_sums_up_what_the_solver_did() {
         let told = messages.filter(|m| m.category == Category::Solver);
         told.map(|m| (m.status, m.text)).collect::<Vec<_>>()
     };
-    let (mut instance, _) = started(|_| {});
+    let (mut instance, _) = started(0.0, |_| {});
     instance.terminate().expect("ends");
     assert_eq!(of_solver(&mut instance), []);
-    let (mut instance, _) = started(|i| set(i, "spindle_speed", 30.0));
+    let (mut instance, _) = started(0.0, |i| set(i, "spindle_speed", 30.0));
     instance.do_step(0.0, 5e-3).expect("a step");
     instance.do_step(5e-3, 5e-3).expect("a step");
     assert_eq!(of_solver(&mut instance), []);
@@ -94,7 +75,7 @@ fn the_end_sums_up_what_the_solver_did() {
 fn a_folder_of_results_alone_ends_the_demonstration_with_a_line() {
     let folder = tempfile::tempdir().expect("a folder");
     let place = folder.path().join("out").display().to_string();
-    let (_, messages) = started(|i| {
+    let (_, messages) = started(0.0, |i| {
         i.set(&[reference("output.directory")], [place.clone()])
             .expect("set");
     });
@@ -105,14 +86,14 @@ fn a_folder_of_results_alone_ends_the_demonstration_with_a_line() {
         (1, 0),
         "{messages:?}"
     );
-    let (_, messages) = started(|i| set(i, "spindle_speed", 30.0));
+    let (_, messages) = started(0.0, |i| set(i, "spindle_speed", 30.0));
     assert!(!messages.iter().any(|m| m.text.contains("demonstrate")));
 }
 
 /// The warning named another mode than `fmi2GetString` did.
 #[test]
 fn a_key_without_effect_is_told_with_the_mode_that_is_in_use() {
-    let (mut instance, messages) = started(|i| {
+    let (mut instance, messages) = started(0.0, |i| {
         i.set(&[reference("scene.file")], ["fig8".to_owned()])
             .expect("set");
         set(i, "winding.layers", 2.0);
@@ -174,7 +155,7 @@ fn a_scene_warns_once_and_of_what_it_is_in_the_end() {
 #[test]
 fn wire_that_has_parted_has_no_slopes() {
     for step in [1e-4, 1e-3] {
-        let (mut instance, _) = started(|i| set(i, "spindle_speed", 20.0));
+        let (mut instance, _) = started(0.0, |i| set(i, "spindle_speed", 20.0));
         let broke = reference("defect_break");
         let outputs = [
             "fed_length",
@@ -209,7 +190,7 @@ fn wire_that_has_parted_has_no_slopes() {
 #[test]
 fn what_moves_in_a_step_too_short_to_solve_for_moves_in_the_next() {
     for tiny in [1e-18, 1e-12, 5e-10] {
-        let (mut instance, _) = started(|_| {});
+        let (mut instance, _) = started(0.0, |_| {});
         set(&mut instance, "spindle_speed", 10.0);
         set(&mut instance, "nozzle_position", 1e-6);
         set(&mut instance, "tension_setpoint", 16.0);
@@ -222,7 +203,7 @@ fn what_moves_in_a_step_too_short_to_solve_for_moves_in_the_next() {
         assert!((now[1] - 2e-3).abs() < 1e-8, "{tiny}: {now:?}");
     }
     // and what is too short at all changes nothing
-    let (mut instance, _) = started(|i| set(i, "spindle_speed", 10.0));
+    let (mut instance, _) = started(0.0, |i| set(i, "spindle_speed", 10.0));
     let saved = |instance: &mut Instance| {
         let state = instance.snapshot();
         instance.bytes_of(&state).expect("bytes")
@@ -248,7 +229,7 @@ fn the_nozzle_starts_where_the_law_of_the_scene_begins() {
     let table = "[traverse]\nmode = \"table\"\nfile = \"way.csv\"\n";
     let table = write("table.toml", table);
     let starts = |scene: &str| {
-        let (mut instance, _) = started(|i| {
+        let (mut instance, _) = started(0.0, |i| {
             i.set(&[reference("scene.file")], [scene.to_owned()])
                 .expect("set");
         });

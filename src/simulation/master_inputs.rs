@@ -1,4 +1,4 @@
-//! What a master tells of the machine, and what it means for nozzle and tensioner.
+//! Inputs that a master gives, and what they mean for nozzle and tensioner.
 
 use super::door::check_finite;
 use crate::scene::Scene;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// Inputs of a communication step as they were given.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Told {
+pub(super) struct MasterInputs {
     /// at its start
     start: Inputs,
     /// at its end
@@ -16,7 +16,7 @@ pub(super) struct Told {
     dt: f64,
 }
 
-impl Told {
+impl MasterInputs {
     /// A step of `dt`, s, from `inputs` on at `rates`, per s.
     pub(super) fn new(inputs: Inputs, rates: &Inputs, dt: f64) -> Self {
         Self {
@@ -86,7 +86,7 @@ pub(super) fn as_meant(
     inputs: Inputs,
     mut rates: Inputs,
     dt: f64,
-    before: Option<&Told>,
+    before: Option<&MasterInputs>,
 ) -> (Inputs, Inputs) {
     if let Some(before) = before.filter(|_| scene.nozzle.position_at_start) {
         let go_on = |place: fn(&Inputs) -> f64, rate: &mut f64| {

@@ -1,20 +1,12 @@
 //! Tests of what masters stumbled over: times, precedence, folders, parameters one at a time, derivatives.
 
+use super::{reference, set, started};
 use crate::error::Error;
 use crate::instance::Instance;
 use crate::lifecycle::State;
 use crate::message::Message;
 use coilwind::signals::Outputs;
-use coilwind::variables::by_name;
 use coilwind_model_description::{Category, DEFAULT_STOP_TIME, DEFAULT_TOLERANCE};
-
-fn reference(name: &str) -> u32 {
-    by_name(name).expect("a variable").reference
-}
-
-fn set(instance: &mut Instance, name: &str, value: f64) {
-    instance.set(&[reference(name)], [value]).expect("set");
-}
 
 fn set_text(instance: &mut Instance, name: &str, value: &str) {
     let value = value.to_owned();
@@ -23,17 +15,6 @@ fn set_text(instance: &mut Instance, name: &str, value: &str) {
 
 fn real(instance: &mut Instance, name: &str) -> f64 {
     instance.get::<f64>(&[reference(name)]).expect("a value")[0]
-}
-
-/// Starts an instance at `time`, s, after `set_up`; returns the messages of the start too.
-fn started(time: f64, set_up: impl Fn(&mut Instance)) -> (Instance, Vec<Message>) {
-    let mut instance = Instance::for_tests();
-    set_up(&mut instance);
-    instance.setup_experiment(None, time, None).expect("valid");
-    instance.enter_initialization_mode().expect("enters");
-    instance.exit_initialization_mode().expect("starts");
-    let messages = instance.end_call();
-    (instance, messages)
 }
 
 fn warnings(messages: &[Message]) -> Vec<&str> {

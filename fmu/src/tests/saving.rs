@@ -1,26 +1,18 @@
 //! Tests of saved states: continuation to the bit, bytes that are refused, files.
 
+use super::{reference, set};
 use crate::error::{BytesError, Error};
 use crate::ffi;
 use crate::ffi::Status;
 use crate::instance::Instance;
 use crate::lifecycle::State;
 use crate::state::Snapshot;
-use coilwind::variables::by_name;
 use coilwind_model_description::guid;
 
 const STEP: f64 = 1e-4;
 
-fn reference(name: &str) -> u32 {
-    by_name(name).expect("a variable").reference
-}
-
-fn set(instance: &mut Instance, name: &str, value: f64) {
-    instance.set(&[reference(name)], [value]).expect("set");
-}
-
 /// Returns an instance at its first communication point, with parameters and inputs set.
-fn started() -> Instance {
+fn at_first_point() -> Instance {
     let mut instance = Instance::for_tests();
     instance
         .setup_experiment(None, 1.0, None)
@@ -58,7 +50,7 @@ fn read(data: &[u8]) -> Result<Snapshot, Error> {
 
 #[test]
 fn an_instance_goes_on_from_a_copy_from_bytes_and_after_a_reset() {
-    let mut instance = started();
+    let mut instance = at_first_point();
     wind(&mut instance, 0, 150);
     let saved = instance.snapshot();
     let data = bytes(&saved);
@@ -115,7 +107,7 @@ fn states_before_the_start_and_after_the_end_are_states() {
 
 #[test]
 fn other_bytes_are_refused_with_the_reason() {
-    let mut instance = started();
+    let mut instance = at_first_point();
     wind(&mut instance, 0, 3);
     let good = bytes(&instance.snapshot());
     let refused = |data: &[u8]| match read(data) {
@@ -153,7 +145,7 @@ fn other_bytes_are_refused_with_the_reason() {
 /// Bytes behind a state were passed over, and with them the sign that something else was written there.
 #[test]
 fn a_byte_behind_a_state_is_refused() {
-    let good = bytes(&started().snapshot());
+    let good = bytes(&at_first_point().snapshot());
     for more in [&[7][..], &[0, 0, 1], &[9; 10]] {
         let long = [&good, more].concat();
         let error = read(&long).expect_err("more than a state");
@@ -168,7 +160,7 @@ fn a_byte_behind_a_state_is_refused() {
 
 #[test]
 fn derivatives_are_checked_before_anything_changes() {
-    let mut instance = started();
+    let mut instance = at_first_point();
     let before = bytes(&instance.snapshot());
     let (speed, tension) = (reference("spindle_speed"), reference("wire_tension"));
     for (variable, order, value) in [
@@ -185,7 +177,7 @@ fn derivatives_are_checked_before_anything_changes() {
 
 #[test]
 fn inputs_follow_their_derivatives_for_one_step() {
-    let mut instance = started();
+    let mut instance = at_first_point();
     let inputs = ["spindle_speed", "tension_setpoint", "nozzle_position"].map(reference);
     instance
         .set_input_derivatives(&inputs, &[1; 3], &[1000.0, -100.0, 0.01])
@@ -313,7 +305,7 @@ fn a_failed_step_can_be_taken_back() {
 /// of the next, and wire that the old friction held at rest stayed there.
 #[test]
 fn what_the_next_step_takes_over_is_pending_in_bytes_too() {
-    let mut instance = started();
+    let mut instance = at_first_point();
     wind(&mut instance, 0, 200);
     let time = 1.0 + 200.0 * STEP;
     set(&mut instance, "friction.kinetic", 0.02);
