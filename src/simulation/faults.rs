@@ -125,7 +125,9 @@ impl Winding {
         let rod = &self.sys.state.rod;
         let half = 0.5 * rod.rest[edge];
         // (as it is, stretched)
-        let lengths = rod.x[edge..].windows(2).map(|ends| (ends[1] - ends[0]).norm());
+        let lengths = rod.x[edge..]
+            .windows(2)
+            .map(|ends| (ends[1] - ends[0]).norm());
         let before_nozzle = lengths.sum::<f64>() - 0.5 * (rod.x[edge + 1] - rod.x[edge]).norm();
         let text = format!(
             "the wire broke {:.1} mm before the nozzle: {} N is above its strength of {} N; lower the tension (tensioner.tension, or the inputs tension_setpoint and brake_torque) or {}",
