@@ -40,14 +40,18 @@ impl Inputs {
 
     /// Where these inputs are after `dt` (s) at these rates, per s.
     pub fn after(&self, rates: &Self, dt: f64) -> Self {
+        let led = |value: f64, rate: f64| match rate == Self::STILL {
+            true => value,
+            false => value + rate * dt,
+        };
         Self {
-            spindle_speed: self.spindle_speed + rates.spindle_speed * dt,
-            nozzle_position: self.nozzle_position + rates.nozzle_position * dt,
-            tension_setpoint: self.tension_setpoint + rates.tension_setpoint * dt,
-            nozzle_offset_x: self.nozzle_offset_x + rates.nozzle_offset_x * dt,
-            nozzle_offset_z: self.nozzle_offset_z + rates.nozzle_offset_z * dt,
-            brake_torque: self.brake_torque + rates.brake_torque * dt,
-            tensioner_damping: self.tensioner_damping + rates.tensioner_damping * dt,
+            spindle_speed: led(self.spindle_speed, rates.spindle_speed),
+            nozzle_position: led(self.nozzle_position, rates.nozzle_position),
+            tension_setpoint: led(self.tension_setpoint, rates.tension_setpoint),
+            nozzle_offset_x: led(self.nozzle_offset_x, rates.nozzle_offset_x),
+            nozzle_offset_z: led(self.nozzle_offset_z, rates.nozzle_offset_z),
+            brake_torque: led(self.brake_torque, rates.brake_torque),
+            tensioner_damping: led(self.tensioner_damping, rates.tensioner_damping),
         }
     }
 }
@@ -281,5 +285,22 @@ impl std::fmt::Display for Event {
             self.angle.to_degrees(),
             self.text
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A spindle told to stand, at a rate of 0, turned at the least number there is, and its standstill was solved for.
+    #[test]
+    fn what_is_told_to_stand_stands() {
+        let rates = Inputs {
+            spindle_speed: Inputs::STILL,
+            nozzle_position: 1.0,
+            ..Inputs::HELD
+        };
+        let led = Inputs::HELD.after(&rates, 1e-3);
+        assert_eq!((led.spindle_speed, led.nozzle_position), (0.0, 1e-3));
     }
 }
