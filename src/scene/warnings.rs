@@ -228,7 +228,7 @@ impl SceneSettings {
                     "which are judged as defects; set defects.gap to more than {gap:.2} if they are meant"
                 ),
                 false => format!(
-                    "{gap:.3} diameters: in an aligned coil they are {ALIGNED_RMS} at most, so turns will be marginal"
+                    "{gap:.3} diameters: in an aligned coil they are {ALIGNED_RMS} at most, so turns may be marginal"
                 ),
             };
             let message = format!(

@@ -24,8 +24,8 @@ const SHORTEST_BENT: f64 = 0.1;
 /// turns by more from edge to edge is folded.
 const WELL_BENT: f64 = 4.0 * BENT;
 
-/// Turns of live wire, the free span with them, from which on it may meet itself: partners lie within `WINDOW` of the search for
-/// pairs, 0.6 rad, of a turn back, and within half of what their segment takes up more.
+/// Turns of live wire, the free span with them, from which on it may meet itself. Partners are sought a turn back, within 0.6 rad
+/// (`WINDOW` of that search) and half of what their segment takes up.
 const WHOLE: f64 = 0.85;
 
 impl Winding {

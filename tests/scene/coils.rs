@@ -423,7 +423,7 @@ fn turns_planned_apart_are_told() {
         warnings.iter().any(told)
     };
     assert!(told("pitch_mm = 1", "judged as defects"));
-    assert!(told("pitch_mm = 0.75", "will be marginal"));
+    assert!(told("pitch_mm = 0.75", "may be marginal"));
     assert!(!told("pitch_mm = 0.73", ""));
 }
 
