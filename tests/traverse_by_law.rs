@@ -260,3 +260,37 @@ fn steps_ahead_by_law_follow_a_speed_that_changes() {
         assert!(copy.to_bytes().expect("bytes") == restored.to_bytes().expect("bytes"));
     }
 }
+
+/// Nothing was said when the planned layers were wound and the spindle went on.
+#[test]
+fn a_spindle_that_goes_on_after_the_planned_layers_is_told_so() {
+    let mut settings = SceneSettings::load("bobbin").expect("packed");
+    for (name, value) in [
+        ("winding.turns_per_layer", "2"),
+        ("winding.layers", "1"),
+        ("solver.tolerance_um", "20"),
+    ] {
+        settings.set_text(name, value).expect("a setting");
+    }
+    let scene = settings.build().expect("valid");
+    let start = Inputs {
+        spindle_speed: 100.0,
+        ..scene.start_inputs()
+    };
+    let mut sim = Simulation::starting_by_law(&scene, start).expect("starts");
+    let told_by = |sim: &mut Simulation, turns: f64| {
+        let mut told = 0;
+        while sim.outputs().spindle_angle < turns * TAU {
+            sim.advance(sim.inputs(), 1e-3).expect("goes on");
+            let events = sim.drain_events();
+            told += events
+                .iter()
+                .filter(|e| e.text.contains("hold 2 turns"))
+                .count();
+        }
+        told
+    };
+    assert_eq!(told_by(&mut sim, 2.95), 0);
+    assert_eq!(told_by(&mut sim, 3.1), 1);
+    assert_eq!(told_by(&mut sim, 4.2), 0);
+}

@@ -92,7 +92,7 @@ pub(crate) enum Error {
     #[error("{0}")]
     Scene(Box<SceneError>),
     /// A file is in none of the places where it may be.
-    #[error("{name} = {file} is not there{}", looked_in(places))]
+    #[error("{name} = {file} is no file{}", looked_in(places))]
     NoFile {
         /// Name of the parameter.
         name: &'static str,

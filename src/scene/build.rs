@@ -104,6 +104,7 @@ impl SceneSettings {
         if follows.is_law() {
             problems.append(way);
         }
+        self.check_output(&mut problems);
         self.check_motion_and_friction(law.as_ref(), &mut problems);
         if let (Some(wire), Some((_, extent))) = (&wire, &core) {
             self.check_core(wire, extent, &mut problems);

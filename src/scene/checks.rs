@@ -43,6 +43,18 @@ impl SceneSettings {
         }
     }
 
+    /// Paths are taken as they are: what a shell or an importer might mean by these would become folders of such names.
+    pub(super) fn check_output(&self, problems: &mut Problems) {
+        let directory = &self.output.directory;
+        if directory == "~" || directory.starts_with("~/") || directory.contains("://") {
+            problems.add(self.impossible(
+                "output.directory",
+                "~ and addresses are not looked up",
+                "the path of a folder, from / on or from the current folder",
+            ));
+        }
+    }
+
     pub(super) fn check_core(&self, wire: &Section, extent: &Extent, problems: &mut Problems) {
         let length = extent.y_max - extent.y_min;
         if wire.diameter > length {

@@ -62,11 +62,13 @@ impl Winding {
     ///
     /// It does where more than [`RUNAWAY`] times the wire has come in that the largest possible core takes up.
     fn check_feed(&mut self) {
-        let Some(feed) = &self.sys.state.feed else {
+        let Some(feed) = self.sys.state.feed else {
             return;
         };
         let angle = (self.sys.state.spindle.angle - self.run.angle0).abs();
-        self.run.farthest = self.run.farthest.max(angle);
+        let before = self.run.farthest;
+        self.run.farthest = before.max(angle);
+        self.tell_of_full_layers(before);
         let rod = &self.sys.state.rod;
         let way = (self.sys.state.support[1].point - rod.x[0]).norm();
         // a core cannot be larger than the nozzle's circle

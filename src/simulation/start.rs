@@ -40,7 +40,7 @@ const STEPS: [f64; 3] = [0.005, 50.0, 5e5];
 
 /// Turns from which on a run goes on after its planned layers. Chosen: a turn. Wire has to be wound after the last one until that comes
 /// to rest, half a turn or more.
-const WOUND_AFTER: f64 = 1.0;
+pub(super) const WOUND_AFTER: f64 = 1.0;
 
 /// Straight wire before the first step: where it is clamped, where it leaves the nozzle, and how the core is turned.
 struct FirstSpan {

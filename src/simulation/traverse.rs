@@ -2,6 +2,7 @@
 
 use super::Winding;
 use super::nozzle_way::{Found, Traverse};
+use super::start::WOUND_AFTER;
 use crate::math::wrap_to_pi;
 use crate::signals::EventKind;
 use std::f64::consts::TAU;
@@ -51,6 +52,21 @@ impl Winding {
             if found != Found::Nothing {
                 self.tell_of_changes("the nozzle has turned since");
             }
+        }
+    }
+
+    /// Tells once that the planned layers are wound and the spindle goes on, after it had turned `before`, rad, at the farthest.
+    pub(super) fn tell_of_full_layers(&mut self, before: f64) {
+        let law = &self.scene.nozzle_law;
+        let Some(held) = law.held().filter(|_| self.run.nozzle_by_law) else {
+            return;
+        };
+        let end = (held + WOUND_AFTER) * TAU;
+        if before < end && end <= self.run.farthest {
+            let text = format!(
+                "the layers hold {held} turns, and the spindle has turned {WOUND_AFTER} more: what is wound now has no place but on the last one; stop the spindle, or plan more turns or layers"
+            );
+            self.report(EventKind::Judgement, text);
         }
     }
 

@@ -465,3 +465,20 @@ fn an_even_way_past_a_flange_is_refused() {
     assert!(built(-3.3425, 0.74).is_ok() && built(-3.0, 0.7).is_ok());
     assert!(built(3.3425, -0.74).is_ok() && built(3.0, -0.75).is_err());
 }
+
+/// A folder named `~` or `file:` was made.
+#[test]
+fn a_folder_that_only_a_shell_would_find_is_refused() {
+    for folder in ["~/coils", "~", "file:///tmp/coils"] {
+        let message = refused(&format!("[output]\ndirectory = '{folder}'"));
+        assert_says(
+            &message,
+            &[
+                "test.toml:2",
+                "output.directory",
+                folder,
+                "the path of a folder",
+            ],
+        );
+    }
+}

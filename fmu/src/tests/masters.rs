@@ -400,11 +400,16 @@ fn a_missing_file_is_told_by_the_way_of_the_fmu() {
         set_text(i, "traverse.file", "none.csv");
     });
     let here = std::env::current_dir().expect("a folder");
-    let here = format!("is not there; looked in {}", here.display());
+    let here = format!("is no file; looked in {}", here.display());
     assert!(
         text.contains("traverse.file = none.csv") && text.contains(&here),
         "{text}"
     );
+    let folder = refused(&|i| {
+        set_text(i, "core.shape", "mesh");
+        set_text(i, "core.file", &std::env::temp_dir().to_string_lossy());
+    });
+    assert!(folder.contains("is no file"), "{folder}");
     for (name, key) in [("core.shape", "mesh"), ("traverse.mode", "table")] {
         let text = refused(&|i| set_text(i, name, key));
         let way = "by its name among the FMU's resources, or else as given";
