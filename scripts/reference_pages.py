@@ -78,7 +78,7 @@ For connecting the FMU: every input, output and parameter with its unit, start v
 - A text with choices has a twin that takes the number of the choice, `core.shape_number` for `core.shape`; scene files have the text only.
 - Keys of `[spindle]` and `output.history_interval` do not exist here: the spindle is an input. `traverse.mode` says whether the nozzle is one.
 
-[Stepping](stepping.md) says when an input counts. [Reading defects](../guide/reading-defects.md) explains the measures.
+[Stepping](stepping.md) says when an input counts. [Measures and flags](../guide/measures.md) explains the measures.
 """
 
 
