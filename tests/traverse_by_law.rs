@@ -4,10 +4,11 @@ mod common;
 
 use coilwind::scene::Scene;
 use coilwind::settings::{NozzleFollows, SceneSettings};
-use coilwind::signals::Inputs;
+use coilwind::signals::{Event, Inputs};
 use coilwind::simulation::Simulation;
 use common::fig8;
 use std::f64::consts::TAU;
+use std::path::Path;
 
 /// Time that a ramp of a quarter of a turn takes, s: a power of two, as are the steps, so that no time is rounded.
 const RAMP: f64 = 1.0 / 32.0;
@@ -261,36 +262,62 @@ fn steps_ahead_by_law_follow_a_speed_that_changes() {
     }
 }
 
-/// Nothing was said when the planned layers were wound and the spindle went on.
+/// Nothing was said when the planned layers were wound and the spindle went on. `turn_in_layer` counted on from the first layer, and
+/// `layer` fell back to the plan's last one.
 #[test]
 fn a_spindle_that_goes_on_after_the_planned_layers_is_told_so() {
-    let mut settings = SceneSettings::load("bobbin").expect("packed");
-    for (name, value) in [
-        ("winding.turns_per_layer", "2"),
-        ("winding.layers", "1"),
-        ("solver.tolerance_um", "20"),
-    ] {
-        settings.set_text(name, value).expect("a setting");
-    }
-    let scene = settings.build().expect("valid");
-    let start = Inputs {
-        spindle_speed: 100.0,
-        ..scene.start_inputs()
-    };
-    let mut sim = Simulation::starting_by_law(&scene, start).expect("starts");
-    let told_by = |sim: &mut Simulation, turns: f64| {
-        let mut told = 0;
-        while sim.outputs().spindle_angle < turns * TAU {
-            sim.advance(sim.inputs(), 1e-3).expect("goes on");
-            let events = sim.drain_events();
-            told += events
-                .iter()
-                .filter(|e| e.text.contains("hold 2 turns"))
-                .count();
+    for (mode, layers, turns) in [("orthocyclic", 1.0, 4.0), ("helical", 2.0, 3.0)] {
+        let text = format!(
+            "solver.tolerance_um = 10
+            nozzle.distance_mm = 18
+            tensioner.tension = 5
+            traverse.mode = '{mode}'
+            [core]
+            shape = 'cylinder'
+            radius_mm = 6
+            flange = {{ inner_distance_mm = {}, height_mm = 4 }}
+            [wire]
+            material = 'copper-soft'
+            diameter_mm = 0.44
+            [winding]
+            layers = {layers}
+            turns_per_layer = {turns}",
+            0.45 * turns + 0.25
+        );
+        let settings = SceneSettings::from_toml_str(&text, "test.toml", Path::new(""));
+        let scene = settings.expect("reads").build().expect("valid");
+        let start = Inputs {
+            spindle_speed: 100.0,
+            ..scene.start_inputs()
+        };
+        let mut sim = Simulation::starting_by_law(&scene, start).expect("starts");
+        let mut laid = Vec::new();
+        let mut told_by = |sim: &mut Simulation, turns: f64| {
+            let mut told = 0;
+            while sim.outputs().spindle_angle < turns * TAU {
+                sim.advance(sim.inputs(), 1e-3).expect("goes on");
+                let goes_on = |e: &&Event| e.text.contains("what is wound now has no place");
+                told += sim.drain_events().iter().filter(goes_on).count();
+                laid.push(*sim.outputs());
+            }
+            told
+        };
+        let held = layers * turns;
+        assert_eq!(told_by(&mut sim, held + 0.95), 0);
+        assert_eq!(told_by(&mut sim, held + 1.1), 1);
+        assert_eq!(told_by(&mut sim, held + 4.7), 0);
+        // as the tables have it, once the wire lies still
+        let table = sim.turns();
+        for o in laid
+            .iter()
+            .filter(|o| o.turns_wound > held && o.turns_wound % 1.0 > 0.5)
+        {
+            let Some(turn) = table.get(o.turns_wound as usize) else {
+                continue;
+            };
+            let of_turn = f64::from(turn.turn_in_layer - 1) + o.turns_wound % 1.0;
+            assert_eq!(o.layer, turn.layer as i32, "{o:?}");
+            assert!((o.turn_in_layer - of_turn).abs() < 0.3, "{of_turn}, {o:?}");
         }
-        told
-    };
-    assert_eq!(told_by(&mut sim, 2.95), 0);
-    assert_eq!(told_by(&mut sim, 3.1), 1);
-    assert_eq!(told_by(&mut sim, 4.2), 0);
+    }
 }

@@ -21,8 +21,8 @@ impl Coil {
                 station.angle,
             )
         });
-        let jumps = &self.spec.jumps;
-        if jumps.is_empty() {
+        let (jumps, full) = (&self.spec.jumps, self.spec.full);
+        if jumps.is_empty() && full.is_none() {
             let climbed = (layer > 1).then_some(since);
             let begins = self.passes.begins(angle, climbed).max(0.0);
             // (after a turn of the nozzle wire may lie beside the layer for a turn or two before it climbs)
@@ -36,9 +36,10 @@ impl Coil {
         let due = jumps.partition_point(|jump| middle(jump) <= angle);
         let climbs = layer - 1;
         if climbs > due {
-            // it has climbed early, for good or for a while
+            // it has climbed early, for good or for a while, or once the plan was over
             let is_early = end - since > ASTRAY;
-            return match is_early {
+            let is_over = full.is_some_and(|full| since > full - STEP_UP);
+            return match is_early || is_over {
                 true => (climbs as u32 + 1, since),
                 false => (due as u32 + 1, planned(due)),
             };

@@ -464,7 +464,7 @@ impl SceneSettings {
                 spacing_for(s.tolerance_for(diameter), diameter, cylinder).min(8.0 * diameter);
             (near, scaled(3e-3, diameter))
         } else {
-            (0.5e-3, 6e-3)
+            (scaled(0.5e-3, diameter), scaled(6e-3, diameter))
         };
         let halvings = match implicit {
             true => halved(near, coarsest, diameter),
@@ -478,7 +478,7 @@ impl SceneSettings {
         };
         let mut free = match implicit {
             true => free_over_near * spacing_near,
-            false => 1e-3,
+            false => scaled(1e-3, diameter),
         };
         while implicit && 3.0 * free > span && free > spacing_near {
             // a power of two still, since edges are halved

@@ -395,9 +395,9 @@ table! {
 
     fixed(1400, "start.clamp_y", start.clamp_y, "m", "mm", -10.0, 10.0, 1e-2, "wire end along the core axis, on the +x face; not set, with layers planned or a table: where the nozzle begins");
 
-    native(1500, "spindle.speed", spindle.speed, "rad/s", "rpm", 0.1, 2000.0, 100.0, "final speed of the native programme");
+    native(1500, "spindle.speed", spindle.speed, "rad/s", "rpm", 0.1, 2000.0, 100.0, "final speed of the scene's own motion profile");
     native(1501, "spindle.ramp_turns", spindle.ramp_turns, "1", "", 1e-3, 1e3, 1.0, "revolutions over which the speed rises, at constant acceleration");
-    native(1502, "spindle.turns", spindle.turns, "1", "", 0.0, 1e5, 1.0, "revolutions of the spindle until the native programme ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle");
+    native(1502, "spindle.turns", spindle.turns, "1", "", 0.0, 1e5, 1.0, "revolutions of the spindle until the scene's own motion profile ends; 0: those of the winding, or 2.5 with traverse.mode = by-angle");
 
     native_text(1503, "spindle.file", (spindle.file), [], "CSV file of the spindle's angle and the share of its speed that is allowed there, relative to the scene file");
     native(1504, "spindle.repeat_turns", spindle.repeat_turns, "1", "", 0.0, 1e5, 1.0, "revolutions after which the table of spindle.file begins again; 0: it does not");
@@ -428,9 +428,9 @@ table! {
     fixed(1802, "friction.slip_speed", friction.slip_speed, "m/s", "mm/s", 1e-5, 100.0, 1e-2, "slip speed over which static turns into kinetic");
 
     text(1900, "solver.integrator", (solver.integrator), ["auto", "implicit", "rk4", "verlet"], "time integrator; auto: rk4 for preset paper, else implicit");
-    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: 0.5 mm explicit; implicit in proportion to the outer diameter, 0.3 mm for 0.7 mm, coarser as the cube root of a tolerance above its own, halved until fine enough for the bends on corners");
-    fixed(1902, "solver.spacing_free", solver.spacing_free, "m", "mm", 0.0, 0.1, 1e-3, "node spacing in the free span; 0: 1 mm explicit, eight times that near the core implicit");
-    fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core or the layer below at which free-span edges are split; 0: 3 mm implicit, 6 mm explicit");
+    fixed(1901, "solver.spacing_near", solver.spacing_near, "m", "mm", 0.0, 5e-2, 1e-3, "node spacing near the core; 0: in proportion to the outer diameter, for 0.7 mm 0.5 mm explicit and 0.3 mm implicit, there coarser as the cube root of a tolerance above its own, halved until fine enough for the bends on corners");
+    fixed(1902, "solver.spacing_free", solver.spacing_free, "m", "mm", 0.0, 0.1, 1e-3, "node spacing in the free span; 0: eight times that near the core implicit, in proportion to the outer diameter explicit, 1 mm for 0.7 mm");
+    fixed(1903, "solver.refine_distance", solver.refine_distance, "m", "mm", 0.0, 10.0, 1e-2, "distance from the core or the layer below at which free-span edges are split; 0: in proportion to the outer diameter, for 0.7 mm 3 mm implicit and 6 mm explicit");
     fixed(1904, "solver.step_share", solver.step_share, "1", "", 1e-3, 1.0, 1.0, "time step as a share of the stability limit");
     fixed(1905, "solver.step", solver.step, "s", "us", 0.0, 1e-2, 1e-6, "fixed time step; 0: from the error (implicit) or the stability limit");
     fixed(1906, "solver.tolerance", solver.tolerance, "m", "um", 0.0, 1e-3, 1e-6, "estimated error that a step of the implicit method may have, root mean square over the wire, 1e-9 m at least; 0: in proportion to the outer diameter, 2 um for 0.7 mm");

@@ -293,3 +293,29 @@ fn a_curve_in_other_units_is_warned_of() {
     assert!(told("[[0.1, 110e6], [0.5, 140e6], [0.9, 160e6]]"));
     assert!(!told("[[0.001, 110e6], [0.05, 140e6], [0.2, 160e6]]"));
 }
+
+/// The explicit methods had 0.5 mm between nodes whatever the wire was: 10 diameters of wire of 0.05 mm.
+#[test]
+fn the_spacing_of_the_explicit_methods_goes_with_the_wire() {
+    let spacing = |diameter: &str| {
+        let mut settings = SceneSettings::packed("fig8")
+            .expect("packed")
+            .expect("valid");
+        for (name, value) in [
+            ("wire.material", "copper"),
+            ("wire.diameter", diameter),
+            ("solver.integrator", "verlet"),
+        ] {
+            settings.set_text(name, value).expect("a setting");
+        }
+        let solver = settings.build().expect("valid").solver;
+        [
+            solver.spacing_near,
+            solver.spacing_free,
+            solver.refine_distance,
+        ]
+    };
+    let (thin, thick) = (spacing("0.35e-3"), spacing("0.7e-3"));
+    assert_eq!(thick, [0.5e-3, 1e-3, 6e-3]);
+    assert_eq!(thin.map(|x| 2.0 * x), thick);
+}
