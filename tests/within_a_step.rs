@@ -61,6 +61,47 @@ fn slack_that_passes_within_a_step_is_seen() {
     assert_eq!((o.defect_count, o.defect_kind), (1, 16));
 }
 
+/// A loose turn was found after the wire had gone slack, in wire that had come to rest before. `defect_count` rose, and `defect_kind` to
+/// `defect_size` went on telling of the slack.
+#[test]
+fn what_is_found_after_slack_is_the_last_defect() {
+    let mut settings = SceneSettings::load("fig8").unwrap();
+    for (name, value) in [
+        ("core.shape", "cylinder"),
+        ("core.radius_mm", "5"),
+        ("wire.material", "copper-soft"),
+        ("wire.diameter_mm", "0.4"),
+        ("tensioner.tension", "5"),
+        ("nozzle.distance_mm", "14"),
+        ("solver.tolerance_um", "10"),
+    ] {
+        settings.set_text(name, value).unwrap();
+    }
+    let mut sim = Simulation::new(&settings.build().unwrap()).unwrap();
+    let mut inputs = sim.inputs();
+    let mut slack = f64::NAN;
+    for k in 0..300 {
+        inputs.spindle_speed = (3.75 * f64::from(k)).min(150.0);
+        inputs.nozzle_position += 5.5e-4 * inputs.spindle_speed * 0.5e-3 / TAU;
+        inputs.tension_setpoint = if k == 155 { 0.0 } else { 5.0 };
+        sim.advance(inputs, 0.5e-3).unwrap();
+        let o = sim.outputs();
+        if o.defect_count_slack == 1 && slack.is_nan() {
+            slack = o.defect_time;
+            assert_eq!((o.defect_kind, o.defect_count_loose_turn), (16, 0));
+        }
+        if o.defect_count_loose_turn == 1 {
+            assert_eq!((o.defect_kind, o.defect_turn), (512, 2.0));
+            assert!(o.defect_time < slack, "{slack}, {o:?}");
+            return;
+        }
+    }
+    panic!(
+        "no turn was found loose after the slack: {slack} {:?}",
+        sim.outputs()
+    );
+}
+
 /// A last turn that snapped into its groove took the tension away for 6 to 30 us, and condemned coils of which all turns lay in their places.
 #[test]
 fn slack_in_which_no_wire_is_laid_is_none() {

@@ -61,6 +61,8 @@ pub enum BulgeLimit {
 /// Bulge that is a defect where no quasi-static height is known, diameters: it takes the room of another wire.
 pub(crate) const FALLBACK_BULGE: f64 = 1.0;
 
+/// How many kinds of defect there are.
+pub(crate) const KINDS: usize = DefectKind::ALL.len();
 /// How many kinds of defect are measured on settled wire.
 pub(crate) const MEASURED: usize = DefectKind::MEASURED.len();
 

@@ -46,6 +46,7 @@ pub use coil::{Coil, CoilSpec};
 pub use contour::LayerContour;
 pub use crossover::Crossover;
 pub use defect::{BulgeLimit, Defect, DefectFlags, DefectKind, DefectLimits, DefectPlace};
+pub(crate) use defect::{KINDS, MEASURED};
 pub(crate) use marks::CountedRun;
 pub use node::{SettledNode, added_by_stretch};
 pub(crate) use on_turn::OnTurn;

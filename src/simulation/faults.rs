@@ -1,14 +1,16 @@
 //! Faults of the wire itself: slack and break, kept as defects with their place, and the verdict on the run.
 
 use super::Winding;
+use super::outputs::counts_told;
 use super::run_state::SlackSince;
 use crate::feed::FeedSpec;
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
 use crate::measure::{
-    Defect, DefectKind, DefectPlace, OnTurn, STATION_STEP, TurnMeasures, Verdict,
+    Defect, DefectKind, DefectPlace, KINDS, MEASURED, OnTurn, STATION_STEP, TurnMeasures, Verdict,
 };
 use crate::signals::EventKind;
 use std::f64::consts::{FRAC_PI_2, TAU};
+use std::ops::Range;
 
 /// Turn of the core within which wire that is slack again is still slack, rad.
 ///
@@ -87,10 +89,12 @@ impl Winding {
             fault.until_s = Some(now);
             return;
         }
-        self.keep_fault(DefectKind::Slack, since.wound, since.place.into());
-        if let Some(fault) = self.run.faults.last_mut() {
-            fault.time_s = since.time;
-        }
+        self.keep_fault(
+            DefectKind::Slack,
+            since.time,
+            since.wound,
+            since.place.into(),
+        );
         self.report(
             EventKind::Slack,
             format!(
@@ -142,7 +146,7 @@ impl Winding {
 
     /// The same of what happened at an angle along the wire from the clamp, rad, at a place in the core frame, m.
     pub(super) fn note_end_at(&mut self, kind: DefectKind, angle: f64, place: V3, text: String) {
-        self.keep_fault(kind, angle, place);
+        self.keep_fault(kind, self.sys.state.time, angle, place);
         let event = match kind {
             DefectKind::Collision => EventKind::Collision,
             DefectKind::Runaway => EventKind::Runaway,
@@ -160,10 +164,9 @@ impl Winding {
         (angle, spin.to_core(self.sys.state.rod.x[node]))
     }
 
-    /// Keeps a fault of the wire at this angle along it, rad, and place, m.
-    fn keep_fault(&mut self, kind: DefectKind, angle: f64, place: V3) {
+    /// Keeps a fault of the wire that began at this time, s, at this angle along it, rad, and place, m.
+    fn keep_fault(&mut self, kind: DefectKind, time: f64, angle: f64, place: V3) {
         let angle = angle.max(0.0);
-        let now = self.sys.state.time;
         let OnTurn { turn, angle_deg } = OnTurn::at(angle);
         self.run.faults.push(Defect {
             kind,
@@ -172,12 +175,13 @@ impl Winding {
             angle_deg,
             found_turn: turn,
             found_angle_deg: angle_deg,
-            time_s: now,
-            until_s: (kind == DefectKind::Slack).then_some(now),
+            time_s: time,
+            until_s: (kind == DefectKind::Slack).then_some(self.sys.state.time),
             size_m: None,
             size_d: None,
             place_m: place.into(),
         });
+        self.count_defects();
     }
 
     /// Angle along the wire from the clamp to a live node, and its polar angle, rad.
@@ -196,47 +200,32 @@ impl Winding {
         )
     }
 
-    /// Puts the defect that was found last into the outputs. It stays there when its wire comes loose, and one found before is the
-    /// last in the settled wire. Of two of one instant, the one that is left is no new one.
-    pub(super) fn keep_last_defect(&mut self) {
-        let found = self.last_defect();
-        let more = self.defects_found() > self.run.outputs.defect_count;
+    /// Puts the defect that was found last into the outputs, where one was found since they had the `counts` of each kind. It stays there
+    /// when its wire comes loose, and one found before is the last in the settled wire.
+    ///
+    /// What is found later may have come to pass before: the wire beside it has to lie still too.
+    pub(super) fn keep_last_defect(&mut self, counts: &[i32; KINDS]) {
         let o = &mut self.run.outputs;
-        let is_new =
-            |last: &DefectPlace| last.time > o.defect_time || (more && last.time == o.defect_time);
-        if let Some(last) = found.filter(is_new) {
-            o.defect_kind = last.kind.code();
-            o.defect_turn = f64::from(last.turn);
-            o.defect_angle = last.angle;
-            o.defect_time = last.time;
-            o.defect_size = last.size;
-        }
-    }
-
-    /// The defect that was found last, at the place where it was found: that of settled wire, or slack or a break.
-    fn last_defect(&self) -> Option<DefectPlace> {
-        let fault = self.run.faults.last().map(|fault| DefectPlace {
+        let told = counts_told(o).map(|count| *count);
+        let has_more =
+            |kinds: Range<usize>| kinds.into_iter().any(|kind| counts[kind] > told[kind]);
+        let laid = self.coil.last_defect();
+        let laid = laid.filter(|laid| has_more(0..MEASURED) || laid.time > o.defect_time);
+        let fault = self.run.faults.last().filter(|_| has_more(MEASURED..KINDS));
+        let fault = fault.map(|fault| DefectPlace {
             kind: fault.kind,
             size: 0.0,
             turn: fault.turn,
             angle: fault.angle_deg.to_radians(),
             time: fault.time_s,
         });
-        match (self.coil.last_defect(), fault) {
-            (Some(laid), Some(fault)) if laid.time > fault.time => Some(laid),
-            (laid, fault) => fault.or(laid),
+        if let Some(last) = fault.or(laid) {
+            o.defect_kind = last.kind.code();
+            o.defect_turn = f64::from(last.turn);
+            o.defect_angle = last.angle;
+            o.defect_time = last.time;
+            o.defect_size = last.size;
         }
-    }
-
-    /// How many defects there are by now.
-    pub(super) fn defects_found(&self) -> i32 {
-        self.coil.defect_count() as i32 + self.run.faults.len() as i32
-    }
-
-    /// How many times the wire failed in this way.
-    pub(super) fn faults_of(&self, kind: DefectKind) -> usize {
-        let faults = self.run.faults.iter();
-        faults.filter(|fault| fault.kind == kind).count()
     }
 
     /// Every defect so far, in the order of their times: those of settled wire, slack, and a break.

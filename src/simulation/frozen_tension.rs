@@ -23,7 +23,7 @@ impl Winding {
         let tensions: Vec<f64> = (first..pulls.len()).map(|i| pulls[i].tension).collect();
         Arc::make_mut(&mut self.sys.state.frozen).tension[first..].copy_from_slice(&tensions);
         self.coil_mut().set_tensions(first, &tensions);
-        self.keep_last_defect();
+        self.count_defects();
         self.tell_of_changes("its tension has changed since");
     }
 }

@@ -3,7 +3,7 @@
 use super::sharp_bend::strain_outside;
 use super::{Centreline, Winding};
 use crate::math::{Spin, V3, turn_about_y};
-use crate::measure::{Coil, DefectKind, SettledNode};
+use crate::measure::{Coil, DefectKind, KINDS, SettledNode};
 use crate::signals::Outputs;
 
 impl Winding {
@@ -195,38 +195,29 @@ impl Winding {
     /// Defects found so far, by the limits that hold now, and the largest values of the last turn.
     pub(super) fn count_defects(&mut self) {
         let worst = self.coil.worst();
-        self.keep_last_defect();
-        let count = self.defects_found();
-        let raised = self.coil.raised();
-        let faults = [
-            DefectKind::Break,
-            DefectKind::Slack,
-            DefectKind::Collision,
-            DefectKind::Runaway,
-        ]
-        .map(|kind| self.faults_of(kind) as i32);
+        let counts = self.defects_by_kind();
+        self.keep_last_defect(&counts);
         let o = &mut self.run.outputs;
-        o.defect_break = faults[0] > 0;
-        o.defect_count = count;
-        let raised = |kind: DefectKind| raised[kind as usize] as i32;
-        o.defect_count_bulge = raised(DefectKind::Bulge);
-        o.defect_count_gap = raised(DefectKind::Gap);
-        o.defect_count_overlap = raised(DefectKind::Overlap);
-        o.defect_count_double_turn = raised(DefectKind::DoubleTurn);
-        o.defect_count_skipped_groove = raised(DefectKind::SkippedGroove);
-        o.defect_count_early_jump = raised(DefectKind::EarlyJump);
-        o.defect_count_late_jump = raised(DefectKind::LateJump);
-        o.defect_count_loose_turn = raised(DefectKind::LooseTurn);
-        o.defect_count_overstretch = raised(DefectKind::Overstretch);
-        [
-            o.defect_count_break,
-            o.defect_count_slack,
-            o.defect_count_collision,
-            o.defect_count_runaway,
-        ] = faults;
+        o.defect_break = counts[DefectKind::Break as usize] > 0;
+        o.defect_count = counts.iter().sum();
+        for (told, count) in counts_told(o).into_iter().zip(counts) {
+            *told = count;
+        }
         o.bulge_height = worst.bulge_height;
         o.gap_width = worst.gap_width;
         o.overlap_depth = worst.overlap_depth;
+    }
+
+    /// How many defects of each kind there are by now, in the order of the kinds.
+    fn defects_by_kind(&self) -> [i32; KINDS] {
+        let mut counts = [0; KINDS];
+        for (count, raised) in counts.iter_mut().zip(self.coil.raised()) {
+            *count = raised as i32;
+        }
+        for fault in &self.run.faults {
+            counts[fault.kind as usize] += 1;
+        }
+        counts
     }
 
     /// Plastic curvature at a live node, 1/m.
@@ -273,6 +264,25 @@ impl Winding {
         }
         line
     }
+}
+
+/// How many defects of each kind the outputs tell of, in the order of the kinds.
+pub(super) fn counts_told(o: &mut Outputs) -> [&mut i32; KINDS] {
+    [
+        &mut o.defect_count_bulge,
+        &mut o.defect_count_gap,
+        &mut o.defect_count_overlap,
+        &mut o.defect_count_double_turn,
+        &mut o.defect_count_skipped_groove,
+        &mut o.defect_count_early_jump,
+        &mut o.defect_count_late_jump,
+        &mut o.defect_count_loose_turn,
+        &mut o.defect_count_overstretch,
+        &mut o.defect_count_slack,
+        &mut o.defect_count_collision,
+        &mut o.defect_count_runaway,
+        &mut o.defect_count_break,
+    ]
 }
 
 /// Raises the flags that are up in `other`, and the code with them.

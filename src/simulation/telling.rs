@@ -33,7 +33,7 @@ impl Winding {
         let from = changed.map_or(from, |step| from.min(step));
         let raised = self.coil.raised();
         if changed.is_some() || (raised.iter().zip(defects)).any(|(now, before)| *now > before) {
-            self.keep_last_defect();
+            self.count_defects();
             self.tell_of_defects(from);
         }
         self.tell_of_withdrawn(
