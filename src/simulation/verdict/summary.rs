@@ -316,7 +316,7 @@ impl Winding {
     /// Whether the tolerance decides on the steps, and is above that at which gaps have settled.
     fn steps_by_tolerance(&self) -> bool {
         let solver = &self.scene.solver;
-        let steps = solver.integrator == Integrator::Implicit && solver.features.inertia;
+        let steps = self.stepper.is_implicit() && solver.features.inertia;
         steps && solver.tolerance > FINE * self.scene.wire.diameter
     }
 
