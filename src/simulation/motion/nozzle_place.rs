@@ -186,7 +186,7 @@ mod tests {
         assert!(past.to_string().contains("nozzle.y_start"), "{past}");
     }
 
-    /// A programme from the other flange wound forty defects, and nothing was said.
+    /// A run from the other flange wound forty defects, and nothing was said.
     #[test]
     fn a_nozzle_that_begins_beside_the_clamp_is_told() {
         let scene = SceneSettings::load("fig8").and_then(|s| s.build());
