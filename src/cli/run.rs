@@ -78,7 +78,7 @@ pub(super) struct RunArgs {
     /// Communication step for --inputs, s
     #[arg(long, value_name = "H", requires = "inputs", value_parser = positive, allow_negative_numbers = true)]
     pub(super) step: Option<f64>,
-    /// Simulated time at which to stop, s; default: end of the programme or of the inputs
+    /// Simulated time at which to stop, s; default: end of the motion profile or of the inputs
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     pub(super) stop_time: Option<f64>,
     /// No progress, no events, no verdict; errors only

@@ -51,6 +51,11 @@ impl Extent {
         }
     }
 
+    /// Whether this place along the axis, m, lies beside the core.
+    pub(super) fn is_beside(&self, y: f64) -> bool {
+        y < self.y_min || y > self.y_max
+    }
+
     /// The same with flanges beside it.
     pub(super) fn with(self, flange: Option<Flange>) -> Self {
         let Some(f) = flange else {

@@ -105,6 +105,7 @@ impl SceneSettings {
         ))
     }
 
+    /// In the order in which they are told.
     pub(super) fn warnings(
         &self,
         solver: &Solver,
@@ -113,246 +114,34 @@ impl SceneSettings {
         (extent, window): (&Extent, Option<Window>),
         (law, follows): (&NozzleLaw, NozzleFollows),
     ) -> Vec<Warning> {
-        let by_law = follows.is_law();
         let reader = Reader {
             settings: self,
             integrator: solver.integrator,
             window,
             follows,
         };
-        let mut warnings = reader.warnings();
-        let mut warn = |key: &'static str, message: String| {
-            let (origin, value) = (self.told_origin(key), self.shown(key));
-            warnings.push(Warning {
-                origin,
-                key,
-                value,
-                message,
-            });
+        let mut survey = Survey {
+            settings: self,
+            solver,
+            wire,
+            core,
+            extent,
+            window,
+            law,
+            follows,
+            found: reader.warnings(),
         };
-        match extent.crossing {
-            Crossing::None => {}
-            Crossing::At(place) => warn(
-                "core.file",
-                format!(
-                    "the surface crosses itself at {}, and inside and outside are not told apart there: wire may sink in; mesh the body once more, or unite what crosses",
-                    Place(place)
-                ),
-            ),
-            Crossing::NotSearched => warn(
-                "core.file",
-                "whether the surface crosses itself is not known, since too many of its triangles are too long to look at all that may meet; mesh the body more coarsely, or with less narrow triangles".to_owned(),
-            ),
-        }
-        let beside = |y: f64| y < extent.y_min || y > extent.y_max;
-        let ends = format!(
-            "the core ends at {} and {} m",
-            si(extent.y_min),
-            si(extent.y_max)
-        );
-        if beside(self.nozzle.y_start) {
-            warn(
-                "nozzle.y_start",
-                format!("the nozzle starts beside the core; {ends}"),
-            );
-        }
-        if by_law && let Some(message) = self.in_the_way(wire, extent, law) {
-            warn("core.file", message);
-        }
-        let last = law.position(law.end());
-        let by_angle = follows == NozzleFollows::Law && self.traverse.mode == "by-angle";
-        if by_angle && beside(last) && !beside(self.nozzle.y_start) {
-            let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
-            warn(PER_TURN, message);
-        }
-        let table = self.winds_table();
-        if self.winds_layers() || table {
-            let layers = match self.plans_layers() {
-                true => self.winding.layers,
-                false => f64::from(law.passes(wire.diameter)),
-            };
-            // each layer of a table but the first is taken to lie in the grooves of the one below
-            let in_grooves = || wire.diameter * (1.0 + (layers - 1.0) * 0.75_f64.sqrt());
-            let planned = match self.plans_layers() {
-                true => self.height_of_layers(wire.diameter, extent),
-                false => None,
-            };
-            let coil = planned.unwrap_or_else(in_grooves);
-            // where turns are planned in layers, a nozzle that they meet is refused
-            if table && extent.winding_radius + coil >= self.nozzle.distance {
-                let message = format!(
-                    "the coil meets the nozzle: the table goes over it {layers} times, and the wire stands up to {} m from the axis then",
-                    si(extent.winding_radius + coil)
-                );
-                warn("nozzle.distance", message);
-            }
-            if let Some(room) = extent.window
-                && coil > room.height
-            {
-                let (key, flanges) = match core.flange() {
-                    Some(_) => ("core.flange.height", "the flanges".to_owned()),
-                    None => (
-                        "core.file",
-                        format!("its flanges, which are {} m high", si(room.height)),
-                    ),
-                };
-                let message = format!("the coil stands {} m high, above {flanges}", si(coil));
-                warn(key, message);
-            }
-            if self.core.window_height > 0.0
-                && let Some(lowest) = window.map(|window| window.lowest())
-                && coil > lowest
-            {
-                let message = format!(
-                    "the coil stands {} m high, beyond the limit line, which is {} m high at its lowest",
-                    si(coil),
-                    si(lowest)
-                );
-                warn("core.window_height", message);
-            }
-        }
-        // (layers of a single turn have no neighbours)
-        let side_by_side = || law.held().is_none_or(|turns| turns > self.winding.layers);
-        if by_law
-            && let Some(pitch) = law.pitch()
-            && pitch > (1.0 + ALIGNED_RMS) * wire.diameter
-            && side_by_side()
-        {
-            let key = match self.winding.pitch {
-                0.0 => "winding.turns_per_layer",
-                _ => "winding.pitch",
-            };
-            let gap = pitch / wire.diameter - 1.0;
-            let what = match gap > self.defects.gap {
-                true => format!(
-                    "which are judged as defects; set defects.gap to more than {gap:.2} if they are meant"
-                ),
-                false => format!(
-                    "{gap:.3} diameters: in an aligned coil they are {ALIGNED_RMS} at most, so turns may be marginal"
-                ),
-            };
-            let message = format!(
-                "turns {} m apart leave gaps of {} m, {what}",
-                si(pitch),
-                si(pitch - wire.diameter)
-            );
-            warn(key, message);
-        }
-        if let Some((room, turns)) = self.place_left(wire.diameter, extent) {
-            let message = format!(
-                "the last turn of layer 1 leaves {} m to its flange, and the first of layer 2 falls in there; plan as many turns as fit, {turns}, or bring the flanges nearer",
-                si(room)
-            );
-            warn("winding.turns_per_layer", message);
-        }
-        // what the nozzle takes for its way through the layers
-        let planned = (law.travel_ends() + self.traverse.advance) / TAU;
-        if by_law && self.winds_layers() {
-            let more = law.turns() - planned;
-            if more > MORE {
-                let message = format!(
-                    "the layers hold {} turns, and what is wound then has no place but on the last one; leave the key out, or plan more turns or layers",
-                    si(law.held().unwrap_or(planned))
-                );
-                warn("spindle.turns", message);
-            }
-        }
-        if by_law
-            && self.traverse.mode == "helical"
-            && let Some(held) = law.held()
-            && planned - held > MORE
-        {
-            let (lead, dwell) = (self.traverse.lead.abs(), self.traverse.dwell_turns);
-            let changes_sides = law.pitch().is_some_and(|pitch| 2.0 * lead > dwell * pitch);
-            let (key, does) = match changes_sides {
-                true => ("traverse.lead", "changes sides"),
-                false => ("traverse.dwell_turns", "stands"),
-            };
-            let message = format!(
-                "the nozzle takes {} turns through the layers, which hold {} turns; the rest is laid over the ends of the layers, where it {does}",
-                si(planned),
-                si(held)
-            );
-            warn(key, message);
-        }
-        if by_law && let Some((key, message)) = self.nozzle_past_a_flange(wire, extent, law) {
-            warn(key, message);
-        }
-        let first = self.nozzle.y_start;
-        if (self.start.clamp_y - first).abs() > wire.diameter {
-            let way = match self.traverse.mode.as_str() {
-                _ if self.winds_layers() => Some("crosses the place of others on its way there"),
-                "by-angle" if !beside(first) => {
-                    Some("comes there in steep turns with gaps between them")
-                }
-                _ => None,
-            };
-            if let Some(way) = way {
-                let message = format!(
-                    "the wire is clamped beside the first turn, which lies at {} m, and {way}; set it to nozzle.y_start",
-                    si(first)
-                );
-                warn("start.clamp_y", message);
-            }
-        }
-        let tension = self.tensioner.tension;
-        if tension >= wire.n_y {
-            let message = format!(
-                "the wire yields in the free span; N_y is {} N",
-                si(wire.n_y)
-            );
-            warn("tensioner.tension", message);
-        }
-        // what straightens gives its bend back, and the tension has to take as much to keep it on the core
-        let bend = extent.winding_radius + wire.radius();
-        let holds = 0.5 * wire.ei / (bend * bend);
-        if !wire.m_y.is_finite() && tension < holds {
-            let message = format!(
-                "wire that does not yield springs off this core, and may jump over its end: no less than {} N hold it",
-                si(holds)
-            );
-            warn("tensioner.tension", message);
-        }
-        if solver.twist == Twist::Off && solver.integrator.is_implicit() && wire.m_y.is_finite() {
-            let message = "the set of wire that yields turns with its roll; without twist its bends do not come to \
-                           rest, and the method adds energy where they are sharp"
-                .to_owned();
-            warn("solver.twist", message);
-        }
-        if let Some(corner) = core.corner() {
-            let bend = corner + wire.radius();
-            let near = solver.spacing_near;
-            if near > bend {
-                let message = format!(
-                    "coarser than the tightest bend of the wire, radius {} m",
-                    si(bend)
-                );
-                warn("solver.spacing_near", message);
-            }
-            let (sag, least) = (
-                near * near / (8.0 * bend),
-                self.defects.loose_height * wire.diameter,
-            );
-            if near <= bend && sag > least {
-                let message = format!(
-                    "wire between nodes so far apart cuts its tightest bend, radius {} m, by {} m, which is judged as wire that stands off; at most {} m",
-                    si(bend),
-                    si(sag),
-                    si_down((8.0 * bend * least).sqrt())
-                );
-                warn("solver.spacing_near", message);
-            }
-            let depth = tension / bend / self.contact.stiffness;
-            if depth > 0.01 * wire.diameter {
-                let message = format!(
-                    "the wire sinks about {} m into the tightest bend, more than 1 % of its \
-                     diameter",
-                    si(depth)
-                );
-                warn("contact.stiffness", message);
-            }
-        }
-        warnings
+        survey.surface();
+        survey.nozzle_way();
+        survey.coil_height();
+        survey.turns_apart();
+        survey.turns_without_place();
+        survey.past_a_flange();
+        survey.clamp();
+        survey.tension();
+        survey.twist();
+        survey.tightest_bend();
+        survey.found
     }
 
     /// A curve of a wire as soft as no metal is: its strains are percents, or its stresses MPa.
@@ -386,5 +175,358 @@ impl SceneSettings {
                 errors[0], errors[1], errors[2]
             ),
         })
+    }
+}
+
+/// What a scene is looked through by, and what was found.
+struct Survey<'a> {
+    settings: &'a SceneSettings,
+    solver: &'a Solver,
+    wire: &'a Section,
+    core: &'a Core,
+    extent: &'a Extent,
+    window: Option<Window>,
+    law: &'a NozzleLaw,
+    follows: NozzleFollows,
+    found: Vec<Warning>,
+}
+
+impl Survey<'_> {
+    fn warn(&mut self, key: &'static str, message: String) {
+        self.found.push(Warning {
+            origin: self.settings.told_origin(key),
+            key,
+            value: self.settings.shown(key),
+            message,
+        });
+    }
+
+    /// A surface that crosses itself, or may.
+    fn surface(&mut self) {
+        match self.extent.crossing {
+            Crossing::None => {}
+            Crossing::At(place) => self.warn(
+                "core.file",
+                format!(
+                    "the surface crosses itself at {}, and inside and outside are not told apart there: wire may sink in; mesh the body once more, or unite what crosses",
+                    Place(place)
+                ),
+            ),
+            Crossing::NotSearched => self.warn(
+                "core.file",
+                "whether the surface crosses itself is not known, since too many of its triangles are too long to look at all that may meet; mesh the body more coarsely, or with less narrow triangles".to_owned(),
+            ),
+        }
+    }
+
+    /// A nozzle that starts, ends or passes where wire has no place.
+    fn nozzle_way(&mut self) {
+        let Self {
+            settings,
+            wire,
+            extent,
+            law,
+            follows,
+            ..
+        } = *self;
+        let ends = format!(
+            "the core ends at {} and {} m",
+            si(extent.y_min),
+            si(extent.y_max)
+        );
+        if extent.is_beside(settings.nozzle.y_start) {
+            self.warn(
+                "nozzle.y_start",
+                format!("the nozzle starts beside the core; {ends}"),
+            );
+        }
+        if follows.is_law()
+            && let Some(message) = settings.in_the_way(wire, extent, law)
+        {
+            self.warn("core.file", message);
+        }
+        let last = law.position(law.end());
+        let by_angle = follows == NozzleFollows::Law && settings.traverse.mode == "by-angle";
+        if by_angle && extent.is_beside(last) && !extent.is_beside(settings.nozzle.y_start) {
+            let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
+            self.warn(PER_TURN, message);
+        }
+    }
+
+    /// A coil that meets the nozzle, or stands higher than its flanges or its limit line.
+    fn coil_height(&mut self) {
+        let Self {
+            settings,
+            wire,
+            core,
+            extent,
+            window,
+            law,
+            ..
+        } = *self;
+        let table = settings.winds_table();
+        if settings.winds_layers() || table {
+            let layers = match settings.plans_layers() {
+                true => settings.winding.layers,
+                false => f64::from(law.passes(wire.diameter)),
+            };
+            // each layer of a table but the first is taken to lie in the grooves of the one below
+            let in_grooves = || wire.diameter * (1.0 + (layers - 1.0) * 0.75_f64.sqrt());
+            let planned = match settings.plans_layers() {
+                true => settings.height_of_layers(wire.diameter, extent),
+                false => None,
+            };
+            let coil = planned.unwrap_or_else(in_grooves);
+            // where turns are planned in layers, a nozzle that they meet is refused
+            if table && extent.winding_radius + coil >= settings.nozzle.distance {
+                let message = format!(
+                    "the coil meets the nozzle: the table goes over it {layers} times, and the wire stands up to {} m from the axis then",
+                    si(extent.winding_radius + coil)
+                );
+                self.warn("nozzle.distance", message);
+            }
+            if let Some(room) = extent.window
+                && coil > room.height
+            {
+                let (key, flanges) = match core.flange() {
+                    Some(_) => ("core.flange.height", "the flanges".to_owned()),
+                    None => (
+                        "core.file",
+                        format!("its flanges, which are {} m high", si(room.height)),
+                    ),
+                };
+                let message = format!("the coil stands {} m high, above {flanges}", si(coil));
+                self.warn(key, message);
+            }
+            if settings.core.window_height > 0.0
+                && let Some(lowest) = window.map(|window| window.lowest())
+                && coil > lowest
+            {
+                let message = format!(
+                    "the coil stands {} m high, beyond the limit line, which is {} m high at its lowest",
+                    si(coil),
+                    si(lowest)
+                );
+                self.warn("core.window_height", message);
+            }
+        }
+    }
+
+    /// Turns with gaps by plan.
+    fn turns_apart(&mut self) {
+        let Self {
+            settings,
+            wire,
+            law,
+            ..
+        } = *self;
+        let by_law = self.follows.is_law();
+        // (layers of a single turn have no neighbours)
+        let side_by_side = || {
+            law.held()
+                .is_none_or(|turns| turns > settings.winding.layers)
+        };
+        if by_law
+            && let Some(pitch) = law.pitch()
+            && pitch > (1.0 + ALIGNED_RMS) * wire.diameter
+            && side_by_side()
+        {
+            let key = match settings.winding.pitch {
+                0.0 => "winding.turns_per_layer",
+                _ => "winding.pitch",
+            };
+            let gap = pitch / wire.diameter - 1.0;
+            let what = match gap > settings.defects.gap {
+                true => format!(
+                    "which are judged as defects; set defects.gap to more than {gap:.2} if they are meant"
+                ),
+                false => format!(
+                    "{gap:.3} diameters: in an aligned coil they are {ALIGNED_RMS} at most, so turns may be marginal"
+                ),
+            };
+            let message = format!(
+                "turns {} m apart leave gaps of {} m, {what}",
+                si(pitch),
+                si(pitch - wire.diameter)
+            );
+            self.warn(key, message);
+        }
+    }
+
+    /// Turns for which the layers have no place.
+    fn turns_without_place(&mut self) {
+        let Self {
+            settings,
+            wire,
+            extent,
+            law,
+            ..
+        } = *self;
+        let by_law = self.follows.is_law();
+        if let Some((room, turns)) = settings.place_left(wire.diameter, extent) {
+            let message = format!(
+                "the last turn of layer 1 leaves {} m to its flange, and the first of layer 2 falls in there; plan as many turns as fit, {turns}, or bring the flanges nearer",
+                si(room)
+            );
+            self.warn("winding.turns_per_layer", message);
+        }
+        // what the nozzle takes for its way through the layers
+        let planned = (law.travel_ends() + settings.traverse.advance) / TAU;
+        if by_law && settings.winds_layers() {
+            let more = law.turns() - planned;
+            if more > MORE {
+                let message = format!(
+                    "the layers hold {} turns, and what is wound then has no place but on the last one; leave the key out, or plan more turns or layers",
+                    si(law.held().unwrap_or(planned))
+                );
+                self.warn("spindle.turns", message);
+            }
+        }
+        if by_law
+            && settings.traverse.mode == "helical"
+            && let Some(held) = law.held()
+            && planned - held > MORE
+        {
+            let (lead, dwell) = (settings.traverse.lead.abs(), settings.traverse.dwell_turns);
+            let changes_sides = law.pitch().is_some_and(|pitch| 2.0 * lead > dwell * pitch);
+            let (key, does) = match changes_sides {
+                true => ("traverse.lead", "changes sides"),
+                false => ("traverse.dwell_turns", "stands"),
+            };
+            let message = format!(
+                "the nozzle takes {} turns through the layers, which hold {} turns; the rest is laid over the ends of the layers, where it {does}",
+                si(planned),
+                si(held)
+            );
+            self.warn(key, message);
+        }
+    }
+
+    /// A nozzle so far past a flange that wire beside it lies against the rim.
+    fn past_a_flange(&mut self) {
+        let Self {
+            settings,
+            wire,
+            extent,
+            law,
+            ..
+        } = *self;
+        if self.follows.is_law()
+            && let Some((key, message)) = settings.nozzle_past_a_flange(wire, extent, law)
+        {
+            self.warn(key, message);
+        }
+    }
+
+    /// A clamp beside the first turn.
+    fn clamp(&mut self) {
+        let Self {
+            settings,
+            wire,
+            extent,
+            ..
+        } = *self;
+        let first = settings.nozzle.y_start;
+        if (settings.start.clamp_y - first).abs() > wire.diameter {
+            let way = match settings.traverse.mode.as_str() {
+                _ if settings.winds_layers() => {
+                    Some("crosses the place of others on its way there")
+                }
+                "by-angle" if !extent.is_beside(first) => {
+                    Some("comes there in steep turns with gaps between them")
+                }
+                _ => None,
+            };
+            if let Some(way) = way {
+                let message = format!(
+                    "the wire is clamped beside the first turn, which lies at {} m, and {way}; set it to nozzle.y_start",
+                    si(first)
+                );
+                self.warn("start.clamp_y", message);
+            }
+        }
+    }
+
+    /// A tension at which the wire yields, or too low to hold it.
+    fn tension(&mut self) {
+        let Self {
+            settings,
+            wire,
+            extent,
+            ..
+        } = *self;
+        let tension = settings.tensioner.tension;
+        if tension >= wire.n_y {
+            let message = format!(
+                "the wire yields in the free span; N_y is {} N",
+                si(wire.n_y)
+            );
+            self.warn("tensioner.tension", message);
+        }
+        // what straightens gives its bend back, and the tension has to take as much to keep it on the core
+        let bend = extent.winding_radius + wire.radius();
+        let holds = 0.5 * wire.ei / (bend * bend);
+        if !wire.m_y.is_finite() && tension < holds {
+            let message = format!(
+                "wire that does not yield springs off this core, and may jump over its end: no less than {} N hold it",
+                si(holds)
+            );
+            self.warn("tensioner.tension", message);
+        }
+    }
+
+    /// Wire that yields, without twist.
+    fn twist(&mut self) {
+        let Self { solver, wire, .. } = *self;
+        if solver.twist == Twist::Off && solver.integrator.is_implicit() && wire.m_y.is_finite() {
+            let message = "the set of wire that yields turns with its roll; without twist its bends do not come to \
+                           rest, and the method adds energy where they are sharp"
+                .to_owned();
+            self.warn("solver.twist", message);
+        }
+    }
+
+    /// Nodes too far apart, or contact too soft, for the tightest bend.
+    fn tightest_bend(&mut self) {
+        let Self {
+            settings,
+            solver,
+            wire,
+            core,
+            ..
+        } = *self;
+        if let Some(corner) = core.corner() {
+            let bend = corner + wire.radius();
+            let near = solver.spacing_near;
+            if near > bend {
+                let message = format!(
+                    "coarser than the tightest bend of the wire, radius {} m",
+                    si(bend)
+                );
+                self.warn("solver.spacing_near", message);
+            }
+            let (sag, least) = (
+                near * near / (8.0 * bend),
+                settings.defects.loose_height * wire.diameter,
+            );
+            if near <= bend && sag > least {
+                let message = format!(
+                    "wire between nodes so far apart cuts its tightest bend, radius {} m, by {} m, which is judged as wire that stands off; at most {} m",
+                    si(bend),
+                    si(sag),
+                    si_down((8.0 * bend * least).sqrt())
+                );
+                self.warn("solver.spacing_near", message);
+            }
+            let depth = settings.tensioner.tension / bend / settings.contact.stiffness;
+            if depth > 0.01 * wire.diameter {
+                let message = format!(
+                    "the wire sinks about {} m into the tightest bend, more than 1 % of its \
+                     diameter",
+                    si(depth)
+                );
+                self.warn("contact.stiffness", message);
+            }
+        }
     }
 }

@@ -4,11 +4,11 @@
 //! Restoring starts a second run from the scene and then replaces its state.
 //! Search trees and measures of settled wire are rebuilt from the state to the bit.
 
-use super::ahead::Ahead;
-use super::course::Course;
-use super::pool::Pool;
-use super::run_state::RunState;
-use super::talk::Talk;
+use super::communication::Ahead;
+use super::communication::Pool;
+use super::communication::Talk;
+use super::motion::Course;
+use super::winding::RunState;
 use super::{Simulation, Winding};
 use crate::integrate::{SolverStatistics, Stepper};
 use crate::measure::{Defect, SavedCoil};

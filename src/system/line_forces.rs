@@ -42,7 +42,7 @@ impl System {
 
     /// Forces of the present state after it was set up or changed; nothing moves on but the frames.
     pub fn refresh(&mut self) {
-        if !self.model.contact.is_line() {
+        if !self.model.is_for_implicit_steps() {
             return self.evaluate(Some(0.0));
         }
         self.internal_at_once(true);

@@ -51,3 +51,11 @@ pub struct Model {
     /// the core's mesh, if there is a core that has one
     pub core: Option<Arc<Surface>>,
 }
+
+impl Model {
+    /// Whether the wire is prepared for the steps of the implicit method. Contact along the wire is made for these; wire that
+    /// touches nothing is prepared as for the explicit methods.
+    pub(crate) fn is_for_implicit_steps(&self) -> bool {
+        self.contact.is_line()
+    }
+}

@@ -1,4 +1,4 @@
-//! What moves the machine where the importer sets nothing: a calm programme from the scene's own motion.
+//! What moves the machine where the importer sets nothing: a calm motion from the scene's own profile.
 //!
 //! An importer that only simulates shall see a coil. One that sets anything drives the machine itself.
 
@@ -42,7 +42,7 @@ impl Instance {
         self.demonstrates = is_left && set.is_empty();
         let text = if self.demonstrates {
             "inputs and parameters are as in modelDescription.xml, so the FMU demonstrates: spindle and nozzle \
-             follow a programme of its own until any input is set"
+             follow a motion profile of its own until any input is set"
                 .to_owned()
         } else if is_left && set.iter().all(|name| name.starts_with("output.")) {
             format!(
@@ -78,7 +78,7 @@ impl Instance {
 impl Run {
     /// Makes spindle speed and nozzle position those of the demonstration over the next `step`, s.
     ///
-    /// A step over an end of a ramp changes the speed evenly by as much as the programme does, and turns the core as far.
+    /// A step over an end of a ramp changes the speed evenly by as much as the motion profile does, and turns the core as far.
     pub(super) fn demonstrate(&mut self, step: f64) {
         let scene = self.simulation.scene();
         let (spindle, per_turn) = (&scene.spindle, scene.traverse.per_turn);
@@ -96,7 +96,7 @@ impl Run {
     }
 }
 
-/// Speed of the demonstration at a time of the run, s, in rad/s: as many turns as the scene's programme has, with its
+/// Speed of the demonstration at a time of the run, s, in rad/s: as many turns as the scene's motion profile has, with its
 /// ramp at both ends.
 fn demonstrated(spindle: &Spindle, time: f64) -> f64 {
     let speed = spindle.speed.abs().min(SPEED);

@@ -1,10 +1,12 @@
 //! Which pairs of live wire a step has to look at.
 
+use super::by_place::Blocks;
 use super::pairs::{Pair, SelfContact};
 use super::scratch::{PairScratch, Reached, Unpaired};
 use crate::contact::friction::FrictionLimit;
 use crate::contact::own_wire::{SAME_PASSAGE, own_wire};
 use crate::contact::stencil::ContactPoint;
+use crate::geometry::Curve;
 use crate::math::{V3, polar_angle, wrap_to_pi};
 use std::f64::consts::TAU;
 use std::ops::RangeInclusive;
@@ -41,129 +43,215 @@ impl SelfContact {
             ..
         } = scratch;
         unpaired.clear();
+        reached.clear();
         let curve = self.curve(q);
         std::mem::swap(&mut self.pairs, previous);
         self.pairs.clear();
-        // both lists of pairs run along the wire
-        let mut known = 0;
-        reached.clear();
-        let way_of = |node: usize| (guess[node] - q[node]).norm();
-        // on a core a few edges wide a segment takes up much of a turn
-        let window = |segment: usize| {
-            let around = [segment.saturating_sub(1), (segment + 1).min(q.len() - 1)];
-            let [before, after] = around.map(|node| angle[node]);
-            WINDOW + 0.5 * (after - before).abs()
+        let mut search = Search {
+            q,
+            guess,
+            curve,
+            angle,
+            arc,
+            diameter,
+            previous,
+            known: 0,
+            paired,
+            unpaired,
+            pairs: &mut self.pairs,
         };
         let mut fastest = 0;
         if folded {
             blocks.build(q);
+            let way_of = |node| search.way_of(node);
             fastest = (0..q.len()).fold(0, |a, b| if way_of(b) > way_of(a) { b } else { a });
         }
         for contact_point in ContactPoint::all(q.len() - 1) {
-            let point = contact_point.number() as u32;
-            let i = ContactPoint::node_before(contact_point.number());
-            let at = match contact_point {
-                ContactPoint::Node(i) => angle[i],
-                ContactPoint::Edge(i) => 0.5 * (angle[i] + angle[i + 1]),
-            };
-            if !folded && at - TAU < -window(0) {
+            let at = search.angle_at(contact_point);
+            if !folded && at - TAU < -search.window(0) {
                 continue;
             }
-            let weights = contact_point.weights();
-            let p = weights.sum(q);
-            let way = (weights.sum(guess) - p).norm();
-            let own = own_wire(arc[i], diameter);
-            let end = arc[..i].partition_point(|a| *a <= own);
-            if end < 2 {
+            let Some(seeker) = search.begin(contact_point) else {
                 continue;
-            }
-            while known < previous.len() && previous[known].point < point {
-                known += 1;
-            }
-            paired.clear();
-            // pairs the point with the passage of the wire that node `near` belongs to; its foot there
-            let mut look = |near: u32, back: Option<f64>| {
-                let foot = curve.foot(p, near);
-                let gap = -foot.depth(diameter);
-                let other = foot.segment as usize;
-                let elsewhere =
-                    back.is_some_and(|back| (angle[other] - back).abs() > window(other));
-                if arc[other] > own || elsewhere {
-                    return None;
-                }
-                let way = way + farthest_way(shaping(other, q.len()), way_of);
-                if gap > SKIN * diameter + FOLLOW * way {
-                    unpaired.push(Unpaired {
-                        point,
-                        room: gap,
-                        other: foot.segment,
-                    });
-                    return Some(foot.segment);
-                }
-                if paired
-                    .iter()
-                    .any(|s| s.abs_diff(foot.segment) < SAME_PASSAGE)
-                {
-                    return Some(foot.segment);
-                }
-                paired.push(foot.segment);
-                let before = previous[known..]
-                    .iter()
-                    .take_while(|o| o.point == point)
-                    .find(|o| o.segment.abs_diff(foot.segment) < SAME_PASSAGE);
-                let limit = before.map_or(0.0, |o| o.limit.accepted);
-                self.pairs.push(Pair {
-                    point,
-                    segment: foot.segment,
-                    touched: before.is_some_and(|o| o.touched),
-                    bristle: before.map_or(V3::zeros(), |o| o.bristle),
-                    limit: FrictionLimit {
-                        lagged: limit,
-                        accepted: limit,
-                        ..FrictionLimit::ZERO
-                    },
-                    depth: before.map_or(0.0, |o| o.depth),
-                    share: foot.share,
-                    normal: foot.normal,
-                    rebound: before.map_or(0.0, |o| o.rebound),
-                });
-                Some(foot.segment)
             };
             if folded {
-                let room = SKIN * diameter + FOLLOW * (way + way_of(fastest));
-                blocks.passages(q, p, end, diameter + room, found);
-                for near in &*found {
-                    look(*near, None);
-                }
-                // what is farther off was not looked at
-                unpaired.push(Unpaired {
-                    point,
-                    room,
-                    other: fastest as u32,
-                });
-                continue;
+                search.look_by_place(&seeker, fastest, blocks, found);
+            } else {
+                search.look_by_angle(&seeker, at, reached);
             }
-            // from every whole turn back along the wire to the closest point
-            for turns in 1.. {
-                let back = at - turns as f64 * TAU;
-                if back < -window(0) {
-                    break;
-                }
-                if reached.len() < turns {
-                    reached.push(Reached::default());
-                }
-                let Reached { near, foot } = &mut reached[turns - 1];
-                // on a long flat the angle hardly changes: the foot of the point before is nearer than a node by its angle
-                if foot.is_none() {
-                    while *near + 1 < end - 1 && angle[*near] < back {
-                        *near += 1;
-                    }
-                    while *near > 0 && angle[*near - 1] >= back {
-                        *near -= 1;
-                    }
-                }
-                *foot = look(foot.unwrap_or(*near as u32), Some(back));
+        }
+    }
+}
+
+/// A point of the wire that looks for older wire.
+struct Seeker {
+    number: u32,
+    /// core frame, m
+    place: V3,
+    /// by which the guess moves it, m
+    way: f64,
+    /// arc up to which wire is older than its own passage, m
+    own: f64,
+    /// number of nodes of that wire
+    end: usize,
+}
+
+/// The wire of a step, and the pairs found so far. Both lists of pairs run along the wire.
+struct Search<'a> {
+    q: &'a [V3],
+    guess: &'a [V3],
+    curve: Curve<'a>,
+    angle: &'a [f64],
+    arc: &'a [f64],
+    diameter: f64,
+    previous: &'a [Pair],
+    /// how many of `previous` belong to points that were passed
+    known: usize,
+    /// segments with which the present point was paired
+    paired: &'a mut Vec<u32>,
+    unpaired: &'a mut Vec<Unpaired>,
+    pairs: &'a mut Vec<Pair>,
+}
+
+impl Search<'_> {
+    fn way_of(&self, node: usize) -> f64 {
+        (self.guess[node] - self.q[node]).norm()
+    }
+
+    /// How far from a whole turn back this segment may be a partner, rad: on a core a few edges wide it takes up much of a turn.
+    fn window(&self, segment: usize) -> f64 {
+        let around = [
+            segment.saturating_sub(1),
+            (segment + 1).min(self.q.len() - 1),
+        ];
+        let [before, after] = around.map(|node| self.angle[node]);
+        WINDOW + 0.5 * (after - before).abs()
+    }
+
+    fn angle_at(&self, contact_point: ContactPoint) -> f64 {
+        match contact_point {
+            ContactPoint::Node(i) => self.angle[i],
+            ContactPoint::Edge(i) => 0.5 * (self.angle[i] + self.angle[i + 1]),
+        }
+    }
+
+    /// Goes on to this point; `None` where no wire is older than its own passage.
+    fn begin(&mut self, contact_point: ContactPoint) -> Option<Seeker> {
+        let number = contact_point.number() as u32;
+        let i = ContactPoint::node_before(contact_point.number());
+        let weights = contact_point.weights();
+        let place = weights.sum(self.q);
+        let way = (weights.sum(self.guess) - place).norm();
+        let own = own_wire(self.arc[i], self.diameter);
+        let end = self.arc[..i].partition_point(|a| *a <= own);
+        if end < 2 {
+            return None;
+        }
+        while self.known < self.previous.len() && self.previous[self.known].point < number {
+            self.known += 1;
+        }
+        self.paired.clear();
+        Some(Seeker {
+            number,
+            place,
+            way,
+            own,
+            end,
+        })
+    }
+
+    /// Pairs the point with the passage of the wire that node `near` belongs to, if it lies about `back` along the wire (rad).
+    /// Segment of the point's foot there.
+    fn look(&mut self, seeker: &Seeker, near: u32, back: Option<f64>) -> Option<u32> {
+        let foot = self.curve.foot(seeker.place, near);
+        let gap = -foot.depth(self.diameter);
+        let other = foot.segment as usize;
+        let elsewhere =
+            back.is_some_and(|back| (self.angle[other] - back).abs() > self.window(other));
+        if self.arc[other] > seeker.own || elsewhere {
+            return None;
+        }
+        let nodes = shaping(other, self.q.len());
+        let way = seeker.way + farthest_way(nodes, |node| self.way_of(node));
+        if gap > SKIN * self.diameter + FOLLOW * way {
+            self.unpaired.push(Unpaired {
+                point: seeker.number,
+                room: gap,
+                other: foot.segment,
+            });
+            return Some(foot.segment);
+        }
+        let is_same = |segment: u32| segment.abs_diff(foot.segment) < SAME_PASSAGE;
+        if self.paired.iter().any(|segment| is_same(*segment)) {
+            return Some(foot.segment);
+        }
+        self.paired.push(foot.segment);
+        let before = self.previous[self.known..]
+            .iter()
+            .take_while(|o| o.point == seeker.number)
+            .find(|o| is_same(o.segment));
+        let limit = before.map_or(0.0, |o| o.limit.accepted);
+        self.pairs.push(Pair {
+            point: seeker.number,
+            segment: foot.segment,
+            touched: before.is_some_and(|o| o.touched),
+            bristle: before.map_or(V3::zeros(), |o| o.bristle),
+            limit: FrictionLimit {
+                lagged: limit,
+                accepted: limit,
+                ..FrictionLimit::ZERO
+            },
+            depth: before.map_or(0.0, |o| o.depth),
+            share: foot.share,
+            normal: foot.normal,
+            rebound: before.map_or(0.0, |o| o.rebound),
+        });
+        Some(foot.segment)
+    }
+
+    /// Looks at all older wire near the point; node `fastest` goes farthest of all.
+    fn look_by_place(
+        &mut self,
+        seeker: &Seeker,
+        fastest: usize,
+        blocks: &Blocks,
+        found: &mut Vec<u32>,
+    ) {
+        let room = SKIN * self.diameter + FOLLOW * (seeker.way + self.way_of(fastest));
+        let reach = self.diameter + room;
+        blocks.passages(self.q, seeker.place, seeker.end, reach, found);
+        for near in &*found {
+            self.look(seeker, *near, None);
+        }
+        // what is farther off was not looked at
+        self.unpaired.push(Unpaired {
+            point: seeker.number,
+            room,
+            other: fastest as u32,
+        });
+    }
+
+    /// Looks from every whole turn back along the wire, from the angle `at` of the point, to the closest point.
+    fn look_by_angle(&mut self, seeker: &Seeker, at: f64, reached: &mut Vec<Reached>) {
+        for turns in 1.. {
+            let back = at - turns as f64 * TAU;
+            if back < -self.window(0) {
+                break;
             }
+            if reached.len() < turns {
+                reached.push(Reached::default());
+            }
+            let Reached { near, foot } = &mut reached[turns - 1];
+            // on a long flat the angle hardly changes: the foot of the point before is nearer than a node by its angle
+            if foot.is_none() {
+                while *near + 1 < seeker.end - 1 && self.angle[*near] < back {
+                    *near += 1;
+                }
+                while *near > 0 && self.angle[*near - 1] >= back {
+                    *near -= 1;
+                }
+            }
+            *foot = self.look(seeker, foot.unwrap_or(*near as u32), Some(back));
         }
     }
 }

@@ -102,6 +102,14 @@ impl NewtonLimits {
         self.line_search_halvings < Self::STEP.line_search_halvings
     }
 
+    /// Halvings of an update in a line search: a shorter step does not help `rolls`.
+    fn halvings(&self, rolls: bool) -> usize {
+        match rolls {
+            true => Self::STEP.line_search_halvings,
+            false => self.line_search_halvings,
+        }
+    }
+
     /// Share of an update that is within reach, at most 1.
     fn share<const D: usize, U: Unknowns<D>>(
         &self,
@@ -145,17 +153,8 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
     take_limits(potential, LimitFrom::Lagged);
     let mut value = potential.evaluate(work).now;
     take_limits(potential, LimitFrom::Slide);
-    // inertia bounds the update from above: a guess that is good enough costs no solve
-    let weight = potential.gamma * potential.gamma;
-    let radius = 0.5 * potential.diameter;
-    let bound = work
-        .gradient
-        .iter()
-        .zip(&work.mass)
-        .map(|(g, m)| g.amax() * weight / m)
-        .fold(0.0, f64::max);
-    let bound = bound.max(work.unknowns.bound(potential.gamma, radius));
-    if bound < limits.guess {
+    // a guess that is good enough costs no solve
+    if bound_by_inertia(potential, work) < limits.guess {
         return Ok(0);
     }
     let mut last_update = f64::INFINITY;
@@ -212,7 +211,6 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
             work.take(1.0);
             return Ok(step);
         }
-        let mut line_search_halvings = 0;
         if share == 1.0 && fits && limits.chord > 0.0 {
             match end_by_chords(
                 potential,
@@ -233,31 +231,16 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
                 Chord::Vain => {}
             }
         }
-        loop {
-            work.take(share);
-            expect_tension(work, share);
-            let trial = potential.evaluate(work);
-            let most = value + slope.rise(share);
-            if trial.merit <= most + NOISE * value.abs() || share * update < close {
-                value = trial.now;
-                if let Some(line) = &mut potential.line {
-                    line.state.renew_limits();
-                }
-                break;
-            }
-            line_search_halvings += 1;
-            work.line_search_halvings += 1;
-            // a shorter step does not help rolls
-            let most = if rolls {
-                NewtonLimits::STEP.line_search_halvings
-            } else {
-                limits.line_search_halvings
-            };
-            if line_search_halvings > most {
-                return Err(failure(None));
-            }
-            share *= 0.5;
-        }
+        let halvings = limits.halvings(rolls);
+        (value, share) = search_along(
+            potential,
+            work,
+            (value, slope),
+            (update, close),
+            share,
+            halvings,
+        )
+        .ok_or_else(|| failure(None))?;
         last_update = if share == 1.0 { update } else { f64::INFINITY };
         worst = (node, update);
     }
@@ -267,6 +250,49 @@ pub(super) fn solve<const D: usize, U: Unknowns<D>>(
         steps: limits.steps,
         far: None,
     })
+}
+
+/// Inertia bounds the update from above, m.
+fn bound_by_inertia<const D: usize, U: Unknowns<D>>(
+    potential: &Potential,
+    work: &Work<D, U>,
+) -> f64 {
+    let weight = potential.gamma * potential.gamma;
+    let radius = 0.5 * potential.diameter;
+    let bound = work
+        .gradient
+        .iter()
+        .zip(&work.mass)
+        .map(|(g, m)| g.amax() * weight / m)
+        .fold(0.0, f64::max);
+    bound.max(work.unknowns.bound(potential.gamma, radius))
+}
+
+/// Takes the update from where the potential has this `value`, J, or half of it as often as it takes for the potential to fall as
+/// `slope` promises. The value there and the share that was taken; `None` where so many `halvings` do not suffice.
+fn search_along<const D: usize, U: Unknowns<D>>(
+    potential: &mut Potential,
+    work: &mut Work<D, U>,
+    (value, slope): (f64, Slope),
+    (update, close): (f64, f64),
+    mut share: f64,
+    halvings: usize,
+) -> Option<(f64, f64)> {
+    for _ in 0..=halvings {
+        work.take(share);
+        expect_tension(work, share);
+        let trial = potential.evaluate(work);
+        let most = value + slope.rise(share);
+        if trial.merit <= most + NOISE * value.abs() || share * update < close {
+            if let Some(line) = &mut potential.line {
+                line.state.renew_limits();
+            }
+            return Some((trial.now, share));
+        }
+        work.line_search_halvings += 1;
+        share *= 0.5;
+    }
+    None
 }
 
 /// What updates with old factors did.

@@ -1,4 +1,4 @@
-//! W: a whole scene along its own programme, against a converged run kept with it.
+//! W: a whole scene along its own motion profile, against a converged run kept with it.
 
 use super::converged::{Converged, Extremes, Speed, Wound, rms};
 use super::error::BenchError;

@@ -42,7 +42,7 @@ impl System {
     pub fn follow_mesh(&mut self, unexplained: f64) {
         let torque = self.state.torque_on_core;
         self.refresh();
-        if self.model.contact.is_line() {
+        if self.model.is_for_implicit_steps() {
             if self.state.turning.is_some() {
                 self.state.unbalanced += torque - self.state.torque_on_core;
             }

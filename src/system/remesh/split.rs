@@ -128,10 +128,9 @@ impl System {
 
     /// Twist per length along edge `j`, the mean of its two joints, 1/m.
     ///
-    /// Only with contact along the wire, that of the implicit method, edges roll by what is asked of them and twist spreads over the
-    /// halves of an edge.
+    /// Only in steps of the implicit method edges roll by what is asked of them and twist spreads over the halves of an edge.
     fn twist_along(&self, j: usize) -> f64 {
-        if !self.model.contact.is_line() || !self.model.twist.is_carried() {
+        if !self.model.is_for_implicit_steps() || !self.model.twist.is_carried() {
             return 0.0;
         }
         let rod = &self.state.rod;

@@ -96,7 +96,10 @@ impl Names {
                 i += tokens[i..].iter().take_while(|t| t.text != ";").count();
                 continue;
             }
+            // (`pub(in PATH)` says who may know, and names nothing)
+            let is_visibility = i > 1 && tokens[i - 2].text == "(" && tokens[i - 1].text == "in";
             let starts = tokens[i].is_word()
+                && !is_visibility
                 && (i == 0 || tokens[i - 1].text != "::")
                 && tokens.get(i + 1).is_some_and(|t| t.text == "::");
             if starts {
