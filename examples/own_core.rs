@@ -172,7 +172,7 @@ fn print_layers(sim: &Simulation) {
 
 /// The coil from beside and a little from above: settled wire is copper, live wire blue.
 fn picture(path: &Path, sim: &Simulation) -> Result<(), Box<dyn Error>> {
-    let core = core_surface(&sim.scene().core)?;
+    let core = core_surface(sim.scene())?;
     let wire = sim.centreline();
     let mesh = CoreMesh {
         vertices: &core.mesh().vertices,

@@ -139,6 +139,20 @@ fn a_cylinder_too() {
     ]);
 }
 
+/// Spacings of half a millimetre and facets of the core of half a micrometre moved fed wire by a tenth of a diameter.
+#[test]
+fn the_explicit_methods_too() {
+    for shape in ["rounded-box", "cylinder"] {
+        is_the_same_at_every_scale(&[
+            ("core.shape", shape),
+            ("solver.integrator", "verlet"),
+            ("spindle.ramp_turns", "0.1"),
+            ("spindle.turns", "0.13"),
+            ("spindle.speed", "400"),
+        ]);
+    }
+}
+
 /// Densities that 16 times as much, and a sixteenth, are allowed of.
 const LIGHT: [(&str, &str); 2] = [("wire.density", "1600"), ("wire.enamel_density", "600")];
 

@@ -457,7 +457,7 @@ fn bad_input_is_refused_with_a_reason() {
 fn an_stl_core_winds_like_the_generated_one() {
     // at the default tolerance the swing of wire that has just landed differs by 20 um from one run to the next
     let plain = fig8(&[("spindle.speed", "500"), ("solver.tolerance", "1e-6")]);
-    let surface = core_surface(&plain.core).expect("a box");
+    let surface = core_surface(&plain).expect("a box");
     let mesh = surface.mesh();
     let triangles: Vec<stl_io::Triangle> = (0..mesh.len())
         .map(|t| {

@@ -27,6 +27,9 @@ pub use line_wire::LineWire;
 pub use line_yield::LineYield;
 use serde::{Deserialize, Serialize};
 
+/// Update of the wire that passes, over the length of the last edge, below which it fits. Chosen: some thousand roundings.
+const FITS: f64 = 2e-12;
+
 /// Constants of the feed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FeedSpec {
@@ -239,7 +242,7 @@ impl Feed {
             let residual = wire - grip * t;
             let step = residual / (stretch.modulus * length / (l * l) + grip * slope);
             grown += step;
-            if step.abs() <= 1e-15 {
+            if step.abs() <= FITS * rest {
                 break;
             }
         }

@@ -82,7 +82,7 @@ pub fn left_out(wound: f64, settled: f64) -> Option<String> {
     // Where nothing has come to rest the verdict says so itself.
     (settled > 0.0 && rest > 1.0 / 360.0).then(|| {
         format!(
-            "The last {rest:.2} turns had not come to rest when the run ended, and are not judged"
+            "The last {rest:.2} turns are not judged: they lie too near to where wire is laid, or had not come to rest when the run ended"
         )
     })
 }
@@ -276,7 +276,7 @@ mod tests {
     fn turns_laid_and_not_judged_are_told() {
         assert_eq!(
             left_out(31.71, 31.38).unwrap(),
-            "The last 0.33 turns had not come to rest when the run ended, and are not judged"
+            "The last 0.33 turns are not judged: they lie too near to where wire is laid, or had not come to rest when the run ended"
         );
         assert_eq!(left_out(2.0, 2.0), None);
         assert_eq!(left_out(0.8, 0.0), None, "the verdict says it");

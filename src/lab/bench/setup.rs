@@ -90,12 +90,11 @@ pub(super) fn turn_length(scene: &Scene) -> Result<f64, BenchError> {
         } => 2.0 * (width_x + height_z) - 8.0 * corner_radius + TAU * (corner_radius + r),
         Core::Cylinder { radius, .. } => TAU * (radius + r),
         Core::Mesh { .. } => {
-            let surface = crate::simulation::core_surface(&scene.core).map_err(|reason| {
-                BenchError::Start {
+            let surface =
+                crate::simulation::core_surface(scene).map_err(|reason| BenchError::Start {
                     problem: Problem::W,
                     reason,
-                }
-            })?;
+                })?;
             TAU * (surface.radius_max() + r)
         }
     })

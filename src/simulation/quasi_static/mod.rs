@@ -270,7 +270,7 @@ mod tests {
                 .set_text("wire.material", material)
                 .expect("there is one");
             let scene = settings.build().expect("a scene");
-            let surface = Arc::new(core_surface(&scene.core).expect("a core"));
+            let surface = Arc::new(core_surface(&scene).expect("a core"));
             let profile =
                 profile(&scene, &surface, scene.tensioner.tension).expect("a loop at rest");
             let highest = (0..STATIONS_PER_TURN)
@@ -298,7 +298,7 @@ mod tests {
             settings.set_text(key, text).expect("there is one");
         }
         let scene = settings.build().expect("a scene");
-        let surface = Arc::new(core_surface(&scene.core).expect("a core"));
+        let surface = Arc::new(core_surface(&scene).expect("a core"));
         (scene, surface)
     }
 

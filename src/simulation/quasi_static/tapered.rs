@@ -214,7 +214,7 @@ mod tests {
             let profile = quasi_static::profile(&scene, &surface, TENSION).expect("at rest");
             for y in [-9.5e-3, -7.3e-3, -1.1e-3, 0.4e-3, 4.9e-3, 9.1e-3] {
                 let scene = on_a_box(slope * y);
-                let surface = Arc::new(core_surface(&scene.core).expect("a core"));
+                let surface = Arc::new(core_surface(&scene).expect("a core"));
                 let exact = quasi_static::profile(&scene, &surface, TENSION).expect("at rest");
                 for k in 0..STATIONS_PER_TURN {
                     let angle = k as f64 * STATION_STEP;
@@ -250,7 +250,7 @@ mod tests {
         let profile = quasi_static::profile(&scene, &surface, TENSION).expect("at rest");
         let [exact, on_shoe] = [0.0, 3e-3].map(|wider| {
             let scene = on_a_box(wider);
-            let surface = Arc::new(core_surface(&scene.core).expect("a core"));
+            let surface = Arc::new(core_surface(&scene).expect("a core"));
             quasi_static::profile(&scene, &surface, TENSION).expect("at rest")
         });
         let same = SAME * scene.wire.diameter;

@@ -154,7 +154,7 @@ mod tests {
     fn on_a_mesh() -> (Scene, Surface) {
         let settings = SceneSettings::packed("fig8").expect("packed");
         let scene = settings.expect("it is read").build().expect("a scene");
-        let surface = core_surface(&scene.core).expect("a core");
+        let surface = core_surface(&scene).expect("a core");
         let core = Core::Mesh {
             path: "unused".into(),
             unit: 1e-3,

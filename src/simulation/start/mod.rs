@@ -302,7 +302,7 @@ impl Winding {
     /// The same with these inputs at the start.
     pub(super) fn starting_with(scene: &Scene, inputs: Inputs) -> Result<Self, SimError> {
         check_finite(&inputs, 0.0)?;
-        let surface = Arc::new(core_surface(&scene.core)?);
+        let surface = Arc::new(core_surface(scene)?);
         let span = FirstSpan::new(scene, &inputs, &surface)?;
         let (mut sys, coil) = wound_from(scene, &inputs, surface, &span);
         let (stepper, last_step) = stepper_for(scene)?;

@@ -5,20 +5,22 @@ use crate::geometry::generate::{
     Plates, cylinder, flanged, rounded_box, segments_for_sagitta, with_plates,
 };
 use crate::geometry::{Flanges, Shape, Surface, TriMesh};
-use crate::scene::Core;
+use crate::math::scaled;
+use crate::scene::{Core, Scene};
 use std::sync::Arc;
 
-/// Facets of a generated core lie at most this far under the true surface, m.
+/// Facets of a generated core lie at most this far under the true surface, m, for wire of 0.7 mm.
 const SAGITTA: f64 = 0.5e-6;
 
-/// Builds the triangle mesh of a scene's core, in the frame of the core, m.
+/// Builds the triangle mesh of a scene's core, in the frame of the core, m. Facets are as fine as its wire needs them.
 ///
 /// # Errors
 ///
 /// If the file of a mesh cannot be read, or the mesh is refused; the message names the reason.
-pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
+pub fn core_surface(scene: &Scene) -> Result<Surface, SimError> {
+    let (core, sagitta) = (&scene.core, scaled(SAGITTA, scene.wire.diameter));
     let fail = |e: String| SimError::setup(format!("core: {e}"));
-    let quarter = |radius: f64| segments_for_sagitta(radius, SAGITTA).div_ceil(4).max(2);
+    let quarter = |radius: f64| segments_for_sagitta(radius, sagitta).div_ceil(4).max(2);
     if let Some(flanges) = core_flanges(core) {
         let rim = match core {
             Core::RoundedBox { corner_radius, .. } => *corner_radius,
@@ -45,7 +47,7 @@ pub fn core_surface(core: &Core) -> Result<Surface, SimError> {
         .map_err(|e| fail(e.to_string()))?,
         Core::Cylinder {
             radius, length_y, ..
-        } => cylinder(*radius, *length_y, segments_for_sagitta(*radius, SAGITTA))
+        } => cylinder(*radius, *length_y, segments_for_sagitta(*radius, sagitta))
             .map_err(|e| fail(e.to_string()))?,
         Core::Mesh { path, unit, flange } => {
             let file = std::fs::File::open(path)

@@ -118,7 +118,7 @@ impl Winding {
     pub(crate) fn core(&self) -> Result<Arc<Surface>, SimError> {
         match &self.sys.model.core {
             Some(surface) => Ok(Arc::clone(surface)),
-            None => core_surface(&self.scene.core).map(Arc::new),
+            None => core_surface(&self.scene).map(Arc::new),
         }
     }
 
