@@ -32,6 +32,10 @@ const SHORTEST_BENT: f64 = 0.1;
 /// turns by more from edge to edge is folded.
 const WELL_BENT: f64 = 4.0 * BENT;
 
+/// Share of the edge after it below which the first live edge goes, which frozen wire draws on where its tension falls. Chosen: as at the
+/// nozzle. The chord loses as little, and a step that takes all of an edge is never tried.
+const SHORTEST_FIRST: f64 = SHORTEST_BENT;
+
 /// Turns of live wire, the free span with them, from which on it may meet itself. Partners are sought a turn back, within 0.6 rad
 /// (`WINDOW` of that search) and half of what their segment takes up.
 const WHOLE: f64 = 0.85;
@@ -49,6 +53,7 @@ impl Winding {
         }
         if self.stepper.is_implicit() {
             self.follow_returning_wire();
+            self.join_short_first_edge();
         }
         let insert = self.nozzle_edge_is_long();
         let refine = if look {
@@ -300,6 +305,22 @@ impl Winding {
         if thaw > 0 {
             self.thaw(thaw);
         }
+        self.sys.follow_mesh(unexplained);
+    }
+
+    /// Frozen wire that slips along itself takes up length of the first live edge. Before that is used up, the edge joins the next one.
+    fn join_short_first_edge(&mut self) {
+        let rod = &self.sys.state.rod;
+        let is_short = rod.rest[0] < SHORTEST_FIRST * rod.rest[1];
+        if !is_short || rod.nodes() <= FEWEST_NODES || self.sys.friction_at_rest().is_none() {
+            return;
+        }
+        let unexplained = self.sys.energy_residual(None);
+        if let Some(mut l) = self.sys.line_contact() {
+            l.go_on(None);
+        }
+        self.join(1);
+        self.join_frozen_to_live();
         self.sys.follow_mesh(unexplained);
     }
 
