@@ -42,7 +42,7 @@ SECTIONS = {
     "tensioner": "What holds the wire back in front of the nozzle.",
     "start": "Where the wire's end is clamped.",
     "spindle": "The motion of the core under `coilwind run` without `--inputs`.",
-    "traverse": "The motion of the nozzle under `coilwind run` without `--inputs`. The FMU has another default of `mode`, see [speed only](../fmu/stepping.md#speed-only).",
+    "traverse": "The motion of the nozzle under `coilwind run` without `--inputs`. The FMU has another default of `mode`, see [speed only](../fmu/inputs.md#speed-only).",
     "winding": "What the layered modes of `traverse.mode` wind under `coilwind run` without `--inputs`.",
     "contact": "The contact of wire with core and wire.",
     "friction": "The friction of wire on core and wire.",
@@ -74,11 +74,11 @@ For connecting the FMU: every input, output and parameter with its unit, start v
 - Every value is in the unit of its column. `modelDescription.xml` gives importers the display unit as well.
 - *fixed* parameters are set before `fmi2ExitInitializationMode`. *tunable* ones may also change at a communication point.
 - A parameter that the importer sets wins over `scene.file`, which wins over the default. Only `traverse.mode` of a scene file is
-  not taken: the FMU starts with `by-input` until the importer sets another, see [speed only](stepping.md#speed-only).
+  not taken: the FMU starts with `by-input` until the importer sets another, see [speed only](inputs.md#speed-only).
 - A text with choices has a twin that takes the number of the choice, `core.shape_number` for `core.shape`; scene files have the text only.
 - Keys of `[spindle]` and `output.history_interval` do not exist here: the spindle is an input. `traverse.mode` says whether the nozzle is one.
 
-[Stepping](stepping.md) says when an input counts. [Measures and flags](../guide/measures.md) explains the measures.
+[Inputs](inputs.md) says when an input counts. [Measures and flags](../guide/measures.md) explains the measures.
 """
 
 
