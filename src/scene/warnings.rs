@@ -221,33 +221,29 @@ impl Survey<'_> {
 
     /// A nozzle that starts, ends or passes where wire has no place.
     fn nozzle_way(&mut self) {
-        let Self {
-            settings,
-            wire,
-            extent,
-            law,
-            follows,
-            ..
-        } = *self;
         let ends = format!(
             "the core ends at {} and {} m",
-            si(extent.y_min),
-            si(extent.y_max)
+            si(self.extent.y_min),
+            si(self.extent.y_max)
         );
-        if extent.is_beside(settings.nozzle.y_start) {
+        if self.extent.is_beside(self.settings.nozzle.y_start) {
             self.warn(
                 "nozzle.y_start",
                 format!("the nozzle starts beside the core; {ends}"),
             );
         }
-        if follows.is_law()
-            && let Some(message) = settings.in_the_way(wire, extent, law)
+        if self.follows.is_law()
+            && let Some(message) = self.settings.in_the_way(self.wire, self.extent, self.law)
         {
             self.warn("core.file", message);
         }
-        let last = law.position(law.end());
-        let by_angle = follows == NozzleFollows::Law && settings.traverse.mode == "by-angle";
-        if by_angle && extent.is_beside(last) && !extent.is_beside(settings.nozzle.y_start) {
+        let last = self.law.position(self.law.end());
+        let by_angle =
+            self.follows == NozzleFollows::Law && self.settings.traverse.mode == "by-angle";
+        if by_angle
+            && self.extent.is_beside(last)
+            && !self.extent.is_beside(self.settings.nozzle.y_start)
+        {
             let message = format!("the nozzle ends beside the core, at {} m; {ends}", si(last));
             self.warn(PER_TURN, message);
         }
@@ -255,40 +251,33 @@ impl Survey<'_> {
 
     /// A coil that meets the nozzle, or stands higher than its flanges or its limit line.
     fn coil_height(&mut self) {
-        let Self {
-            settings,
-            wire,
-            core,
-            extent,
-            window,
-            law,
-            ..
-        } = *self;
-        let table = settings.winds_table();
-        if settings.winds_layers() || table {
-            let layers = match settings.plans_layers() {
-                true => settings.winding.layers,
-                false => f64::from(law.passes(wire.diameter)),
+        let table = self.settings.winds_table();
+        if self.settings.winds_layers() || table {
+            let layers = match self.settings.plans_layers() {
+                true => self.settings.winding.layers,
+                false => f64::from(self.law.passes(self.wire.diameter)),
             };
             // each layer of a table but the first is taken to lie in the grooves of the one below
-            let in_grooves = || wire.diameter * (1.0 + (layers - 1.0) * 0.75_f64.sqrt());
-            let planned = match settings.plans_layers() {
-                true => settings.height_of_layers(wire.diameter, extent),
+            let in_grooves = || self.wire.diameter * (1.0 + (layers - 1.0) * 0.75_f64.sqrt());
+            let planned = match self.settings.plans_layers() {
+                true => self
+                    .settings
+                    .height_of_layers(self.wire.diameter, self.extent),
                 false => None,
             };
             let coil = planned.unwrap_or_else(in_grooves);
             // where turns are planned in layers, a nozzle that they meet is refused
-            if table && extent.winding_radius + coil >= settings.nozzle.distance {
+            if table && self.extent.winding_radius + coil >= self.settings.nozzle.distance {
                 let message = format!(
                     "the coil meets the nozzle: the table goes over it {layers} times, and the wire stands up to {} m from the axis then",
-                    si(extent.winding_radius + coil)
+                    si(self.extent.winding_radius + coil)
                 );
                 self.warn("nozzle.distance", message);
             }
-            if let Some(room) = extent.window
+            if let Some(room) = self.extent.window
                 && coil > room.height
             {
-                let (key, flanges) = match core.flange() {
+                let (key, flanges) = match self.core.flange() {
                     Some(_) => ("core.flange.height", "the flanges".to_owned()),
                     None => (
                         "core.file",
@@ -298,8 +287,8 @@ impl Survey<'_> {
                 let message = format!("the coil stands {} m high, above {flanges}", si(coil));
                 self.warn(key, message);
             }
-            if settings.core.window_height > 0.0
-                && let Some(lowest) = window.map(|window| window.lowest())
+            if self.settings.core.window_height > 0.0
+                && let Some(lowest) = self.window.map(|window| window.lowest())
                 && coil > lowest
             {
                 let message = format!(
@@ -314,29 +303,24 @@ impl Survey<'_> {
 
     /// Turns with gaps by plan.
     fn turns_apart(&mut self) {
-        let Self {
-            settings,
-            wire,
-            law,
-            ..
-        } = *self;
         let by_law = self.follows.is_law();
         // (layers of a single turn have no neighbours)
         let side_by_side = || {
-            law.held()
-                .is_none_or(|turns| turns > settings.winding.layers)
+            self.law
+                .held()
+                .is_none_or(|turns| turns > self.settings.winding.layers)
         };
         if by_law
-            && let Some(pitch) = law.pitch()
-            && pitch > (1.0 + ALIGNED_RMS) * wire.diameter
+            && let Some(pitch) = self.law.pitch()
+            && pitch > (1.0 + ALIGNED_RMS) * self.wire.diameter
             && side_by_side()
         {
-            let key = match settings.winding.pitch {
+            let key = match self.settings.winding.pitch {
                 0.0 => "winding.turns_per_layer",
                 _ => "winding.pitch",
             };
-            let gap = pitch / wire.diameter - 1.0;
-            let what = match gap > settings.defects.gap {
+            let gap = pitch / self.wire.diameter - 1.0;
+            let what = match gap > self.settings.defects.gap {
                 true => format!(
                     "which are judged as defects; set defects.gap to more than {gap:.2} if they are meant"
                 ),
@@ -347,7 +331,7 @@ impl Survey<'_> {
             let message = format!(
                 "turns {} m apart leave gaps of {} m, {what}",
                 si(pitch),
-                si(pitch - wire.diameter)
+                si(pitch - self.wire.diameter)
             );
             self.warn(key, message);
         }
@@ -355,15 +339,8 @@ impl Survey<'_> {
 
     /// Turns for which the layers have no place.
     fn turns_without_place(&mut self) {
-        let Self {
-            settings,
-            wire,
-            extent,
-            law,
-            ..
-        } = *self;
         let by_law = self.follows.is_law();
-        if let Some((room, turns)) = settings.place_left(wire.diameter, extent) {
+        if let Some((room, turns)) = self.settings.place_left(self.wire.diameter, self.extent) {
             let message = format!(
                 "the last turn of layer 1 leaves {} m to its flange, and the first of layer 2 falls in there; plan as many turns as fit, {turns}, or bring the flanges nearer",
                 si(room)
@@ -371,24 +348,30 @@ impl Survey<'_> {
             self.warn("winding.turns_per_layer", message);
         }
         // what the nozzle takes for its way through the layers
-        let planned = (law.travel_ends() + settings.traverse.advance) / TAU;
-        if by_law && settings.winds_layers() {
-            let more = law.turns() - planned;
+        let planned = (self.law.travel_ends() + self.settings.traverse.advance) / TAU;
+        if by_law && self.settings.winds_layers() {
+            let more = self.law.turns() - planned;
             if more > MORE {
                 let message = format!(
                     "the layers hold {} turns, and what is wound then has no place but on the last one; leave the key out, or plan more turns or layers",
-                    si(law.held().unwrap_or(planned))
+                    si(self.law.held().unwrap_or(planned))
                 );
                 self.warn("spindle.turns", message);
             }
         }
         if by_law
-            && settings.traverse.mode == "helical"
-            && let Some(held) = law.held()
+            && self.settings.traverse.mode == "helical"
+            && let Some(held) = self.law.held()
             && planned - held > MORE
         {
-            let (lead, dwell) = (settings.traverse.lead.abs(), settings.traverse.dwell_turns);
-            let changes_sides = law.pitch().is_some_and(|pitch| 2.0 * lead > dwell * pitch);
+            let (lead, dwell) = (
+                self.settings.traverse.lead.abs(),
+                self.settings.traverse.dwell_turns,
+            );
+            let changes_sides = self
+                .law
+                .pitch()
+                .is_some_and(|pitch| 2.0 * lead > dwell * pitch);
             let (key, does) = match changes_sides {
                 true => ("traverse.lead", "changes sides"),
                 false => ("traverse.dwell_turns", "stands"),
@@ -404,15 +387,10 @@ impl Survey<'_> {
 
     /// A nozzle so far past a flange that wire beside it lies against the rim.
     fn past_a_flange(&mut self) {
-        let Self {
-            settings,
-            wire,
-            extent,
-            law,
-            ..
-        } = *self;
         if self.follows.is_law()
-            && let Some((key, message)) = settings.nozzle_past_a_flange(wire, extent, law)
+            && let Some((key, message)) =
+                self.settings
+                    .nozzle_past_a_flange(self.wire, self.extent, self.law)
         {
             self.warn(key, message);
         }
@@ -420,19 +398,13 @@ impl Survey<'_> {
 
     /// A clamp beside the first turn.
     fn clamp(&mut self) {
-        let Self {
-            settings,
-            wire,
-            extent,
-            ..
-        } = *self;
-        let first = settings.nozzle.y_start;
-        if (settings.start.clamp_y - first).abs() > wire.diameter {
-            let way = match settings.traverse.mode.as_str() {
-                _ if settings.winds_layers() => {
+        let first = self.settings.nozzle.y_start;
+        if (self.settings.start.clamp_y - first).abs() > self.wire.diameter {
+            let way = match self.settings.traverse.mode.as_str() {
+                _ if self.settings.winds_layers() => {
                     Some("crosses the place of others on its way there")
                 }
-                "by-angle" if !extent.is_beside(first) => {
+                "by-angle" if !self.extent.is_beside(first) => {
                     Some("comes there in steep turns with gaps between them")
                 }
                 _ => None,
@@ -449,24 +421,18 @@ impl Survey<'_> {
 
     /// A tension at which the wire yields, or too low to hold it.
     fn tension(&mut self) {
-        let Self {
-            settings,
-            wire,
-            extent,
-            ..
-        } = *self;
-        let tension = settings.tensioner.tension;
-        if tension >= wire.n_y {
+        let tension = self.settings.tensioner.tension;
+        if tension >= self.wire.n_y {
             let message = format!(
                 "the wire yields in the free span; N_y is {} N",
-                si(wire.n_y)
+                si(self.wire.n_y)
             );
             self.warn("tensioner.tension", message);
         }
         // what straightens gives its bend back, and the tension has to take as much to keep it on the core
-        let bend = extent.winding_radius + wire.radius();
-        let holds = 0.5 * wire.ei / (bend * bend);
-        if !wire.m_y.is_finite() && tension < holds {
+        let bend = self.extent.winding_radius + self.wire.radius();
+        let holds = 0.5 * self.wire.ei / (bend * bend);
+        if !self.wire.m_y.is_finite() && tension < holds {
             let message = format!(
                 "wire that does not yield springs off this core, and may jump over its end: no less than {} N hold it",
                 si(holds)
@@ -477,8 +443,10 @@ impl Survey<'_> {
 
     /// Wire that yields, without twist.
     fn twist(&mut self) {
-        let Self { solver, wire, .. } = *self;
-        if solver.twist == Twist::Off && solver.integrator.is_implicit() && wire.m_y.is_finite() {
+        if self.solver.twist == Twist::Off
+            && self.solver.integrator.is_implicit()
+            && self.wire.m_y.is_finite()
+        {
             let message = "the set of wire that yields turns with its roll; without twist its bends do not come to \
                            rest, and the method adds energy where they are sharp"
                 .to_owned();
@@ -488,16 +456,9 @@ impl Survey<'_> {
 
     /// Nodes too far apart, or contact too soft, for the tightest bend.
     fn tightest_bend(&mut self) {
-        let Self {
-            settings,
-            solver,
-            wire,
-            core,
-            ..
-        } = *self;
-        if let Some(corner) = core.corner() {
-            let bend = corner + wire.radius();
-            let near = solver.spacing_near;
+        if let Some(corner) = self.core.corner() {
+            let bend = corner + self.wire.radius();
+            let near = self.solver.spacing_near;
             if near > bend {
                 let message = format!(
                     "coarser than the tightest bend of the wire, radius {} m",
@@ -507,7 +468,7 @@ impl Survey<'_> {
             }
             let (sag, least) = (
                 near * near / (8.0 * bend),
-                settings.defects.loose_height * wire.diameter,
+                self.settings.defects.loose_height * self.wire.diameter,
             );
             if near <= bend && sag > least {
                 let message = format!(
@@ -518,8 +479,8 @@ impl Survey<'_> {
                 );
                 self.warn("solver.spacing_near", message);
             }
-            let depth = settings.tensioner.tension / bend / settings.contact.stiffness;
-            if depth > 0.01 * wire.diameter {
+            let depth = self.settings.tensioner.tension / bend / self.settings.contact.stiffness;
+            if depth > 0.01 * self.wire.diameter {
                 let message = format!(
                     "the wire sinks about {} m into the tightest bend, more than 1 % of its \
                      diameter",

@@ -364,6 +364,9 @@ fn fields_written_directly_are_checked_too() {
 fn odd_scenes_build_with_a_warning() {
     let warnings = |text: &str| -> Vec<String> {
         let (_, warnings) = parse(text).unwrap().build_with_warnings().unwrap();
+        for warning in &warnings {
+            assert!(by_name(warning.key).is_some(), "{warning}");
+        }
         warnings.iter().map(ToString::to_string).collect()
     };
     assert!(warnings("").is_empty());
@@ -385,6 +388,10 @@ fn odd_scenes_build_with_a_warning() {
             "cuts its tightest bend, radius 0.00735 m, by 0.000106293 m",
         ),
         ("[contact]\nstiffness = 1e8", "1 % of its diameter"),
+        (
+            "[solver]\ntwist = 'off'",
+            "without twist its bends do not come to rest",
+        ),
         // it sprang off, and was called slack
         (
             "[wire]\nelastic = true\n[core]\nshape = 'cylinder'\nradius_mm = 6\n[tensioner]\ntension = 5",
