@@ -322,7 +322,7 @@ fn wire_along_the_climb_of_its_own_row_has_ridden_up() {
     }
 }
 
-/// Wire that had climbed early and, in its last layer, lay on its own first turn for more than half a turn and came down again: that was
+/// Wire had climbed early. In its last layer it lay on its own first turn for more than half a turn, and came down again. That was
 /// told as a jump as well, early by all turns of the layer.
 #[test]
 fn a_double_turn_after_an_early_jump_is_no_jump() {

@@ -6,6 +6,7 @@ mod energy_balance;
 mod exit_friction;
 mod lanes;
 mod static_equilibrium;
+mod table1;
 mod twist;
 #[path = "../common/verified.rs"]
 mod verified;

@@ -1,9 +1,10 @@
 //! Equilibrium by the incremental potential of the production method, against that of the joint forces.
 
+use crate::table1;
 use coilwind::integrate::{Implicit, Scheme};
 use coilwind::lab::statics::{Limits, ramp};
 use coilwind::math::{V3, frame_along};
-use coilwind::rod::{Hardening, Rod, Section, Twist};
+use coilwind::rod::{Rod, Section, Twist};
 use coilwind::system::{Support, System};
 
 /// A clamped wire that runs askew to all axes; it carries no twist.
@@ -11,20 +12,7 @@ fn cantilever() -> System {
     let section = Section {
         n_y: 38.5,
         m_y: 5.72e-3,
-        diameter: 0.7e-3,
-        bare_diameter: 0.7e-3,
-        enamel_density: 1400.0,
-        density: 8960.0,
-        ea: 48900.0,
-        ea_p: 1100.0,
-        ei: 3.06e-3,
-        ei_p: 1.13e-4,
-        gj: 4.32e-3,
-        gj_p: 9e-5,
-        t_y: f64::INFINITY,
-        moment_cap: f64::INFINITY,
-        strength: f64::INFINITY,
-        hardening: Hardening::default(),
+        ..table1::elastic()
     };
     let along = V3::new(0.8, 0.36, 0.48);
     let points: Vec<V3> = (0..=30).map(|i| along * (1e-3 * f64::from(i))).collect();

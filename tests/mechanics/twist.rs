@@ -1,33 +1,20 @@
 //! Twist in the implicit method: modes stepped in time, and agreement with the explicit methods.
 
+use crate::table1;
 use coilwind::integrate::{Explicit, ExplicitMethod, Implicit, Scheme, highest_frequency};
 use coilwind::lab::statics::{Limits, ramp};
 use coilwind::math::{Quat, V3};
 use coilwind::math::{frame_along, rotate};
 use coilwind::rod::Twist;
-use coilwind::rod::{Hardening, Joint, Rod, Section};
+use coilwind::rod::{Joint, Rod, Section};
 use coilwind::system::{Support, System};
 
 /// The paper's wire; elastic but for torsion, which yields at `t_y`.
 fn section(t_y: f64) -> Section {
-    let open = f64::INFINITY;
     Section {
-        diameter: 0.7e-3,
-        bare_diameter: 0.7e-3,
-        enamel_density: 1400.0,
-        density: 8960.0,
-        ea: 48900.0,
-        ea_p: 1100.0,
-        ei: 3.06e-3,
-        ei_p: 1.13e-4,
-        gj: 4.32e-3,
         gj_p: 9e-4,
-        n_y: open,
-        m_y: open,
         t_y,
-        moment_cap: open,
-        strength: open,
-        hardening: Hardening::default(),
+        ..table1::elastic()
     }
 }
 
