@@ -365,6 +365,7 @@ impl Winding {
                     .all(|&end| !self.bends_by(end, 0.5 * BENT));
             if both < 1.2 * solver.spacing_free
                 && straight
+                && self.moves_with_its_chord(i)
                 && rod.x[i - 1..=i + 1]
                     .iter()
                     .all(|x| !self.sys.is_near_core(spin.to_core(*x), reach))
@@ -379,6 +380,18 @@ impl Winding {
             i += 1;
         }
         nodes
+    }
+
+    /// Whether a node moves along with the middle of its chord, so that the wire's motion is kept where the chord takes its place.
+    ///
+    /// The energy of its own motion may be that of a bend which counts as straight.
+    fn moves_with_its_chord(&self, node: usize) -> bool {
+        let rod = &self.sys.state.rod;
+        let [a, b] = [rod.rest[node - 1], rod.rest[node]];
+        let chord = (rod.v[node - 1] * b + rod.v[node + 1] * a) / (a + b);
+        let inertia = self.sys.model.section.mass_per_length() * 0.5 * (a + b);
+        let stiffness = self.sys.model.laws.bend.modulus / (0.5 * (a + b));
+        inertia * (rod.v[node] - chord).norm_squared() < stiffness * 2.0 * (1.0 - STRAIGHT)
     }
 
     /// How many frozen nodes come back: once less than half of the keep length is left live behind
