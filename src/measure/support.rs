@@ -181,129 +181,255 @@ impl Coil {
     /// Down is the direction of the wire's height: what lies beside the wire does not carry it, unless a flange leaves no room for the
     /// wire to fall between the two.
     fn support(&self, row: u32, at: &RowPlace) -> Support {
-        let RowPlace {
-            bucket, y, height, ..
-        } = *at;
-        let d = self.spec.diameter;
-        // where the wire would lie if it fell along the flange as far as other wire lets it
-        let wedged = |lower: &Lower| {
-            let way = at.flange?;
-            let farthest = y + way - (0.5 * d).copysign(way);
-            let room = (farthest - lower.y) * way.signum() / d;
-            let between = (y - lower.y) * way > 0.0;
-            let holds = between && height > lower.height && (CLIMBED..1.0).contains(&room);
-            holds.then(|| (lower.height + d * (1.0 - room * room).sqrt(), room))
-        };
-        let mut support = Support {
-            level: 0.0,
-            stands_on_wire: false,
-            layer: 1,
-            row: None,
-            laid_on: None,
-            on_climb: false,
-            beside_climb: None,
-            own_row: None,
-            held: 0.0,
-            highest: 0.0,
-        };
-        // layers of the highest wire of its own row below it, towards -y and +y
-        let mut groove = [0; 2];
-        // wire that has crossed the climb of its own row comes down from it, on a long face for longer than that counts as one
-        let last = self.records.last().filter(|last| last.on_climb);
-        let comes_down = last.is_some_and(|last| height < last.station.height);
-        // height at which wire of earlier rows alone carries it, m
-        let mut on_earlier = f64::NEG_INFINITY;
-        for bin in bucket.1 - 1..=bucket.1 + 1 {
-            let mut next = self.buckets.get((bucket.0, bin));
+        let above = Above::new(self, row, at);
+        let mut found = Found::default();
+        for bin in at.bucket.1 - 1..=at.bucket.1 + 1 {
+            let mut next = self.buckets.get((at.bucket.0, bin));
             while let Some(index) = next {
                 next = self.records[index].beneath;
-                let lower = self.straight_below(&at.plumb, height, index);
-                let Record {
-                    station, row: of, ..
-                } = lower.record;
-                let (aside, rise) = ((y - lower.y).abs() / d, height - lower.height);
-                let earlier = of.number < row;
-                let one_turn_back = index + STATIONS_PER_TURN == self.records.len();
-                // on a bowed face without coming nearer to the core
-                let beside = last.and_then(|last| last.beside_climb).map(f64::abs);
-                let away = one_turn_back
-                    && beside.is_some_and(|beside| (beside..d).contains(&(aside * d - JITTER * d)));
-                let comes_down = comes_down || away;
-                let climb = if comes_down { 2.0 } else { 1.0 } * STEP_UP;
-                let climbing = of.number > 1 && station.angle < of.from + climb;
-                let passes = climbing && one_turn_back && aside <= 1.0 && rise > 0.0;
-                if passes {
-                    support.beside_climb = Some(y - lower.y);
-                }
-                let goes_across = passes && self.goes_across_climb(y - lower.y);
-                // what lies along the climb of its own row, and not across it, has ridden up
-                let crossed = climbing && (at.crosses || aside >= ON_WIRE || goes_across);
-                let carries = earlier || (one_turn_back && crossed);
-                let wedge = wedged(&lower);
-                // pressed up between a flange and the turn before, it is in its place there as long as that is a place and it lies in it
-                let off = self.spec.limits.overlap_height * d;
-                let in_place =
-                    wedge.is_some_and(|(level, room)| room >= PLACE && height - level < off);
-                // what crosses the slow climb of its own row lies in that row's layer
-                let over = station.layer + u32::from(!one_turn_back || !self.is_slow_climb(index));
-                if !earlier && aside <= BELOW && rise > 0.0 && !in_place {
-                    // what it stands higher than it lies on that turn is a bulge
-                    let rise = rise.min(d * (1.0 - aside * aside).sqrt());
-                    support.own_row = Some(match support.own_row {
-                        // it stands on the higher of two turns below it
-                        Some(other) if other.min(rise) >= NEXT_LAYER * d => other.min(rise),
-                        other => rise.max(other.unwrap_or(0.0)),
-                    });
-                }
-                let below = aside <= if earlier { BELOW } else { CLIMBED };
-                if below && rise >= NEXT_LAYER * d {
-                    support.layer = support.layer.max(over);
-                } else if aside <= BELOW && rise >= NEXT_LAYER * d {
-                    let side = &mut groove[usize::from(lower.y > y)];
-                    *side = station.layer.max(*side);
-                }
-                // it leans on the climb from the side as long as it touches it
-                let leans = comes_down && !earlier && carries;
-                let reach = if leans { 1.0 } else { BELOW };
-                let on = (aside <= reach).then(|| lower.height + d * (1.0 - aside * aside).sqrt());
-                if let (true, Some(level)) = (earlier, on) {
-                    on_earlier = on_earlier.max(level);
-                }
-                let carried = on.filter(|_| carries);
-                let laid_on = carried.or(wedge.map(|(level, _)| level).filter(|_| earlier));
-                let lowest = support.laid_on.map_or(0.0, |laid_on| laid_on.level);
-                if let Some(level) = laid_on.filter(|level| *level > lowest) {
-                    support.laid_on = Some(LaidOn {
-                        level,
-                        station: index,
-                    });
-                }
-                // what a flange and another wire hold between them cannot drop, whichever row that is of
-                let held = carried.or(wedge.map(|(level, _)| level));
-                if let Some(level) = on.or(held)
-                    && rise > 0.0
-                {
-                    support.highest = support.highest.max(level);
-                    // what leans on wire lies in the layer of that wire at least
-                    support.layer = support.layer.max(station.layer);
-                }
-                support.held = support.held.max(held.unwrap_or(0.0));
-                // what stands on its own row has left its place, also where a flange holds it there
-                if let Some(level) = carried.or(held.filter(|_| in_place || on.is_none()))
-                    && level > support.level
-                {
-                    support.level = level;
-                    support.stands_on_wire = aside < ON_WIRE;
-                    support.on_climb = !earlier && carries;
-                    support.row = (of.number < row || climbing).then_some(of.number);
-                }
+                let below = above.over(index);
+                found.take_own_row(&below, self.spec.diameter);
+                found.take_layer(&below, self.spec.diameter);
+                found.take_levels(&below, self.spec.diameter);
             }
         }
-        if groove[0].min(groove[1]) > 0 {
-            support.layer = support.layer.max(groove[0].min(groove[1]) + 1);
+        found.support(
+            at.height,
+            self.spec.limits.overlap_height * self.spec.diameter,
+        )
+    }
+}
+
+/// Wire whose support is asked for.
+struct Above<'a> {
+    coil: &'a Coil,
+    /// number of its row
+    row: u32,
+    at: &'a RowPlace,
+    /// the last station, where it lay on the climb of its own row
+    on_climb: Option<&'a Record>,
+    /// it comes down from that climb
+    comes_down: bool,
+}
+
+/// Wire below it, and how the two lie to each other.
+struct Below<'a> {
+    /// its station
+    index: usize,
+    record: &'a Record,
+    /// way along y from it to the wire above, m
+    along: f64,
+    /// the same without its sign, diameters
+    aside: f64,
+    /// height of the wire above over it, m
+    rise: f64,
+    /// its own height over the core, m
+    height: f64,
+    /// of an earlier row
+    earlier: bool,
+    /// it climbs to its own row
+    climbing: bool,
+    /// a climb that the wire above passes over
+    is_passed: bool,
+    /// it carries the wire above
+    carries: bool,
+    /// the wire above comes down from the climb of its own row
+    comes_down: bool,
+    /// height over the core at which it and a flange hold the wire above between them, m
+    wedge: Option<f64>,
+    /// the wire above is in its place there
+    in_place: bool,
+    /// layer of wire that lies over it
+    layer_over: u32,
+}
+
+impl<'a> Above<'a> {
+    fn new(coil: &'a Coil, row: u32, at: &'a RowPlace) -> Self {
+        let on_climb = coil.records.last().filter(|last| last.on_climb);
+        Self {
+            coil,
+            row,
+            at,
+            on_climb,
+            comes_down: on_climb.is_some_and(|last| at.height < last.station.height),
+        }
+    }
+
+    /// How it lies over the wire of the station at `index`.
+    fn over(&self, index: usize) -> Below<'a> {
+        let (coil, at, d) = (self.coil, self.at, self.coil.spec.diameter);
+        let lower = coil.straight_below(&at.plumb, at.height, index);
+        let (station, of) = (&lower.record.station, lower.record.row);
+        let (aside, rise) = ((at.y - lower.y).abs() / d, at.height - lower.height);
+        let earlier = of.number < self.row;
+        let one_turn_back = index + STATIONS_PER_TURN == coil.records.len();
+        let comes_down = self.comes_down || (one_turn_back && self.goes_away(aside));
+        // on a long face it comes down for longer than what it has crossed counts as a climb
+        let climb = if comes_down { 2.0 } else { 1.0 } * STEP_UP;
+        let climbing = of.number > 1 && station.angle < of.from + climb;
+        let is_passed = climbing && one_turn_back && aside <= 1.0 && rise > 0.0;
+        let goes_across = is_passed && coil.goes_across_climb(at.y - lower.y);
+        // what lies along the climb of its own row, and not across it, has ridden up
+        let crossed = climbing && (at.crosses || aside >= ON_WIRE || goes_across);
+        let wedge = self.wedged(&lower);
+        // pressed up between a flange and the turn before, it is in its place there as long as that is a place and it lies in it
+        let off = coil.spec.limits.overlap_height * d;
+        let in_place = wedge.is_some_and(|(level, room)| room >= PLACE && at.height - level < off);
+        // what crosses the slow climb of its own row lies in that row's layer
+        let is_over = !one_turn_back || !coil.is_slow_climb(index);
+        Below {
+            index,
+            record: lower.record,
+            along: at.y - lower.y,
+            aside,
+            rise,
+            height: lower.height,
+            earlier,
+            climbing,
+            is_passed,
+            carries: earlier || (one_turn_back && crossed),
+            comes_down,
+            wedge: wedge.map(|(level, _)| level),
+            in_place,
+            layer_over: station.layer + u32::from(is_over),
+        }
+    }
+
+    /// Whether it goes away from the climb of its own row, `aside` of it (diameters): on a bowed face without coming nearer to the core.
+    fn goes_away(&self, aside: f64) -> bool {
+        let d = self.coil.spec.diameter;
+        let beside = self
+            .on_climb
+            .and_then(|last| last.beside_climb)
+            .map(f64::abs);
+        beside.is_some_and(|beside| (beside..d).contains(&(aside * d - JITTER * d)))
+    }
+
+    /// Where it would lie if it fell along the flange as far as other wire lets it, m over the core, and the room there, diameters.
+    fn wedged(&self, lower: &Lower) -> Option<(f64, f64)> {
+        let (at, d) = (self.at, self.coil.spec.diameter);
+        let way = at.flange?;
+        let farthest = at.y + way - (0.5 * d).copysign(way);
+        let room = (farthest - lower.y) * way.signum() / d;
+        let between = (at.y - lower.y) * way > 0.0;
+        let holds = between && at.height > lower.height && (CLIMBED..1.0).contains(&room);
+        let level = |room: f64| lower.height + d * (1.0 - room * room).sqrt();
+        holds.then(|| (level(room), room))
+    }
+}
+
+/// What the wires below come to together.
+struct Found {
+    support: Support,
+    /// layers of the highest wire of its own row below it, towards -y and +y
+    groove: [u32; 2],
+    /// height at which wire of earlier rows alone carries it, m
+    on_earlier: f64,
+}
+
+impl Default for Found {
+    fn default() -> Self {
+        Self {
+            support: Support {
+                level: 0.0,
+                stands_on_wire: false,
+                layer: 1,
+                row: None,
+                laid_on: None,
+                on_climb: false,
+                beside_climb: None,
+                own_row: None,
+                held: 0.0,
+                highest: 0.0,
+            },
+            groove: [0; 2],
+            on_earlier: f64::NEG_INFINITY,
+        }
+    }
+}
+
+impl Found {
+    /// How it has climbed on wire of its own row, and where it passes over the climb of that; `d` is the diameter, m.
+    fn take_own_row(&mut self, below: &Below, d: f64) {
+        if below.is_passed {
+            self.support.beside_climb = Some(below.along);
+        }
+        if below.earlier || below.aside > BELOW || below.rise <= 0.0 || below.in_place {
+            return;
+        }
+        // what it stands higher than it lies on that turn is a bulge
+        let rise = below.rise.min(d * (1.0 - below.aside * below.aside).sqrt());
+        self.support.own_row = Some(match self.support.own_row {
+            // it stands on the higher of two turns below it
+            Some(other) if other.min(rise) >= NEXT_LAYER * d => other.min(rise),
+            other => rise.max(other.unwrap_or(0.0)),
+        });
+    }
+
+    /// Layer over wire straight below it, and over a groove of its own row.
+    fn take_layer(&mut self, below: &Below, d: f64) {
+        if below.rise < NEXT_LAYER * d {
+            return;
+        }
+        if below.aside <= if below.earlier { BELOW } else { CLIMBED } {
+            self.support.layer = self.support.layer.max(below.layer_over);
+        } else if below.aside <= BELOW {
+            let side = &mut self.groove[usize::from(below.along < 0.0)];
+            *side = below.record.station.layer.max(*side);
+        }
+    }
+
+    /// Heights at which the wire below carries it, or holds it up with a flange.
+    fn take_levels(&mut self, below: &Below, d: f64) {
+        let support = &mut self.support;
+        // it leans on the climb from the side as long as it touches it
+        let leans = below.comes_down && !below.earlier && below.carries;
+        let reach = if leans { 1.0 } else { BELOW };
+        let (aside, station) = (below.aside, &below.record.station);
+        let on = (aside <= reach).then(|| below.height + d * (1.0 - aside * aside).sqrt());
+        if let (true, Some(level)) = (below.earlier, on) {
+            self.on_earlier = self.on_earlier.max(level);
+        }
+        let carried = on.filter(|_| below.carries);
+        let laid_on = carried.or(below.wedge.filter(|_| below.earlier));
+        let lowest = support.laid_on.map_or(0.0, |laid_on| laid_on.level);
+        if let Some(level) = laid_on.filter(|level| *level > lowest) {
+            support.laid_on = Some(LaidOn {
+                level,
+                station: below.index,
+            });
+        }
+        // what a flange and another wire hold between them cannot drop, whichever row that is of
+        let held = carried.or(below.wedge);
+        if let Some(level) = on.or(held)
+            && below.rise > 0.0
+        {
+            support.highest = support.highest.max(level);
+            // what leans on wire lies in the layer of that wire at least
+            support.layer = support.layer.max(station.layer);
+        }
+        support.held = support.held.max(held.unwrap_or(0.0));
+        // what stands on its own row has left its place, also where a flange holds it there
+        if let Some(level) = carried.or(held.filter(|_| below.in_place || on.is_none()))
+            && level > support.level
+        {
+            support.level = level;
+            support.stands_on_wire = aside < ON_WIRE;
+            support.on_climb = !below.earlier && below.carries;
+            let is_told = below.earlier || below.climbing;
+            support.row = is_told.then_some(below.record.row.number);
+        }
+    }
+
+    /// All of it together, for wire at this height over the core, m; `overlaps` is the height over its place from which on wire has left it, m.
+    fn support(self, height: f64, overlaps: f64) -> Support {
+        let mut support = self.support;
+        let [one, other] = self.groove;
+        if one.min(other) > 0 {
+            support.layer = support.layer.max(one.min(other) + 1);
         }
         // beside a turn that has sunk into a hole, wire in its own groove stands high over that turn, and not on it
-        if height - on_earlier < self.spec.limits.overlap_height * d {
+        if height - self.on_earlier < overlaps {
             support.own_row = None;
         }
         support
