@@ -301,7 +301,10 @@ impl Work {
             }
             Ok(())
         };
-        pool.install(|| missing.into_iter().par_bridge().try_for_each(each))
+        // (a run that is begun after that builds its scene before it looks)
+        let goes_on = |_: &usize| !stop.load(Ordering::SeqCst);
+        let wanted = missing.into_iter().take_while(goes_on);
+        pool.install(|| wanted.par_bridge().try_for_each(each))
     }
 
     /// What a point came to, in a line.
