@@ -42,6 +42,15 @@ impl Coil {
         Some(self.at_rest(over_core, support, tension))
     }
 
+    /// Mean tension of the last turn at rest, N; none before there is one beyond the clamp.
+    pub fn tension_of_last_turn(&self) -> Option<f64> {
+        let end = self.records.len();
+        let first = end.checked_sub(STATIONS_PER_TURN)?;
+        let is_free = self.is_free_of_clamp(self.records[first].station.angle);
+        let sum = self.tension_before(end) - self.tension_before(first);
+        is_free.then_some(sum / STATIONS_PER_TURN as f64)
+    }
+
     /// Mean tension of the stations up to that at `index`, whose own this `tension` is, N.
     fn mean_tension(&self, index: usize, tension: f64) -> f64 {
         let first = index.saturating_sub(COMPARED);

@@ -7,6 +7,7 @@ mod brake;
 #[path = "../common/mod.rs"]
 mod common;
 mod inputs;
+mod laid_tension;
 mod led_trail;
 mod nozzle_aside;
 mod nozzle_body;

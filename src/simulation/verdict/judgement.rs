@@ -31,18 +31,21 @@ impl Winding {
         Ok(())
     }
 
-    /// Tells once where wire is laid so much tighter than bulges are judged by that they seem smaller than they are.
+    /// Tells once where a turn was laid so much tighter than bulges are judged by that they seem smaller than they are.
     pub(in crate::simulation) fn watch_yardstick(&mut self) {
-        let (meant, set) = (self.run.yardstick_tension, self.sys.state.set_tension);
-        let judged = matches!(self.bulge_limit(), BulgeLimit::OverRest { .. });
-        if self.run.told_tighter || !judged || set <= (1.0 + TIGHTER) * meant {
+        if self.run.told_tighter || !matches!(self.bulge_limit(), BulgeLimit::OverRest { .. }) {
             return;
         }
+        let meant = self.run.yardstick_tension;
+        let laid = self.coil.tension_of_last_turn();
+        let Some(laid) = laid.filter(|laid| *laid > (1.0 + TIGHTER) * meant) else {
+            return;
+        };
         self.run.told_tighter = true;
         self.report(
             EventKind::Judgement,
             format!(
-                "the wire is laid under {set:.1} N, and bulges are judged by its height at rest under {meant:.1} N, which is larger; set tensioner.tension to the largest tension of the run, or defects.bulge_absolute"
+                "the last turn at rest has {laid:.1} N on average, and bulges are judged by the height at rest under {meant:.1} N, which is larger; set tensioner.tension to that average where an input gives the tension, or defects.bulge_absolute"
             ),
         );
     }
