@@ -30,7 +30,8 @@ impl Coil {
             && room.is_some_and(|room| room < PLACE * self.spec.diameter)
     }
 
-    /// Station from which on wire lies on the turn before, which has left it no place, up to the last planned turn. None where that has one.
+    /// Station from which on wire lies on the turn before, which has left it no place, into the last half of the last planned turn or as
+    /// far as wire is at rest. None where it has a place there.
     pub fn without_place_from(&self) -> Option<usize> {
         if self.has_planned_passes() {
             return None;
@@ -48,11 +49,13 @@ impl Coil {
             })
         };
         let least = stations_for(SHORT_RUN) as usize;
-        let mut so_far = 0;
-        for index in from..end.min(self.records.len()) {
-            so_far = if stands(&index) { so_far + 1 } else { 0 };
-            if so_far == least {
-                let begun = index + 1 - least;
+        let there = end.min(self.records.len());
+        let excused = end - stations_for(END / TAU) as usize;
+        let mut first = from;
+        while let Some(begun) = (first..there).find(stands) {
+            first = (begun..there).find(|index| !stands(index)).unwrap_or(there);
+            // (what comes down to a place of its own sooner is judged)
+            if first - begun >= least && (first == there || first > excused) {
                 // it may have begun in the turn before
                 return Some(begun - (0..begun).rev().take_while(stands).count());
             }

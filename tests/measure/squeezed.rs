@@ -175,6 +175,25 @@ fn the_end_of_a_coil_whose_place_is_taken_is_no_overlap() {
     assert_eq!(found(0.9), (false, None));
 }
 
+/// Wire on the turn before came down again half a turn before the end. It was judged, and excused in the reasons.
+#[test]
+fn wire_that_comes_down_before_the_end_is_not_excused() {
+    let leans = |turns: f64| match (0.15..0.4).contains(&turns.fract()) {
+        true => 0.4,
+        false => 0.0,
+    };
+    let spec = CoilSpec {
+        full: Some(TURNS * TAU),
+        planned: Some(TURNS * TAU),
+        ..spec()
+    };
+    let nodes = leaning(leans);
+    let count = nodes.len() as f64 * (TURNS - 0.12) / (2.0 * TURNS - 2.2);
+    let coil = wound(spec, &nodes[..count as usize]);
+    assert!(coil.flags().overlap);
+    assert_eq!(coil.without_place_from(), None);
+}
+
 /// In a window of two turns the first lies beside the flange that the layer goes away from, and leaves the second its place. The second
 /// was taken for the end of a coil without a place, and its gap was not judged.
 #[test]
