@@ -106,9 +106,10 @@ impl SceneSettings {
         }
         self.check_output(&mut problems);
         self.check_motion_and_friction(law.as_ref(), &mut problems);
-        if let (Some(wire), Some((_, extent))) = (&wire, &core) {
-            self.check_core(wire, extent, &mut problems);
-            self.check_nozzle(wire, extent, &mut problems);
+        let diameter = self.wire.outer_diameter();
+        if let Some((_, extent)) = &core {
+            self.check_core(diameter, extent, &mut problems);
+            self.check_nozzle(diameter, extent, &mut problems);
         }
         if let Some(wire) = &wire {
             self.check_strength(wire, &mut problems);
@@ -123,9 +124,7 @@ impl SceneSettings {
             _ => Integrator::Implicit,
         };
         self.check_line(integrator, &mut problems);
-        if let Some(wire) = &wire {
-            self.check_nozzle_body(wire, integrator, &mut problems);
-        }
+        self.check_nozzle_body(diameter, integrator, &mut problems);
         let speed_law = match &law {
             Some(law) => self.speed_law(law, &mut problems),
             None => {

@@ -55,9 +55,9 @@ impl SceneSettings {
         }
     }
 
-    pub(super) fn check_core(&self, wire: &Section, extent: &Extent, problems: &mut Problems) {
+    pub(super) fn check_core(&self, diameter: f64, extent: &Extent, problems: &mut Problems) {
         let length = extent.y_max - extent.y_min;
-        if wire.diameter > length {
+        if diameter > length {
             let reason = "the wire is wider than the core is long";
             let blamed = match self.core.shape.as_str() {
                 "mesh" => "core.unit",
@@ -69,12 +69,12 @@ impl SceneSettings {
                     format!(
                         "core.file is then {} m long along y, and the wire {} m wide",
                         si(length),
-                        si(wire.diameter)
+                        si(diameter)
                     ),
                     "the unit in which the file was written, m for instance, or thinner wire",
                 ),
                 "core.length_y" => {
-                    self.impossible(blamed, reason, format!("at least {} m", si(wire.diameter)))
+                    self.impossible(blamed, reason, format!("at least {} m", si(diameter)))
                 }
                 _ => self.impossible(blamed, reason, format!("at most {} m", si(length))),
             });
@@ -86,8 +86,8 @@ impl SceneSettings {
         }
         let rounding = ROUNDING * length;
         // (between flanges that leave the wire no room no place would do: their distance has been refused)
-        let has_room = between_turns(high - low, wire.diameter).is_some();
-        let all = [low + wire.radius(), high - wire.radius()];
+        let has_room = between_turns(high - low, diameter).is_some();
+        let all = [low + 0.5 * diameter, high - 0.5 * diameter];
         let clamp = self.start.clamp_y;
         // (how far it is beside a stretch)
         let beside = |[low, high]: &[f64; 2]| (low - clamp).max(clamp - high);
@@ -109,9 +109,9 @@ impl SceneSettings {
         }
     }
 
-    pub(super) fn check_nozzle(&self, wire: &Section, extent: &Extent, problems: &mut Problems) {
+    pub(super) fn check_nozzle(&self, diameter: f64, extent: &Extent, problems: &mut Problems) {
         let distance = self.nozzle.distance;
-        let clear = extent.turning_radius + wire.diameter;
+        let clear = extent.turning_radius + diameter;
         if distance <= clear {
             let with_flanges = extent.turning_radius > extent.winding_radius;
             let of_the_scene = self.core.flange.inner_distance != 0.0;

@@ -125,11 +125,14 @@ fn check_leaves(settings: &SceneSettings) -> Result<(), SceneError> {
 /// rigid-perfectly-plastic round section at the yield stress `s`: `N_y = s A`, `M_y = s d^3/6`,
 /// `T_y = s/sqrt(3) pi d^3/12`. Those of the other metals, and of points of a curve, are integrated.
 pub(super) fn section(settings: &SceneSettings) -> Result<Wire, SceneError> {
-    check_leaves(settings)?;
+    let mut problems = Problems::default();
+    problems.note(check_leaves(settings));
+    let curve = problems.note(curve(settings)).flatten();
+    problems.finish()?;
     let wire = &settings.wire;
     let d = wire.diameter;
     let metal = wire.metal();
-    let laws = curve(settings)?.map(|(curve, shear)| {
+    let laws = curve.map(|(curve, shear)| {
         // what was given for a law makes it bilinear; the metals of the library have two points
         let points = !wire.stress_strain.is_empty();
         let in_pieces = InPieces {

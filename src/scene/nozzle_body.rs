@@ -11,19 +11,16 @@ use crate::settings::SceneSettings;
 impl SceneSettings {
     pub(super) fn check_nozzle_body(
         &self,
-        wire: &Section,
+        diameter: f64,
         integrator: Integrator,
         problems: &mut Problems,
     ) {
         let n = &self.nozzle;
-        if n.bore > 0.0 && n.bore <= wire.diameter {
+        if n.bore > 0.0 && n.bore <= diameter {
             problems.add(self.impossible(
                 "nozzle.bore",
-                format!(
-                    "the wire, {} m, does not go through the hole",
-                    si(wire.diameter)
-                ),
-                format!("more than {} m, or 0: not said", si(wire.diameter)),
+                format!("the wire, {} m, does not go through the hole", si(diameter)),
+                format!("more than {} m, or 0: not said", si(diameter)),
             ));
         }
         if n.exit_radius > 0.0 && !integrator.is_implicit() {
@@ -44,7 +41,7 @@ impl SceneSettings {
             problems.add(self.impossible("nozzle.edge_radius", reason, allowed));
             return;
         }
-        let hole = n.bore.max(wire.diameter);
+        let hole = n.bore.max(diameter);
         let least = hole + 2.0 * (n.exit_radius + n.edge_radius);
         if n.outer_diameter < least {
             problems.add(self.impossible(

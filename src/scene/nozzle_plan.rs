@@ -175,7 +175,10 @@ impl SceneSettings {
                 // the wire stays in the window, and the nozzle may lead past its places
                 self.check_way(layers.range(), Some(layers.pitch), extent, of_way);
                 let law = match self.leads_trail() {
-                    true => problems.note(self.led(&layers, wire?, extent))?,
+                    true => {
+                        problems.note(self.check_led_core())?;
+                        problems.note(self.led(&layers, wire?, extent))?
+                    }
                     false => self.orthocyclic(&layers),
                 };
                 let starts = layers.starts(diameter, extent, false);
@@ -390,7 +393,7 @@ impl SceneSettings {
         extent: &Extent,
     ) -> Result<NozzleLaw, SceneError> {
         let crossover = self.traverse.crossover;
-        let trails = self.trails(wire, extent, stacked.rise(wire.diameter))?;
+        let trails = self.trails(wire, extent, stacked.rise(wire.diameter));
         let reach = |distance: f64, crossover: f64| {
             stacked.reach(|layer| trails(distance, layer), crossover)
         };

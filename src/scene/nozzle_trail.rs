@@ -102,29 +102,31 @@ impl SceneSettings {
         self.traverse.mode == "orthocyclic" && self.traverse.trail == "led"
     }
 
-    /// The trail of this wire behind a nozzle at a distance, m, in each layer, from 0; layers rise by `rise`, m.
-    ///
-    /// # Errors
     /// Refuses a core on which the free span changes within a turn.
+    pub(super) fn check_led_core(&self) -> Result<(), SceneError> {
+        if self.core.shape == "cylinder" {
+            return Ok(());
+        }
+        Err(self.impossible(
+            "traverse.trail",
+            format!(
+                "the free span of core.shape = {} changes within a turn, and the nozzle is led for one that does not",
+                self.core.shape
+            ),
+            "free, or core.shape = cylinder",
+        ))
+    }
+
+    /// The trail of this wire behind a nozzle at a distance, m, in each layer, from 0; layers rise by `rise`, m.
     pub(super) fn trails(
         &self,
         wire: &Section,
         extent: &Extent,
         rise: f64,
-    ) -> Result<impl Fn(f64, usize) -> Trail + use<>, SceneError> {
-        if self.core.shape != "cylinder" {
-            return Err(self.impossible(
-                "traverse.trail",
-                format!(
-                    "the free span of core.shape = {} changes within a turn, and the nozzle is led for one that does not",
-                    self.core.shape
-                ),
-                "free, or core.shape = cylinder",
-            ));
-        }
+    ) -> impl Fn(f64, usize) -> Trail + use<> {
         let lowest = extent.winding_radius + 0.5 * wire.diameter;
         let stiff = (sideways(wire, lowest) / self.tensioner.tension.max(LEAST_PULL)).sqrt();
-        Ok(move |distance, layer| Trail::of(lowest + layer as f64 * rise, distance, stiff))
+        move |distance, layer| Trail::of(lowest + layer as f64 * rise, distance, stiff)
     }
 
     /// The nozzle swings past the places beside a flange, but not beyond the end of the core: `reach` says from where to where

@@ -37,6 +37,25 @@ fn all_that_is_wrong_is_told_at_once() {
     );
 }
 
+/// Enamel that is too thin hid a wrong curve of the same wire, and both the nozzle's hole and the trail.
+#[test]
+fn a_wire_that_cannot_be_hides_nothing_else() {
+    let wrong = refused(
+        "[wire]\nstress_strain = [[0.001, 69e6], [0.0005, 80e6]]\nenamelled_diameter_mm = 0.4\n[nozzle]\nbore_mm = 0.3\n\
+         [traverse]\nmode = 'orthocyclic'\ntrail = 'led'\n[winding]\nturns_per_layer = 3\n",
+    );
+    assert_eq!(wrong.lines().count(), 4, "{wrong}");
+    assert_says(
+        &wrong,
+        &[
+            "wire.enamelled_diameter",
+            "wire.stress_strain",
+            "nozzle.bore",
+            "traverse.trail",
+        ],
+    );
+}
+
 /// A speed out of range in a file was told although `--set` gave another one.
 #[test]
 fn a_value_set_by_name_takes_the_place_of_a_wrong_one() {
