@@ -1,6 +1,6 @@
 //! What is told of settled wire: turns at rest, and each defect once.
 
-use crate::measure::{Coil, CountedRun, DefectKind, OnTurn, SettledNode};
+use crate::measure::{Coil, CountedRun, DefectKind, OnTurn, STATIONS_PER_TURN, SettledNode};
 use crate::signals::EventKind;
 use crate::simulation::Winding;
 
@@ -43,11 +43,15 @@ impl Winding {
     }
 
     /// Takes the last `count` nodes back that have come to rest. A turn is told again once all of it was taken back: a part of it may come
-    /// loose and settle again with nobody unwinding it.
+    /// loose and settle again with nobody unwinding it. So is a defect once a turn before it is gone.
     pub(in crate::simulation) fn take_back(&mut self, count: usize) {
         self.coil_mut().unsettle(count);
         let left = self.coil.turns_settled().ceil() as u32;
         self.run.told_turns = self.run.told_turns.min(left);
+        self.tell_of_withdrawn("its wire has been unwound", |coil, _, at| {
+            let left = coil.stations().len();
+            left == 0 || at >= left + STATIONS_PER_TURN
+        });
     }
 
     /// Settled wire has been measured again, since `because`: tells of defects that are new, and of those told before that are none
@@ -64,7 +68,7 @@ impl Winding {
     }
 
     /// Tells of each defect that was told and is `gone` from the wire there, which is at rest: `because` says what has
-    /// come to pass. Wire that was unwound is not there to be asked.
+    /// come to pass. Wire that has just come loose is not there to be asked.
     fn tell_of_withdrawn(&mut self, because: &str, gone: fn(&Coil, DefectKind, usize) -> bool) {
         let coil = &self.coil;
         let gone = |(kind, at): &mut (DefectKind, usize)| gone(coil, *kind, *at);
@@ -268,6 +272,29 @@ mod tests {
             gone,
             [format!("no longer a defect {place}: {MEASURED_ANEW}")]
         );
+    }
+
+    /// The number of defects fell without a word, and rose again without one when the same place was wound anew.
+    #[test]
+    fn a_defect_that_is_unwound_is_told_to_be_gone_and_told_again() {
+        let (mut winding, d, start) = started();
+        let nodes = six_turns(start, |turn| d * (turn + 0.5 * (turn - 3.0).max(0.0)));
+        for node in &nodes {
+            winding.settle_and_tell(*node);
+        }
+        let told = defects_told(&mut winding);
+        assert!(told.len() == 1 && told[0].contains("(gap)"), "{told:?}");
+        // half a turn beyond the place may have come loose
+        winding.take_back(2 * 72);
+        assert_eq!(defects_told(&mut winding), [""; 0]);
+        winding.take_back(4 * 72);
+        let place = told[0].strip_prefix("defect found ").expect("a defect");
+        let gone = format!("no longer a defect {place}: its wire has been unwound");
+        assert_eq!(defects_told(&mut winding), [gone]);
+        for node in &nodes {
+            winding.settle_and_tell(*node);
+        }
+        assert_eq!(defects_told(&mut winding), told);
     }
 
     /// A run of stations that could still grow until it counts was told neither when larger limits took it out nor when it came back.
