@@ -175,10 +175,9 @@ impl SceneSettings {
                 // the wire stays in the window, and the nozzle may lead past its places
                 self.check_way(layers.range(), Some(layers.pitch), extent, of_way);
                 let law = match self.leads_trail() {
-                    true => {
-                        problems.note(self.check_led_core())?;
-                        problems.note(self.led(&layers, wire?, extent))?
-                    }
+                    true => problems
+                        .note(self.check_led_core())
+                        .and_then(|()| problems.note(self.led(&layers, wire?, extent)))?,
                     false => self.orthocyclic(&layers),
                 };
                 let starts = layers.starts(diameter, extent, false);

@@ -274,7 +274,7 @@ mod tests {
         );
     }
 
-    /// The number of defects fell without a word, and rose again without one when the same place was wound anew.
+    /// The number of defects fell without a word, and rose again without one when the same place was wound again.
     #[test]
     fn a_defect_that_is_unwound_is_told_to_be_gone_and_told_again() {
         let (mut winding, d, start) = started();
