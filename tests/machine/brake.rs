@@ -139,10 +139,9 @@ fn the_derivative_at_the_largest_torque_is_that_from_below() {
             .step_derivative(away, Inputs::HELD, step, below)
             .expect("a derivative");
         let [found, wanted] = [found.slopes.wire_tension, 20.0 * wanted.slopes.wire_tension];
-        assert!(
-            (found - wanted).abs() < 0.3 * wanted.abs(),
-            "{found} {wanted}"
-        );
+        // (differences go with the pull, which is 2 % larger there)
+        let off = (found - wanted).abs();
+        assert!(off < 1e-3 * wanted.abs(), "{found} {wanted}");
         run.advance(turning, step).expect("goes on");
     }
 }
