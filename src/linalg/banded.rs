@@ -121,8 +121,11 @@ impl<const D: usize> Banded<D> {
         self.kept == 0
     }
 
-    /// Writes the rows of node `i` over what was there. `own` is the lower half of the diagonal block. `near` and `far` are the
-    /// blocks of the columns of the next node and of the one after, as far as these exist.
+    /// Writes the rows of node `i` over what was there.
+    ///
+    /// `own` is the lower half of the diagonal block.
+    ///
+    /// `near` and `far` are the blocks of the columns of the next node and of the one after, as far as these exist.
     ///
     /// Each closure gives an entry by its row and column within the block.
     #[inline(always)]

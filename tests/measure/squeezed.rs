@@ -146,22 +146,27 @@ fn the_last_turn_of_the_last_layer_rides_up_on_its_neighbour() {
     assert_eq!(told, [(gap, TURNS as u32 - 1), (overlap, TURNS as u32)]);
 }
 
+/// A layer up to shortly before the end of its plan, of which each turn leans on the one before over this part of it.
+fn ending(part: std::ops::Range<f64>) -> Coil {
+    let leans = |turns: f64| match part.contains(&turns.fract()) {
+        true => 0.4,
+        false => 0.0,
+    };
+    let spec = CoilSpec {
+        full: Some(TURNS * TAU),
+        planned: Some(TURNS * TAU),
+        ..spec()
+    };
+    let nodes = leaning(leans);
+    let count = nodes.len() as f64 * (TURNS - 0.12) / (2.0 * TURNS - 2.2);
+    wound(spec, &nodes[..count as usize])
+}
+
 /// Where every turn crosses before the angle of the clamp the end of the last turn has no place, and an even coil was condemned for it.
 #[test]
 fn the_end_of_a_coil_whose_place_is_taken_is_no_overlap() {
     let found = |from: f64| {
-        let leans = |turns: f64| match (from..0.9).contains(&turns.fract()) {
-            true => 0.4,
-            false => 0.0,
-        };
-        let spec = CoilSpec {
-            full: Some(TURNS * TAU),
-            planned: Some(TURNS * TAU),
-            ..spec()
-        };
-        let nodes = leaning(leans);
-        let count = nodes.len() as f64 * (TURNS - 0.12) / (2.0 * TURNS - 2.2);
-        let coil = wound(spec, &nodes[..count as usize]);
+        let coil = ending(from..0.9);
         let begins = coil.without_place_from().map(|at| at as f64 / 360.0);
         (coil.flags().overlap, begins)
     };
@@ -178,18 +183,7 @@ fn the_end_of_a_coil_whose_place_is_taken_is_no_overlap() {
 /// Wire on the turn before came down again half a turn before the end. It was judged, and excused in the reasons.
 #[test]
 fn wire_that_comes_down_before_the_end_is_not_excused() {
-    let leans = |turns: f64| match (0.15..0.4).contains(&turns.fract()) {
-        true => 0.4,
-        false => 0.0,
-    };
-    let spec = CoilSpec {
-        full: Some(TURNS * TAU),
-        planned: Some(TURNS * TAU),
-        ..spec()
-    };
-    let nodes = leaning(leans);
-    let count = nodes.len() as f64 * (TURNS - 0.12) / (2.0 * TURNS - 2.2);
-    let coil = wound(spec, &nodes[..count as usize]);
+    let coil = ending(0.15..0.4);
     assert!(coil.flags().overlap);
     assert_eq!(coil.without_place_from(), None);
 }

@@ -382,7 +382,7 @@ impl Winding {
         nodes
     }
 
-    /// Whether a node moves along with the middle of its chord, so that the wire's motion is kept where the chord takes its place.
+    /// Whether a node moves as its place on the chord does, so that the wire's motion is kept where the chord takes its place.
     ///
     /// The energy of its own motion may be that of a bend which counts as straight.
     fn moves_with_its_chord(&self, node: usize) -> bool {
