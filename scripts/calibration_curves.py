@@ -48,7 +48,8 @@ class Curve:
 def read_curves(path):
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
-            rows = list(csv.reader(line for line in file if not line.startswith("#")))
+            reader = csv.reader("\n" if line.startswith("#") else line for line in file)
+            rows = [(reader.line_num, row) for row in reader if row]
     except UnicodeDecodeError:
         raise Mistake(f"{path} is no text in UTF-8; save it as CSV in UTF-8") from None
     except (OSError, csv.Error) as error:
@@ -56,23 +57,31 @@ def read_curves(path):
     if len(rows) < 2:
         raise Mistake(f"{path} holds no measurement: give a header and a row for each angle")
     # A comma at the end of each line makes a last column of nothing.
-    if not any(row[-1].strip() for row in rows if row) and all(len(row) == len(rows[0]) for row in rows):
-        rows = [row[:-1] for row in rows]
-    header = [name.strip() for name in rows[0]]
-    if (foreign := next((name for mark, name in SEPARATORS.items() if mark in rows[0][0]), None)) is not None:
+    if not any(row[-1].strip() for _, row in rows) and len({len(row) for _, row in rows}) == 1:
+        rows = [(line, row[:-1]) for line, row in rows]
+    header = [name.strip() for name in rows[0][1]]
+    if (foreign := next((name for mark, name in SEPARATORS.items() if mark in rows[0][1][0]), None)) is not None:
         raise Mistake(f"{path} has {foreign} between columns; save it with commas between columns and points in numbers")
     angles = [name for name in header if name in ANGLES]
     if len(angles) != 1:
         raise Mistake(f"{path} has {len(angles)} columns of the angle; give one, named {', '.join(ANGLES)}")
     numbers = {name: [] for name in header}
-    for line, row in enumerate(rows[1:], 2):
+    for line, row in rows[1:]:
         if len(row) != len(header):
             raise Mistake(f"{path}:{line} has {len(row)} cells, the header has {len(header)}")
         for name, cell in zip(header, row):
+            if not cell.strip():
+                if name in ANGLES:
+                    raise Mistake(f"{path}:{line}: {name} is empty; give each row its angle")
+                numbers[name].append(np.nan)
+                continue
             try:
-                numbers[name].append(float(cell) if cell.strip() else np.nan)
+                number = float(cell)
             except ValueError:
                 raise Mistake(f"{path}:{line}: {name} is {cell!r}, which is not a number") from None
+            if not np.isfinite(number):
+                raise Mistake(f"{path}:{line}: {name} is {cell!r}, which is not a finite number; leave the cell empty where nothing was measured")
+            numbers[name].append(number)
     angle = ANGLES[angles[0]] * np.array(numbers.pop(angles[0]))
     if not np.all(np.diff(angle) > 0.0):
         raise Mistake(f"{path}: {angles[0]} has to rise from row to row")
