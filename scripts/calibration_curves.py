@@ -45,6 +45,21 @@ class Curve:
     share: float = 1.0
 
 
+def value_of(cell, column, where):
+    """The number in a cell of a measured file; NaN where nothing was measured."""
+    if not cell.strip():
+        if column in ANGLES:
+            raise Mistake(f"{where}: {column} is empty; give each row its angle")
+        return np.nan
+    try:
+        value = float(cell)
+    except ValueError:
+        raise Mistake(f"{where}: {column} is {cell!r}, which is not a number") from None
+    if not np.isfinite(value):
+        raise Mistake(f"{where}: {column} is {cell!r}, which is not a finite number; leave the cell empty where nothing was measured")
+    return value
+
+
 def read_curves(path):
     try:
         with open(path, newline="", encoding="utf-8-sig") as file:
@@ -70,18 +85,7 @@ def read_curves(path):
         if len(row) != len(header):
             raise Mistake(f"{path}:{line} has {len(row)} cells, the header has {len(header)}")
         for name, cell in zip(header, row):
-            if not cell.strip():
-                if name in ANGLES:
-                    raise Mistake(f"{path}:{line}: {name} is empty; give each row its angle")
-                numbers[name].append(np.nan)
-                continue
-            try:
-                number = float(cell)
-            except ValueError:
-                raise Mistake(f"{path}:{line}: {name} is {cell!r}, which is not a number") from None
-            if not np.isfinite(number):
-                raise Mistake(f"{path}:{line}: {name} is {cell!r}, which is not a finite number; leave the cell empty where nothing was measured")
-            numbers[name].append(number)
+            numbers[name].append(value_of(cell, name, f"{path}:{line}"))
     angle = ANGLES[angles[0]] * np.array(numbers.pop(angles[0]))
     if not np.all(np.diff(angle) > 0.0):
         raise Mistake(f"{path}: {angles[0]} has to rise from row to row")
