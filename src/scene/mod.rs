@@ -18,6 +18,7 @@ mod file;
 mod first_turn;
 mod follow_on;
 mod foreign_table;
+mod free_trail;
 mod impossible;
 mod key;
 mod layer_starts;

@@ -129,6 +129,13 @@ impl SceneSettings {
         move |distance, layer| Trail::of(lowest + layer as f64 * rise, distance, stiff)
     }
 
+    /// As near to the axis as the coil and the turning core leave it room, m.
+    pub(super) fn nearest_nozzle(&self, extent: &Extent) -> f64 {
+        let d = self.wire.outer_diameter();
+        let coil = extent.winding_radius + self.winding.layers * d;
+        f64::max(coil, extent.turning_radius) + d
+    }
+
     /// The nozzle swings past the places beside a flange, but not beyond the end of the core: `reach` says from where to where
     /// it goes at a distance, m, with a crossover of so many rad, m.
     pub(super) fn check_swing(
@@ -163,10 +170,7 @@ impl SceneSettings {
             );
             return Err(self.impossible("traverse.crossover", reason, allowed));
         }
-        // no nearer than the coil and the turning core leave it
-        let d = self.wire.outer_diameter();
-        let coil = extent.winding_radius + self.winding.layers * d;
-        let nearest = f64::max(coil, extent.turning_radius) + d;
+        let nearest = self.nearest_nozzle(extent);
         let farthest = |crossover: f64| {
             let near = nearest < distance && fits(nearest, crossover);
             near.then(|| last_that_fits(nearest, distance, |distance| fits(distance, crossover)))
@@ -186,7 +190,7 @@ impl SceneSettings {
 }
 
 /// The last number from one that fits towards one that does not that fits as well, but for a ten-thousandth of their difference.
-fn last_that_fits(fit: f64, unfit: f64, fits: impl Fn(f64) -> bool) -> f64 {
+pub(super) fn last_that_fits(fit: f64, unfit: f64, fits: impl Fn(f64) -> bool) -> f64 {
     let (mut last, mut beyond) = (fit, unfit);
     while (beyond - last).abs() > 1e-4 * (unfit - fit).abs() {
         let middle = 0.5 * (last + beyond);

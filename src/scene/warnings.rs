@@ -135,6 +135,7 @@ impl SceneSettings {
         survey.nozzle_way();
         survey.coil_height();
         survey.turns_apart();
+        survey.first_step();
         survey.turns_without_place();
         survey.past_a_flange();
         survey.clamp();
@@ -301,19 +302,19 @@ impl Survey<'_> {
         }
     }
 
+    /// Whether turns lie side by side: layers of a single turn have no neighbours.
+    fn has_neighbours(&self) -> bool {
+        let held = self.law.held();
+        held.is_none_or(|turns| turns > self.settings.winding.layers)
+    }
+
     /// Turns with gaps by plan.
     fn turns_apart(&mut self) {
         let by_law = self.follows.is_law();
-        // (layers of a single turn have no neighbours)
-        let side_by_side = || {
-            self.law
-                .held()
-                .is_none_or(|turns| turns > self.settings.winding.layers)
-        };
         if by_law
             && let Some(pitch) = self.law.pitch()
             && pitch > (1.0 + ALIGNED_RMS) * self.wire.diameter
-            && side_by_side()
+            && self.has_neighbours()
         {
             let key = match self.settings.winding.pitch {
                 0.0 => "winding.turns_per_layer",
@@ -334,6 +335,18 @@ impl Survey<'_> {
                 si(pitch - self.wire.diameter)
             );
             self.warn(key, message);
+        }
+    }
+
+    /// A nozzle so far away that turn 2 begins on turn 1.
+    fn first_step(&mut self) {
+        if self.follows.is_law()
+            && self.has_neighbours()
+            && let Some(message) = self
+                .settings
+                .late_first_step(self.wire, self.core, self.extent)
+        {
+            self.warn("nozzle.distance", message);
         }
     }
 

@@ -136,3 +136,32 @@ fn a_travel_that_fits_is_named_with_where_it_begins() {
         );
     }
 }
+
+/// At the default distance turn 2 of a small box was laid on turn 1 and fell off with slack, and nothing said so before the run.
+#[test]
+fn a_nozzle_so_far_that_turn_2_begins_on_turn_1_is_told() {
+    let box_of = |more: &str, nozzle: &str| -> Option<String> {
+        let text = format!(
+            "[core]\nwidth_x_mm = 20\nheight_z_mm = 11\ncorner_radius_mm = 2\n[core.flange]\ninner_distance_mm = 6.8\nheight_mm = 4\n\
+             [wire]\ndiameter_mm = 0.56\n[winding]\nlayers = 1\n[nozzle]\n{nozzle}\n[traverse]\nmode = 'orthocyclic'\n{more}\n"
+        );
+        let (_, warnings) = parse(&text).unwrap().build_with_warnings().unwrap();
+        let mut told = warnings.into_iter();
+        let told = told.find(|w| w.key == "nozzle.distance")?;
+        assert!(told.message.contains("turn 2 begins"), "{}", told.message);
+        Some(told.message)
+    };
+    let told = box_of("", "").unwrap();
+    // what it says to do is enough, and no more than needed
+    let after = |words: &str| -> f64 { number_after(&told, words).parse().unwrap() };
+    let [most, least] = [after("bring it to "), after("traverse.advance to ")];
+    let (near, less) = (1e3 * most, least - 2.0);
+    assert_eq!(box_of("", &format!("distance_mm = {near}")), None);
+    let beyond = format!("distance_mm = {}", near + 1.0);
+    assert!(box_of("", &beyond).is_some());
+    assert_eq!(box_of(&format!("advance_deg = {least}"), ""), None);
+    assert!(box_of(&format!("advance_deg = {less}"), "").is_some());
+    // without friction wire slides off at any place
+    let slippery = "[friction]\nstatic = 0\nkinetic = 0";
+    assert_eq!(box_of(slippery, ""), None);
+}
