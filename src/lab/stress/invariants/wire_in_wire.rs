@@ -1,5 +1,5 @@
 //! Wire stays out of wire: every live node against all wire half a turn or more behind it, whatever the method's own
-//! search found.
+//! search found. Beside the axis half a turn is no length of wire, and what is nearer along it than the tightest bend does not count.
 //!
 //! The wire behind is passed in chunks, each in a ball; a ball that a node is far from is passed over.
 
@@ -13,6 +13,8 @@ use std::f64::consts::{PI, TAU};
 const CROSSED: f64 = 0.5;
 /// By what share of the diameter a chord may miss its curve.
 const STRAIGHT: f64 = 0.02;
+/// Length of wire, in diameters, in which it cannot come back to itself: half a circle of touching wire.
+const TIGHTEST: f64 = 0.5 * PI;
 /// Edges in a chunk. Chosen: a quarter of a turn at most.
 const CHUNK: usize = 16;
 
@@ -51,16 +53,19 @@ struct Behind {
     nodes: Vec<V3>,
     /// polar angle along the wire from its end, rad
     turned: Vec<f64>,
+    /// length along the chords from its end, m
+    arc: Vec<f64>,
     /// centre and radius of the ball round each chunk, m
     balls: Vec<(V3, f64)>,
 }
 
 impl Behind {
     fn new(nodes: Vec<V3>) -> Self {
-        let mut turned = vec![0.0];
-        for pair in nodes.windows(2) {
+        let (mut turned, mut arc) = (vec![0.0], vec![0.0]);
+        for (k, pair) in nodes.windows(2).enumerate() {
             let step = wrap_to_pi(polar_angle(pair[1]) - polar_angle(pair[0]));
-            turned.push(turned[turned.len() - 1] + step);
+            turned.push(turned[k] + step);
+            arc.push(arc[k] + (pair[1] - pair[0]).norm());
         }
         // (pieces reach from the middle of the edge before a node to that of the edge after it)
         let ball = |first: usize| {
@@ -74,26 +79,33 @@ impl Behind {
         Self {
             nodes,
             turned,
+            arc,
             balls,
         }
     }
 
+    /// How many turns, in rad, node `j` lies behind node `i`, where that is another passage of wire of this `diameter`, m.
+    fn behind(&self, i: usize, j: usize, diameter: f64) -> Option<f64> {
+        let behind = (self.turned[i] - self.turned[j]).abs();
+        let is_other = behind >= PI && self.arc[i] - self.arc[j] >= TIGHTEST * diameter;
+        is_other.then_some(behind)
+    }
+
     /// Distance (m) of `p`, which lies at node `i`, from the wire half a turn or more behind that node, and how many turns
-    /// behind; `None` if it is farther than `reach`, m.
-    fn nearest(&self, i: usize, p: V3, reach: f64) -> Option<(f64, f64)> {
+    /// behind; `None` if it is farther than the `diameter`, m.
+    fn nearest(&self, i: usize, p: V3, diameter: f64) -> Option<(f64, f64)> {
         let mut found = None;
-        let mut best = reach;
+        let mut best = diameter;
         for (chunk, (centre, radius)) in self.balls.iter().enumerate() {
             let first = chunk * CHUNK;
             if first >= i || (p - centre).norm() > radius + best {
                 continue;
             }
             for j in first.max(1)..(first + CHUNK).min(i) {
-                let behind = (self.turned[i] - self.turned[j]).abs();
-                if behind < PI {
+                let Some(behind) = self.behind(i, j, diameter) else {
                     continue;
-                }
-                let distance = self.distance_to_piece(p, j, reach);
+                };
+                let distance = self.distance_to_piece(p, j, diameter);
                 if distance < best {
                     best = distance;
                     found = Some((distance, behind / TAU));
@@ -134,13 +146,12 @@ mod tests {
     use crate::lab::stress::invariants::planted;
 
     /// Slow twin of [`Behind::nearest`].
-    fn nearest(wire: &Behind, i: usize, p: V3, reach: f64) -> Option<f64> {
-        let half_a_turn = |j: &usize| (wire.turned[i] - wire.turned[*j]).abs() >= PI;
+    fn nearest(wire: &Behind, i: usize, p: V3, diameter: f64) -> Option<f64> {
         let all = (1..i)
-            .filter(half_a_turn)
-            .map(|j| wire.distance_to_piece(p, j, reach));
+            .filter(|j| wire.behind(i, *j, diameter).is_some())
+            .map(|j| wire.distance_to_piece(p, j, diameter));
         let least = all.fold(f64::INFINITY, f64::min);
-        (least < reach).then_some(least)
+        (least < diameter).then_some(least)
     }
 
     #[test]
@@ -172,6 +183,27 @@ mod tests {
                 .lerp(&corner.lerp(&last, share), share);
             assert!(wire.distance_to_piece(on, 1, 1.0) < STRAIGHT, "{share}");
         }
+    }
+
+    /// Wire that had slipped off the core ran past the axis, half a turn in half a diameter, and counted as in itself.
+    #[test]
+    fn wire_past_the_axis_is_not_in_itself() {
+        let past = |k: i32| {
+            let x = 0.1 * f64::from(k);
+            V3::new(x, 20.0, 0.02 - 0.2 * x * x)
+        };
+        let bowed = Behind::new((-40..40).map(past).collect());
+        assert!(bowed.turned[46] - bowed.turned[34] < -PI);
+        let bend = |k: i32| {
+            let a = 0.1 * f64::from(k);
+            V3::new(0.3 * libm::cos(a), 20.0, 0.3 * libm::sin(a))
+        };
+        // (the tightest bend that does count is one of less than the wire's own width)
+        let curled = Behind::new((0..80).map(bend).collect());
+        for i in 1..79 {
+            assert_eq!(bowed.nearest(i, bowed.nodes[i], 1.0), None, "{i}");
+        }
+        assert!(curled.nearest(78, curled.nodes[78], 1.0).is_some());
     }
 
     #[test]
