@@ -1,9 +1,10 @@
 //! What the nozzle must not meet: core, flanges and the coil.
 //!
-//! Without `nozzle.outer_diameter` the nozzle is a point, and the coil must not reach as far out as it stands. With it the
+//! Without `nozzle.outer_diameter` the nozzle is a point, and the coil, at rest or not, must not reach as far out as it stands. With it the
 //! nozzle has a body, a round rod from the exit outwards along +x. After every step the body is held against the core where
-//! that stands at that instant, against frozen wire, and against live wire up to lift-off. The free span may pass beside it.
+//! that stands at that instant, against frozen wire, and against live wire that is laid. The free span may pass beside it.
 
+use crate::contact::ContactPoint;
 use crate::geometry::{Nearness, RoundedRod};
 use crate::math::{Spin, V3, polar_angle, wrap_to_pi};
 use crate::measure::{DefectKind, OnTurn};
@@ -74,18 +75,22 @@ impl Winding {
         );
         let exit = self.sys.state.support[1].point;
         let place = Spin::new(self.sys.state.spindle.angle).to_core(exit);
-        let (angle, _) = self.wound_to(self.lift_off());
+        let (angle, _) = self.wound_to(self.laid_to());
         self.note_end_at(DefectKind::Collision, angle, place, text);
     }
 
     /// The coil must not reach the nozzle: no wire could leave it freely there.
     pub(super) fn check_clearance(&mut self) {
-        let node = self.lift_off();
+        let lift = self.lift_off();
+        let node = self.laid_to();
         if node == 0 || node + 1 == self.sys.state.rod.nodes() {
             return;
         }
-        // (wire that leaves the core steeply stands off it at the node behind its last touch)
-        let touch = self.sys.touched_place(node);
+        // (wire that leaves what it lies on steeply stands off it at the node behind its last touch)
+        let touch = match node > lift {
+            true => ContactPoint::Edge(node - 1).place(&self.sys.state.rod.x),
+            false => self.sys.touched_place(node),
+        };
         let reach = libm::hypot(touch.x, touch.z) + self.scene.wire.radius();
         let distance = self.nozzle_distance();
         if reach < distance {
@@ -164,7 +169,7 @@ impl Winding {
             let flange = solid(point).is_some_and(|(_, flange)| flange);
             Some(Meeting {
                 what: if flange { "a flange" } else { "the core" }.to_owned(),
-                angle: self.wound_to(self.lift_off()).0,
+                angle: self.wound_to(self.laid_to()).0,
                 place: spin.to_core(point + exit),
             })
         })
@@ -197,13 +202,13 @@ impl Winding {
 
     /// Where the body meets live wire that is laid.
     fn live_met(&self, body: &RoundedRod, exit: V3, spin: Spin) -> Option<Meeting> {
-        let lift = self.lift_off();
+        let last = self.laid_to();
         let rod = &self.sys.state.rod;
-        if lift + 1 == rod.nodes() {
+        if last + 1 == rod.nodes() {
             return None;
         }
         let radius = self.scene.wire.radius();
-        let node = (1..=lift).find(|&i| body.distance(rod.x[i] - exit) < radius)?;
+        let node = (1..=last).find(|&i| body.distance(rod.x[i] - exit) < radius)?;
         let (angle, _) = self.wound_to(node);
         Some(Meeting {
             what: format!("wire of turn {} that is just laid", OnTurn::at(angle).turn),

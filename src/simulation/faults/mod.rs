@@ -58,7 +58,7 @@ impl Winding {
 
     /// The wire as it loses its tension. What has been laid may spring off before that counts, and is not where it was then.
     fn goes_slack(&self) -> SlackSince {
-        let (wound, place) = self.place_of(self.lift_off());
+        let (wound, place) = self.place_of(self.laid_to());
         SlackSince {
             core: self.sys.state.spindle.angle,
             time: self.sys.state.time,
@@ -164,7 +164,7 @@ impl Winding {
     /// Angle along the wire from the clamp to a live node, rad, and its place in the core frame, m; what is not laid yet counts
     /// to the angle where wire is laid.
     fn place_of(&self, node: usize) -> (f64, V3) {
-        let (angle, _) = self.wound_to(node.min(self.lift_off()));
+        let (angle, _) = self.wound_to(node.min(self.laid_to()));
         let spin = Spin::new(self.sys.state.spindle.angle);
         (angle, spin.to_core(self.sys.state.rod.x[node]))
     }

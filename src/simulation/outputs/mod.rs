@@ -158,6 +158,11 @@ impl Winding {
             .unwrap_or(0)
     }
 
+    /// The last node of laid wire: that behind which wire lifts off, or one that live wire up to there carries.
+    pub(super) fn laid_to(&self) -> usize {
+        self.sys.carried_by(self.lift_off())
+    }
+
     /// Angle at the nozzle between the free span and the plane across the axis, rad; positive towards larger y.
     fn nozzle_angle(&self) -> f64 {
         let x = &self.sys.state.rod.x;
