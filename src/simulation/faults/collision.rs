@@ -82,7 +82,7 @@ impl Winding {
     /// The coil must not reach the nozzle: no wire could leave it freely there.
     pub(super) fn check_clearance(&mut self) {
         let lift = self.lift_off();
-        let node = self.laid_to();
+        let node = self.sys.carried_by(lift);
         if node == 0 || node + 1 == self.sys.state.rod.nodes() {
             return;
         }
