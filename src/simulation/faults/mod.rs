@@ -103,7 +103,9 @@ impl Winding {
         self.report(
             EventKind::Slack,
             format!(
-                "the wire went slack at the nozzle (tension below {} N); raise the tension (tensioner.tension, or the input tension_setpoint) or {}",
+                "the wire went slack at the nozzle at t = {:.6} s, in {} (tension below {} N); raise the tension (tensioner.tension, or the input tension_setpoint) or {}",
+                since.time,
+                OnTurn::at(since.wound),
                 four_digits(self.slack_tension()),
                 self.gentler()
             ),
